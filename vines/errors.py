@@ -1,0 +1,115 @@
+"""Every error that vines raises on purpose.
+
+Each is a :class:`VinesError` and also a builtin, so that a caller may catch either. The message is one line: what was
+wrong, the value, what is allowed, and the remedy. The command line prints that line and exits with
+:attr:`VinesError.exit_code`.
+"""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Iterable
+
+__all__ = [
+    "DeclarationError",
+    "FileMissingError",
+    "LogError",
+    "OrbitNotFound",
+    "ParameterError",
+    "QueryError",
+    "RunFailed",
+    "SchemaError",
+    "StateError",
+    "StoreError",
+    "UnknownNameError",
+    "VinesError",
+    "ViewerError",
+    "nearest",
+]
+
+
+class VinesError(Exception):
+    """Base of all errors that vines raises on purpose."""
+
+    exit_code: int = 2
+
+
+class ParameterError(VinesError, ValueError):
+    """A parameter of the model lies outside its allowed range."""
+
+
+class StateError(VinesError, ValueError):
+    """A start state is not one that the model can have, such as a gap ``|w| > 1``."""
+
+
+class DeclarationError(VinesError, ValueError):
+    """A pipeline declaration cannot be read: a misspelt key, a wrong type, stages that need themselves."""
+
+
+class UnknownNameError(VinesError, LookupError):
+    """A pipeline, stage, table, log or column was asked for that does not exist."""
+
+
+class FileMissingError(VinesError, FileNotFoundError):
+    """A file that was named does not exist."""
+
+    def __str__(self) -> str:
+        return str(self.args[0]) if self.args else ""
+
+
+class SchemaError(VinesError, TypeError):
+    """Data do not fit the schema under which they should be stored."""
+
+
+class StoreError(VinesError, RuntimeError):
+    """A stored result is missing, damaged, or being written by another process."""
+
+
+class LogError(VinesError, ValueError):
+    """An MCAP log is damaged, incomplete, or holds what cannot be decoded."""
+
+
+class QueryError(VinesError, ValueError):
+    """A SQL query could not be answered."""
+
+
+class ViewerError(VinesError, RuntimeError):
+    """The Rerun viewer could not be started or could not draw."""
+
+
+class OrbitNotFound(VinesError, LookupError):  # noqa: N818 - the name is promised in the design
+    """No periodic orbit of the word was found; the message says how near the search came."""
+
+
+class RunFailed(VinesError, RuntimeError):  # noqa: N818 - reads as what happened
+    """Some points of a run failed; the rest is stored."""
+
+    exit_code: int = 3
+
+
+def nearest(name: str, known: Iterable[str]) -> str:
+    """Return the tail of a message that helps with a misspelt name.
+
+    Parameters
+    ----------
+    name : str
+        What was written.
+    known : iterable of str
+        What would have been allowed.
+
+    Returns
+    -------
+    str
+        ``"did you mean 'x'? Allowed: x, y"``, or only the list if nothing is near.
+
+    Examples
+    --------
+    >>> nearest("settel", ["settle", "record"])
+    "did you mean 'settle'? Allowed: record, settle"
+    >>> nearest("zzz", ["settle", "record"])
+    'allowed: record, settle'
+    """
+    names = sorted(known)
+    listed = ", ".join(names) if names else "nothing"
+    close = difflib.get_close_matches(name, names, n=1, cutoff=0.6)
+    return f"did you mean {close[0]!r}? Allowed: {listed}" if close else f"allowed: {listed}"

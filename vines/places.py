@@ -1,0 +1,79 @@
+"""Where things lie: the root of a project, its data, its cache, and the files that ship with vines.
+
+Every room may import this module; it imports nothing but the standard library and :mod:`vines.errors`.
+"""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+from vines.errors import FileMissingError
+
+__all__ = ["cache_folder", "data_folder", "find_root", "shipped"]
+
+
+def find_root(start: Path | None = None) -> Path:
+    """Return the root of the project: ``VINES_ROOT``, or the nearest parent with a folder ``pipelines/``.
+
+    Where there is none, the folder itself is the root: an installed vines works in any folder with the pipelines that
+    ship with it.
+
+    Parameters
+    ----------
+    start : Path, optional
+        Where to look first; the current folder if left out.
+
+    Raises
+    ------
+    FileMissingError
+        If ``VINES_ROOT`` names a folder that does not exist.
+    """
+    named = os.environ.get("VINES_ROOT")
+    if named:
+        root = Path(named).expanduser()
+        if not root.is_dir():
+            raise FileMissingError(f"VINES_ROOT is {named!r}, which is not a folder; unset it or name an existing one")
+        return root.resolve()
+    here = (start or Path.cwd()).resolve()
+    for folder in (here, *here.parents):
+        if (folder / "pipelines").is_dir():
+            return folder
+    return here
+
+
+def data_folder(root: Path | None = None) -> Path:
+    """Return the folder of results: ``VINES_DATA``, or ``data/`` under the root of the project."""
+    named = os.environ.get("VINES_DATA")
+    if named:
+        return Path(named).expanduser().resolve()
+    return (root or find_root()) / "data"
+
+
+def cache_folder() -> Path:
+    """Return the folder for what can be made again: ``data/cache`` of a project, else the user's cache folder.
+
+    A project is recognised by ``VINES_DATA``, ``VINES_ROOT`` or a folder ``pipelines/`` above the current one. Elsewhere
+    (a notebook in any folder) nothing is written beside the user's files.
+    """
+    if os.environ.get("VINES_DATA") or os.environ.get("VINES_ROOT") or (find_root() / "pipelines").is_dir():
+        return data_folder() / "cache"
+    base = os.environ.get("XDG_CACHE_HOME") or str(Path.home() / ".cache")
+    return Path(base) / "vines"
+
+
+def shipped(name: str) -> Path:
+    """Return a folder that ships with vines, ``schemas`` or ``pipelines``.
+
+    In a wheel they are package data; in a checkout they lie beside the package.
+
+    Raises
+    ------
+    FileMissingError
+        If the installation is incomplete.
+    """
+    package = Path(__file__).resolve().parent
+    for folder in (package / "_shipped" / name, package.parent / name):
+        if folder.is_dir():
+            return folder
+    raise FileMissingError(f"the folder {name!r} that ships with vines is missing; install vines again")
