@@ -1,0 +1,68 @@
+"""Pipelines: declarations, kinds of stages, keys, points, plans, and the engine that runs them. Knows no physics."""
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from vines.pipeline._declaration import Axis, Carry, Pipeline, Stage, find, load, shipped_names
+    from vines.pipeline._events import Event, RunSummary
+    from vines.pipeline._jobs import Batch, Input, Job, Point, Range, WholeJob
+    from vines.pipeline._kinds import Kind, kind, kinds, register
+    from vines.pipeline._plan import StagePlan, plan
+    from vines.pipeline._run import run_pipeline
+
+__all__ = [
+    "Axis",
+    "Batch",
+    "Carry",
+    "Event",
+    "Input",
+    "Job",
+    "Kind",
+    "Pipeline",
+    "Point",
+    "Range",
+    "RunSummary",
+    "Stage",
+    "StagePlan",
+    "WholeJob",
+    "find",
+    "kind",
+    "kinds",
+    "load",
+    "plan",
+    "register",
+    "run_pipeline",
+    "shipped_names",
+]
+
+_HOME = {
+    "Axis": "vines.pipeline._axes",
+    "Batch": "vines.pipeline._jobs",
+    "Carry": "vines.pipeline._declaration",
+    "Event": "vines.pipeline._events",
+    "Input": "vines.pipeline._jobs",
+    "Job": "vines.pipeline._jobs",
+    "Kind": "vines.pipeline._kinds",
+    "Pipeline": "vines.pipeline._declaration",
+    "Point": "vines.pipeline._jobs",
+    "Range": "vines.pipeline._jobs",
+    "RunSummary": "vines.pipeline._events",
+    "Stage": "vines.pipeline._declaration",
+    "StagePlan": "vines.pipeline._plan",
+    "WholeJob": "vines.pipeline._jobs",
+    "find": "vines.pipeline._declaration",
+    "kind": "vines.pipeline._kinds",
+    "kinds": "vines.pipeline._kinds",
+    "load": "vines.pipeline._declaration",
+    "plan": "vines.pipeline._plan",
+    "register": "vines.pipeline._kinds",
+    "run_pipeline": "vines.pipeline._run",
+    "shipped_names": "vines.pipeline._declaration",
+}
+
+
+def __getattr__(name: str) -> Any:
+    if name not in _HOME:
+        raise AttributeError(f"module 'vines.pipeline' has no attribute {name!r}")
+    return getattr(import_module(_HOME[name]), name)
