@@ -1,0 +1,69 @@
+"""The one decorator of every kernel in vines, and the folder in which compiled kernels are kept.
+
+numba's cache on disk looks only at the file of the function that was cached: after a change of a helper in another file
+it goes on returning the old machine code. The folder is therefore named by a digest over the sources of every room that
+holds kernels, so that any change opens an empty cache. Import this module before numba.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import os
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any, TypeVar
+
+from vines.places import cache_folder
+
+__all__ = ["CACHE", "kernel_digest", "njit"]
+
+ROOMS = ("model", "dynamics", "orbits", "attractors")
+"""Rooms whose sources can change what a kernel computes."""
+
+_Function = TypeVar("_Function", bound=Callable[..., Any])
+
+
+def kernel_digest() -> str:
+    """Return 16 hexadecimal digits over the sources of all rooms that hold kernels.
+
+    Examples
+    --------
+    >>> len(kernel_digest())
+    16
+    """
+    package = Path(__file__).resolve().parent.parent
+    digest = hashlib.sha256()
+    for room in ROOMS:
+        for path in sorted((package / room).glob("*.py")):
+            content = path.read_bytes()
+            digest.update(f"{room}/{path.name}:{len(content)}\n".encode())
+            digest.update(content)
+    return digest.hexdigest()[:16]
+
+
+def _base_folder() -> Path:
+    """Return what NUMBA_CACHE_DIR was before vines named a folder in it, else the cache folder of vines.
+
+    A child process inherits the name that its parent has set; without this it would nest folder in folder.
+    """
+    named = os.environ.get("NUMBA_CACHE_DIR")
+    if not named:
+        return cache_folder()
+    path = Path(named)
+    ours = path.parent.name == "numba" and len(path.name) == 16 and set(path.name) <= set("0123456789abcdef")
+    return path.parent.parent if ours else path
+
+
+CACHE = _base_folder() / "numba" / kernel_digest()
+"""The folder of the compiled kernels of these sources."""
+
+os.environ["NUMBA_CACHE_DIR"] = str(CACHE)
+
+import numba  # noqa: E402 - only now, because numba reads the name of its cache when it is imported
+
+numba.config.CACHE_DIR = str(CACHE)  # pyright: ignore[reportAttributeAccessIssue] - numba may be loaded already
+
+
+def njit(function: _Function) -> _Function:
+    """Compile a function with the settings of every kernel in vines: cached on disk, IEEE division, GIL released."""
+    return numba.njit(cache=True, error_model="numpy", nogil=True)(function)

@@ -1,0 +1,145 @@
+"""The map from just before one impact to just before the next, and its Jacobian in saltation form.
+
+Coordinates are (v1, v2, x2, t) of the paper's maps P1–P4 (eqs. (15), (16)), x1 following from ``x1 = x2 + side``. The
+derivation is in docs/dynamics.md, "Jacobian of an impact map"; it replaces the paper's appendix, whose print is wrong.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+import numpy.typing as npt
+
+from vines.dynamics._jit import njit
+from vines.errors import StateError
+from vines.model import Params
+
+__all__ = ["jacobian", "jacobian_kernel"]
+
+GAP_TOLERANCE = 1e-6
+"""How far the gap may be from the named wall at either impact before the arguments are taken to be wrong."""
+
+
+@njit
+def jacobian_kernel(mu, A, Omega, r, lam, x1, v1, v2, phase, tau):
+    """Return (J, x1, v1, v2): the 4x4 Jacobian over a flight of length tau, and the oscillator and ball at its end.
+
+    The arguments x1, v1, v2, phase are those just before the first impact; the results those just before the second.
+    """
+    half = 0.5 * lam
+    gamma = math.sqrt(1.0 - half * half)
+    v1p = ((1.0 - r * mu) * v1 + mu * (1.0 + r) * v2) / (1.0 + mu)
+    v2p = ((1.0 + r) * v1 + (mu - r) * v2) / (1.0 + mu)
+    force = A * math.sin(phase) + lam * Omega * A * math.cos(phase)
+
+    # Columns of [R E, -f+] in the coordinates (x1, v1, x2, v2).
+    start = np.zeros((4, 4))
+    start[0, 2] = 1.0
+    start[2, 2] = 1.0
+    start[1, 0] = (1.0 - r * mu) / (1.0 + mu)
+    start[1, 1] = mu * (1.0 + r) / (1.0 + mu)
+    start[3, 0] = (1.0 + r) / (1.0 + mu)
+    start[3, 1] = (mu - r) / (1.0 + mu)
+    start[0, 3] = -v1p
+    start[1, 3] = -(force - lam * v1p - x1)
+    start[2, 3] = -v2p
+
+    decay = math.exp(-half * tau)
+    sine = decay * math.sin(gamma * tau) / gamma
+    cosine = decay * math.cos(gamma * tau)
+    grown = np.empty((4, 4))
+    for j in range(4):
+        grown[0, j] = (cosine + half * sine) * start[0, j] + sine * start[1, j]
+        grown[1, j] = -sine * start[0, j] + (cosine - half * sine) * start[1, j]
+        grown[2, j] = start[2, j] + tau * start[3, j]
+        grown[3, j] = start[3, j]
+
+    # The oscillator at the end: forced response plus the decaying difference to it.
+    re, im = 1.0 - Omega * Omega, lam * Omega
+    size = A / (re * re + im * im)
+    qr0 = size * ((lam * Omega * re - im) * math.cos(phase) + (re + lam * Omega * im) * math.sin(phase))
+    qi0 = size * ((lam * Omega * re - im) * math.sin(phase) - (re + lam * Omega * im) * math.cos(phase))
+    angle = Omega * tau
+    qr = qr0 * math.cos(angle) - qi0 * math.sin(angle)
+    qi = qr0 * math.sin(angle) + qi0 * math.cos(angle)
+    dx, dv = x1 - qr0, v1p + Omega * qi0
+    x1n = (cosine + half * sine) * dx + sine * dv + qr
+    v1n = -sine * dx + (cosine - half * sine) * dv - Omega * qi
+    end = phase + angle
+    acceleration = A * math.sin(end) + lam * Omega * A * math.cos(end) - lam * v1n - x1n
+
+    J = np.empty((4, 4))
+    closing = v1n - v2p
+    for j in range(4):
+        shift = (grown[0, j] - grown[2, j]) / closing
+        J[0, j] = grown[1, j] - acceleration * shift
+        J[1, j] = grown[3, j]
+        J[2, j] = grown[2, j] - v2p * shift
+        J[3, j] = -shift
+    return J, x1n, v1n, v2p
+
+
+def jacobian(
+    p: Params,
+    side: int,
+    side_next: int,
+    before: Sequence[float],
+    phase: float,
+    tau: float,
+) -> npt.NDArray[np.float64]:
+    """Return the Jacobian of the map from just before impact k-1 to just before impact k.
+
+    Parameters
+    ----------
+    p : Params
+        Dimensionless parameters.
+    side, side_next : int
+        Walls of the two impacts, +1 for the left end, -1 for the right end.
+    before : sequence of four floats
+        x1, v1, x2, v2 just before impact k-1.
+    phase : float
+        Phase of the forcing at impact k-1 [rad].
+    tau : float
+        Time of flight between the two impacts, > 0 (dimensionless).
+
+    Returns
+    -------
+    ndarray, shape (4, 4)
+        Derivatives of (v1, v2, x2, t) at k (rows) by the same at k-1 (columns). Its determinant is
+        ``r**2 (w'_{k-1}/w'_k) exp(-lam tau)`` with w' before the impacts.
+
+    Raises
+    ------
+    StateError
+        If the ball is not on `side` at the start or not on `side_next` after `tau`.
+
+    Notes
+    -----
+    Derived in docs/dynamics.md, "Jacobian of an impact map"; it stands for the paper's (35)–(39) and A.2–A.10.
+
+    Examples
+    --------
+    >>> from vines.model import Params
+    >>> p = Params(mu=0.1, A=0.3, Omega=1.2)
+    >>> tau = 2.3409392834070411
+    >>> J = jacobian(p, 1, -1, (0.3, 0.3, -0.7, -0.8), 0.4, tau)
+    >>> print(f"{np.linalg.det(J):.6f}")
+    -0.425859
+    >>> jacobian(p, 1, 1, (0.3, 0.3, -0.7, -0.8), 0.4, tau)
+    Traceback (most recent call last):
+    vines.errors.StateError: after tau = 2.34093928 the gap x1 - x2 is -1, not side_next = 1; give the time to impact
+    """
+    x1, v1, x2, v2 = (float(value) for value in before)
+    if abs(x1 - x2 - side) > GAP_TOLERANCE:
+        raise StateError(
+            f"before impact the gap x1 - x2 is {x1 - x2:.9g}, not side = {side}; give a state on the wall"
+        )
+    J, x1n, _, v2n = jacobian_kernel(p.mu, p.A, p.Omega, p.r, p.lam, x1, v1, v2, float(phase), float(tau))
+    gap = x1n - (x2 + v2n * tau)
+    if abs(gap - side_next) > GAP_TOLERANCE:
+        raise StateError(
+            f"after tau = {tau:.9g} the gap x1 - x2 is {gap:.9g}, not side_next = {side_next}; give the time to impact"
+        )
+    return J
