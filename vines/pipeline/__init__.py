@@ -1,10 +1,11 @@
-"""Pipelines: declarations, kinds of stages, keys, points, plans, and the engine that runs them. Knows no physics."""
+"""Pipelines: declarations, kinds of stages, keys, points, plans, and the engine. Knows no physics."""
 
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from vines.pipeline._declaration import Axis, Carry, Pipeline, Stage, find, load, shipped_names
+    from vines.pipeline._axes import Axis
+    from vines.pipeline._declaration import Carry, Pipeline, Stage, find, load, shipped_names
     from vines.pipeline._events import Event, RunSummary
     from vines.pipeline._jobs import Batch, Input, Job, Point, Range, WholeJob
     from vines.pipeline._kinds import Kind, kind, kinds, register

@@ -64,12 +64,13 @@ class Job:
     carry : str or None
         The carried axis. The end state of each point is then the start of the next.
     start : dict or None
-        The predecessor's row in the primary table, if `carry` and there is a predecessor. ``None`` means: start as
-        the options say.
+        The predecessor's row in the primary table, if `carry` and there is a predecessor. ``None`` means:
+        start as the options say.
     folder : Path
         An empty folder for log files.
     provenance : dict
-        What log files say about their origin: kind, key, options, params, code digest, versions; no clock, no host.
+        What log files say about their origin: kind, key, options, params, code digest, versions; no clock,
+        no host.
     """
 
     options: msgspec.Struct
@@ -165,9 +166,9 @@ class Batch:
     Attributes
     ----------
     tables : mapping of str to pyarrow.Table, or to a sequence of rows (dicts)
-        One for each table of the kind, cast to its schema by the engine. A stage of the points shape gives exactly one
-        row of the primary table for each point, and ``point_id`` in every row. A stage of the whole shape may leave
-        ``point_id`` out; the rows are then numbered.
+        One for each table of the kind, cast to its schema by the engine. A stage of the points shape gives
+        exactly one row of the primary table for each point, and ``point_id`` in every row. A stage of the
+        whole shape may leave ``point_id`` out; the rows are then numbered.
     logs : mapping of str to str
         Log file of a point (a name inside ``job.folder``) by point id.
     """

@@ -26,16 +26,17 @@ class Kind:
     summary : str
         One line for lists.
     shape : {"points", "whole"}
-        ``points``: a body ``compute(job: Job) -> Batch`` that gets some of the points of a grid at a time; each point
-        is computed once and kept. ``whole``: a body ``compute(job: WholeJob) -> Batch`` that gets everything at once.
+        ``points``: a body ``compute(job: Job) -> Batch`` that gets some of the points of a grid at a time;
+        each point is computed once and kept. ``whole``: a body ``compute(job: WholeJob) -> Batch`` that gets
+        everything at once.
     options : type of msgspec.Struct
-        The keys that a stage of this kind may have beside the general ones (``kind, params, vary, carry, needs``),
-        with their types and defaults. Its class must be importable by name, for worker processes.
+        The keys that a stage of this kind may have beside the general ones (``kind, params, vary, carry,
+        needs``), with their types and defaults. The class must be importable by name, for worker processes.
     body : str
         ``"package.module:function"``, imported only when there is something to compute.
     tables : tuple of str
-        The tables of ``schemas/`` that it makes; the first is the primary one. With the points shape it needs the
-        columns ``status`` and ``reason``, and for a carried axis whatever the next point needs as its start.
+        The tables of ``schemas/`` that it makes; the first is the primary one. With the points shape it needs
+        the columns ``status`` and ``reason``, and for a carried axis what the next point needs as its start.
     parameters : mapping of str to (float or None)
         The parameters that it takes, with defaults; ``None`` means that it must be given.
     vary : {"grid", "range", "none"}
@@ -47,8 +48,8 @@ class Kind:
     logs, pictures : bool
         Whether it makes MCAP logs, or ``picture.png`` and ``picture.svg``.
     check : callable, optional
-        ``check(params, options)`` raises :class:`vines.errors.ParameterError` (or `StateError`) when these cannot be.
-        Called with the corners of the declared box before anything is written.
+        ``check(params, options)`` raises :class:`vines.errors.ParameterError` (or `StateError`) when these
+        cannot be. Called with the corners of the declared box before anything is written.
     files : callable, optional
         ``files(options, root)`` returns the files whose contents belong to the key, such as published claims.
     """
@@ -82,7 +83,8 @@ def register(new: Kind) -> Kind:
     """
     if new.shape == "points" and (not new.tables or new.needs or new.pictures or new.vary == "range"):
         raise DeclarationError(
-            f"kind {new.name!r}: a kind of the points shape has a primary table, no needs, no pictures, and varies a grid"
+            f"kind {new.name!r}: a kind of the points shape has a primary table, no needs and no pictures, "
+            "and varies a grid"
         )
     if new.shape == "whole" and (new.carry or new.vary == "grid"):
         raise DeclarationError(f"kind {new.name!r}: only a kind of the points shape varies a grid or carries")

@@ -33,6 +33,13 @@ __all__ = [
 ]
 
 _HOMES: dict[str, str] = {
+    "Column": "vines.schema._tables",
+    "Table": "vines.schema._tables",
+    "arrow_schema": "vines.schema._tables",
+    "cast": "vines.schema._tables",
+    "digest": "vines.schema._tables",
+    "table": "vines.schema._tables",
+    "tables": "vines.schema._tables",
     "WireFormat": "vines.schema._messages",
     "field_notes": "vines.schema._messages",
     "file_descriptor_set": "vines.schema._messages",

@@ -1,0 +1,238 @@
+"""Tables: their columns as ``schemas/*.toml`` declares them, and the casting of data to them."""
+
+from __future__ import annotations
+
+import functools
+import hashlib
+import json
+import tomllib
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from vines.errors import SchemaError, UnknownNameError, nearest
+from vines.places import shipped
+
+if TYPE_CHECKING:
+    import pyarrow as pa
+
+__all__ = ["Column", "Table", "arrow_schema", "cast", "digest", "table", "tables"]
+
+DTYPES = ("bool", "float64", "int8", "int64", "list<float64>", "list<int8>", "string")
+
+
+@dataclass(frozen=True, slots=True)
+class Column:
+    """One column of a table.
+
+    Attributes
+    ----------
+    name : str
+        Name, as SQL sees it.
+    dtype : str
+        One of bool, float64, int8, int64, string, list<float64>, list<int8>.
+    unit : str
+        ``"1"`` for a dimensionless number, ``"rad"``, ``"T"`` (forcing periods), ``"1/T"``, ``"B"``; empty for
+        what is not a number of something.
+    description : str
+        What it holds, in one line.
+    source : str
+        Equation or section of the paper, or the page of docs/ that defines it.
+    """
+
+    name: str
+    dtype: str
+    unit: str
+    description: str
+    source: str
+
+
+@dataclass(frozen=True, slots=True)
+class Table:
+    """A table of ``schemas/``.
+
+    Attributes
+    ----------
+    name, description : str
+        Its name and what a row is.
+    version : int
+        Raised when the meaning of a column changes.
+    columns : tuple of Column
+        ``point_id`` first.
+    stored : bool
+        False for what is made from manifests when asked, such as ``logs``.
+    """
+
+    name: str
+    description: str
+    version: int
+    columns: tuple[Column, ...]
+    stored: bool
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Names of the columns, in order."""
+        return tuple(column.name for column in self.columns)
+
+
+def tables() -> dict[str, Table]:
+    """Return all tables by name.
+
+    Examples
+    --------
+    >>> list(tables())
+    ['bifurcations', 'branches', 'checks', 'impacts', 'logs', 'orbits', 'points']
+    """
+    return dict(_tables())
+
+
+def table(name: str) -> Table:
+    """Return one table.
+
+    Raises
+    ------
+    UnknownNameError
+        If there is none of that name; the message names the nearest.
+
+    Examples
+    --------
+    >>> table("impacts").columns[0].name
+    'point_id'
+    """
+    known = _tables()
+    if name not in known:
+        raise UnknownNameError(f"unknown table {name!r}: {nearest(name, known)}")
+    return known[name]
+
+
+def digest(name: str) -> str:
+    """Return the SHA-256 of what a table's data depend on: version, names, types and units of the columns.
+
+    Examples
+    --------
+    >>> len(digest("points"))
+    64
+    """
+    spec = table(name)
+    form = [spec.name, spec.version, [[c.name, c.dtype, c.unit] for c in spec.columns]]
+    return hashlib.sha256(json.dumps(form, separators=(",", ":")).encode()).hexdigest()
+
+
+def arrow_schema(name: str) -> pa.Schema:
+    """Return the Arrow schema of a table, with unit, description and source as metadata of each field.
+
+    Examples
+    --------
+    >>> arrow_schema("points").field("A").type
+    DataType(double)
+    """
+    import pyarrow as pa
+
+    types = {
+        "bool": pa.bool_(),
+        "float64": pa.float64(),
+        "int8": pa.int8(),
+        "int64": pa.int64(),
+        "list<float64>": pa.list_(pa.float64()),
+        "list<int8>": pa.list_(pa.int8()),
+        "string": pa.string(),
+    }
+    return pa.schema(
+        pa.field(
+            column.name,
+            types[column.dtype],
+            nullable=column.name != "point_id",
+            metadata={"unit": column.unit, "description": column.description, "source": column.source},
+        )
+        for column in table(name).columns
+    )
+
+
+def cast(name: str, data: pa.Table | Sequence[Mapping[str, Any]] | Mapping[str, Any]) -> pa.Table:
+    """Return data as a table of the schema: columns in order, cast without loss; those left out are null.
+
+    Parameters
+    ----------
+    name : str
+        Table of ``schemas/``.
+    data : pyarrow.Table, sequence of rows, or mapping of columns
+        Rows are dicts; columns are arrays of one length.
+
+    Raises
+    ------
+    SchemaError
+        If a column is unknown, cannot be cast, or ``point_id`` is missing or null.
+
+    Examples
+    --------
+    >>> cast("impacts", [{"point_id": "a", "t": 1}]).column("t").to_pylist()
+    [1.0]
+    """
+    import pyarrow as pa
+
+    schema = arrow_schema(name)
+    arrow: Any = data if isinstance(data, pa.Table) else None
+    if arrow is not None:
+        given: dict[str, Any] = {key: arrow.column(key) for key in arrow.column_names}
+        length = arrow.num_rows
+    elif isinstance(data, Mapping):
+        given = dict(data)
+        length = len(next(iter(given.values()), ()))
+    else:
+        keys = dict.fromkeys(key for row in data for key in row)
+        given = {key: [row.get(key) for row in data] for key in keys}
+        length = len(data)
+    for key in given:
+        if key not in schema.names:
+            raise SchemaError(f"table {name!r} has no column {key!r}: {nearest(key, schema.names)}")
+    arrays = [_array(name, field, given.get(field.name), length) for field in schema]
+    return pa.Table.from_arrays(arrays, schema=schema)
+
+
+def _array(name: str, field: pa.Field, values: Any, length: int) -> Any:
+    import pyarrow as pa
+
+    if values is None:
+        values = pa.nulls(length, field.type)
+    try:
+        made = values if isinstance(values, pa.Array | pa.ChunkedArray) else _from_python(values, field.type)
+        made = made.cast(field.type)
+    except (pa.ArrowException, TypeError, ValueError, OverflowError) as error:
+        text = str(error).splitlines()[0]
+        raise SchemaError(f"table {name!r}, column {field.name!r}: not {field.type}: {text}") from None
+    if len(made) != length:
+        raise SchemaError(
+            f"table {name!r}, column {field.name!r}: {len(made)} values where {length} are needed"
+        )
+    if not field.nullable and made.null_count:
+        raise SchemaError(f"table {name!r}, column {field.name!r}: may not be empty; give every row its id")
+    return made
+
+
+def _from_python(values: Any, kind: pa.DataType) -> Any:
+    import pyarrow as pa
+
+    if hasattr(values, "dtype"):
+        return pa.array(values)
+    return pa.array(list(values), type=kind)
+
+
+@functools.cache
+def _tables() -> dict[str, Table]:
+    folder = shipped("schemas")
+    read = [
+        _read(path.name, tomllib.loads(path.read_text("utf-8"))) for path in sorted(folder.glob("*.toml"))
+    ]
+    return {spec.name: spec for spec in read}
+
+
+def _read(file: str, form: dict[str, Any]) -> Table:
+    try:
+        columns = tuple(Column(**column) for column in form["columns"])
+        spec = Table(form["name"], form["description"], form["version"], columns, form.get("stored", True))
+    except (KeyError, TypeError) as error:
+        raise SchemaError(f"schemas/{file}: {error}; install vines again") from None
+    wrong = [column.dtype for column in columns if column.dtype not in DTYPES]
+    if wrong or not columns or columns[0].name != "point_id":
+        raise SchemaError(f"schemas/{file}: dtypes are {', '.join(DTYPES)}, and the first column is point_id")
+    return spec
