@@ -1,0 +1,147 @@
+"""The channels of a log, and how one array becomes the messages of a channel."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from vines.errors import SchemaError
+from vines.schema import numpy_dtype
+
+__all__ = [
+    "CHANNELS",
+    "PARAMETERS",
+    "PROVENANCE",
+    "RUN",
+    "STATUS",
+    "Channel",
+    "as_messages",
+    "log_times",
+    "message_header",
+]
+
+PROVENANCE = "vines.provenance"
+"""Metadata record with where the numbers come from; the first record of a log after its header."""
+RUN = "vines.run"
+"""Metadata record with the name of the run."""
+PARAMETERS = "vines.parameters"
+"""Metadata record with the parameters of the model."""
+STATUS = "vines.status"
+"""Metadata record that is written last: without it a log is incomplete."""
+
+_LATEST = 9.2e9
+"""Nanoseconds are counted in 64 bits, and viewers read them with a sign: later times have no log time."""
+
+
+@dataclass(frozen=True)
+class Channel:
+    """One kind of message in a log.
+
+    Attributes
+    ----------
+    number : int
+        Number of the channel, and of its schema, in the file.
+    topic : str
+        Its name in the file.
+    message : str
+        Full name of its protobuf message.
+    time : str
+        The field of the message that gives its log time.
+    key : str
+        Its name as an argument of :func:`vines.logs.write_run` and as an attribute of a log.
+    """
+
+    number: int
+    topic: str
+    message: str
+    time: str
+    key: str
+
+
+CHANNELS = (
+    Channel(1, "/state", "vines.v1.State", "t", "states"),
+    Channel(2, "/impact", "vines.v1.Impact", "t", "impacts"),
+    Channel(3, "/stick", "vines.v1.Stick", "t_start", "sticks"),
+)
+
+
+def message_header(payload: int) -> np.dtype:
+    """Return the dtype of an MCAP message record with a payload of so many bytes, which is left as a gap.
+
+    Examples
+    --------
+    >>> message_header(141).itemsize
+    172
+    """
+    return np.dtype(
+        {
+            "names": ["opcode", "length", "channel", "sequence", "log_time", "publish_time"],
+            "formats": ["<u1", "<u8", "<u2", "<u4", "<u8", "<u8"],
+            "offsets": [0, 1, 9, 11, 15, 23],
+            "itemsize": 31 + payload,
+        }
+    )
+
+
+def as_messages(array: np.ndarray, channel: Channel) -> np.ndarray:
+    """Return an array with exactly the fields of the channel's message; further fields are left out.
+
+    Parameters
+    ----------
+    array : numpy.ndarray, shape (n,), structured
+        Rows with at least the fields of the message, sorted by time.
+    channel : Channel
+        Where they go.
+
+    Raises
+    ------
+    SchemaError
+        If a field is missing or its numbers do not fit its type, or if a time is not finite, negative, or
+        earlier than the one before it.
+    """
+    dtype = numpy_dtype(channel.message)
+    names = array.dtype.names or ()
+    missing = [name for name in dtype.names or () if name not in names]
+    if missing:
+        raise SchemaError(
+            f"{channel.key} lack {', '.join(missing)}; "
+            f"a {channel.message} needs {', '.join(dtype.names or ())}"
+        )
+    if array.ndim != 1:
+        raise SchemaError(f"{channel.key} have shape {array.shape}; allowed is one row a message, shape (n,)")
+    fitting = np.empty(len(array), dtype)
+    for name in dtype.names or ():
+        values = array[name]
+        try:
+            fitting[name] = values.astype(dtype[name], casting="same_kind")
+        except TypeError:
+            raise SchemaError(
+                f"field {name!r} of {channel.key} has type {values.dtype}; {dtype[name]} is needed"
+            ) from None
+        if dtype[name].kind == "i" and not np.array_equal(fitting[name], values):
+            raise SchemaError(f"field {name!r} of {channel.key} holds numbers that do not fit {dtype[name]}")
+    times = fitting[channel.time]
+    if len(times) and not (np.isfinite(times).all() and times[0] >= 0.0 and times[-1] < _LATEST):
+        raise SchemaError(
+            f"times of {channel.key} run from {times[0]} to {times[-1]}; "
+            f"allowed are finite ones from 0 to {_LATEST:g}"
+        )
+    if (np.diff(times) < 0).any():
+        place = int(np.argmax(np.diff(times) < 0)) + 1
+        raise SchemaError(
+            f"{channel.key} are not sorted by time: row {place} is at {times[place]}, "
+            f"before the one above it; sort them by {channel.time!r}"
+        )
+    return fitting
+
+
+def log_times(times: np.ndarray) -> np.ndarray:
+    """Return simulation times as whole nanoseconds of a unit of time.
+
+    Examples
+    --------
+    >>> log_times(np.array([0.0, 1.5]))
+    array([         0, 1500000000], dtype=uint64)
+    """
+    return np.rint(times * 1e9).astype(np.uint64)

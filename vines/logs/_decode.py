@@ -1,0 +1,52 @@
+"""From the messages of a channel to arrays and tables."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from vines.logs._channels import Channel
+from vines.schema import field_notes, message_class, numpy_dtype, wire_format
+
+if TYPE_CHECKING:
+    import pyarrow as pa
+
+__all__ = ["decode", "table"]
+
+
+def decode(payloads: np.ndarray, channel: Channel) -> np.ndarray:
+    """Return messages of equal length, one a row of bytes, as a structured array."""
+    layout = wire_format(channel.message)
+    count, size = payloads.shape
+    if size == len(layout.blank):
+        blank = np.frombuffer(layout.blank, np.uint8)
+        if (payloads[:, layout.tags] == blank[layout.tags]).all():
+            return np.ascontiguousarray(payloads).view(layout.dtype)[:, 0]
+    kind = message_class(channel.message)
+    rows = np.empty(count, numpy_dtype(channel.message))
+    for place in range(count):
+        message = kind.FromString(payloads[place].tobytes())
+        rows[place] = tuple(getattr(message, name) for name in rows.dtype.names or ())
+    return rows
+
+
+def table(parts: list[np.ndarray], channel: Channel) -> pa.Table:
+    import pyarrow as pa
+
+    dtype, notes = numpy_dtype(channel.message), field_notes(channel.message)
+    columns = [
+        np.concatenate([np.empty(0, dtype[name]), *(part[name] for part in parts)])
+        for name in dtype.names or ()
+    ]
+    schema = pa.schema(
+        [
+            pa.field(
+                name,
+                pa.from_numpy_dtype(dtype[name]),
+                metadata={"unit": notes[name][0], "description": notes[name][1]},
+            )
+            for name in dtype.names or ()
+        ]
+    )
+    return pa.table([pa.array(column) for column in columns], schema=schema)
