@@ -33,7 +33,9 @@ def find_root(start: Path | None = None) -> Path:
     if named:
         root = Path(named).expanduser()
         if not root.is_dir():
-            raise FileMissingError(f"VINES_ROOT is {named!r}, which is not a folder; unset it or name an existing one")
+            raise FileMissingError(
+                f"VINES_ROOT is {named!r}, which is not a folder; unset it or name an existing one"
+            )
         return root.resolve()
     here = (start or Path.cwd()).resolve()
     for folder in (here, *here.parents):

@@ -1,0 +1,52 @@
+"""What must be quick loads nothing heavy, and the public names are there."""
+
+import json
+import subprocess
+import sys
+
+import pytest
+
+import vines
+
+HEAVY = ("numba", "pyarrow", "rerun", "matplotlib", "scipy", "pandas", "duckdb")
+
+
+def loaded(code, tmp_path):
+    """Run code in a fresh interpreter and return which heavy packages it loaded."""
+    tail = f"\nimport json, sys\nsys.stderr.write(json.dumps([h for h in {HEAVY!r} if h in sys.modules]))"
+    done = subprocess.run(
+        [sys.executable, "-c", code + tail],
+        capture_output=True,
+        text=True,
+        cwd=tmp_path,
+        check=True,
+        timeout=60,
+    )
+    return json.loads(done.stderr.splitlines()[-1])
+
+
+def test_import_vines_and_params_load_nothing_heavy(tmp_path):
+    assert loaded("import vines; vines.Params(mu=0.01, A=0.02); vines.PhysicalParams()", tmp_path) == []
+
+
+@pytest.mark.parametrize(
+    "arguments", [["--help"], ["list"], ["status"], ["status", "quickstart"], ["run", "--help"]]
+)
+def test_quick_commands_load_nothing_heavy(arguments, tmp_path):
+    code = f"""
+import sys
+sys.argv = ["vines", *{arguments!r}]
+from vines.cli import main
+try:
+    main()
+except SystemExit as end:
+    assert end.code == 0, end.code
+"""
+    assert loaded(code, tmp_path) == []
+
+
+def test_public_names_resolve():
+    for name in vines.__all__:
+        assert getattr(vines, name) is not None
+    with pytest.raises(AttributeError, match="no attribute 'nothing'"):
+        _ = vines.nothing

@@ -1,0 +1,102 @@
+"""The command line: parse, call one function, print.
+
+Subcommands live in modules of their own that are imported when they are called, so that ``vines --help`` is quick.
+"""
+
+from __future__ import annotations
+
+import importlib
+import os
+import sys
+from typing import Any
+
+import click
+
+from vines import __version__
+from vines.errors import VinesError, nearest
+
+__all__ = ["app", "main"]
+
+# name: (module, one line for --help)
+COMMANDS = {
+    "init": ("vines.cli._init", "Start a study of your own in a new folder."),
+    "list": ("vines.cli._list", "List the pipelines and what they are for."),
+    "status": ("vines.cli._status", "Say what is computed, what is stale, and why."),
+    "run": ("vines.cli._run", "Compute what a pipeline still lacks."),
+    "tables": ("vines.cli._tables", "List the result tables."),
+    "schema": ("vines.cli._schema", "Describe the columns of a table, with units."),
+    "query": ("vines.cli._query", "Ask the result tables in SQL."),
+    "check": ("vines.cli._check", "Do the results reproduce the published values?"),
+    "view": ("vines.cli._view", "Look at logged runs in the Rerun viewer."),
+    "warm-up": ("vines.cli._warm_up", "Compile the kernels now, not at the first run."),
+}
+
+
+class LazyGroup(click.Group):
+    """A group that knows the names and summaries of its commands and imports one when it is called."""
+
+    def list_commands(self, ctx: click.Context) -> list[str]:
+        """Return the commands in the order in which a user meets them."""
+        del ctx
+        return list(COMMANDS)
+
+    def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
+        """Import a command."""
+        del ctx
+        if cmd_name not in COMMANDS:
+            return None
+        return importlib.import_module(COMMANDS[cmd_name][0]).command
+
+    def resolve_command(self, ctx: click.Context, args: list[str]) -> Any:
+        """Name the nearest command if there is none of that name."""
+        if args and args[0] not in COMMANDS and not args[0].startswith("-"):
+            raise click.UsageError(f"no command {args[0]!r}: {nearest(args[0], COMMANDS)}", ctx)
+        return super().resolve_command(ctx, args)
+
+    def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        """Write the list of commands without importing them."""
+        del ctx
+        with formatter.section("Commands"):
+            formatter.write_dl([(name, line) for name, (_, line) in COMMANDS.items()])
+
+
+@click.group(cls=LazyGroup, context_settings={"help_option_names": ["-h", "--help"]})
+@click.version_option(__version__, prog_name="vines")
+@click.option(
+    "--root",
+    metavar="DIR",
+    help="Root of the project; else VINES_ROOT, or the nearest parent with pipelines/.",
+)
+def app(root: str | None) -> None:
+    """Reproducible studies of the vibro-impact nonlinear energy sink.
+
+    \b
+    vines run quickstart        compute a first study
+    vines list                  see what else there is
+    """  # noqa: D301 - click reads \b as "keep these lines"
+    if root is not None:
+        os.environ["VINES_ROOT"] = root
+
+
+def main() -> None:
+    """Run the command line; every expected error ends as one line and its exit code."""
+    os.environ.setdefault("RERUN_ANALYTICS", "0")
+    try:
+        code = app.main(standalone_mode=False)
+    except click.exceptions.Abort:
+        click.echo("vines: stopped", err=True)
+        code = 130
+    except click.exceptions.NoArgsIsHelpError as error:
+        click.echo(error.format_message())
+        code = 0
+    except click.ClickException as error:
+        click.echo(f"vines: {error.format_message()}", err=True)
+        code = error.exit_code
+    except VinesError as error:
+        click.echo(f"vines: {error}", err=True)
+        code = error.exit_code
+    except BrokenPipeError:
+        # The reader of our output went away (`vines query … | head`); nothing is wrong.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        code = 0
+    sys.exit(code if isinstance(code, int) else 0)

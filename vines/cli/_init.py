@@ -1,0 +1,17 @@
+"""``vines init DIR``: a study of one's own."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+
+@click.command("init")
+@click.argument("folder", type=click.Path(file_okay=False, path_type=Path))
+def command(folder: Path) -> None:
+    """Start a study of your own in DIR: a folder with the pipelines that ship with vines, to run and to change."""
+    from vines.stages import init_study
+
+    init_study(folder)
+    click.echo(f"{folder} is ready; next:\n  cd {folder}\n  vines run quickstart")

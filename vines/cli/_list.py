@@ -1,0 +1,24 @@
+"""``vines list``: the pipelines there are."""
+
+from __future__ import annotations
+
+import json
+
+import click
+
+
+@click.command("list")
+@click.option("--json", "as_json", is_flag=True, help="For machines.")
+def command(as_json: bool) -> None:
+    """List the pipelines and what they are for."""
+    from vines.cli._layout import print_rows
+    from vines.stages import list_pipelines
+
+    rows = list_pipelines()
+    if as_json:
+        click.echo(json.dumps(rows, indent=2))
+        return
+    print_rows(
+        ["pipeline", "stages", "title", "source"],
+        [[row["name"], row["stages"], row["title"], row["source"]] for row in rows],
+    )

@@ -1,0 +1,67 @@
+"""One look for all figures, and bytes that do not change from run to run."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+__all__ = ["COLOURS", "RC", "new_figure", "save"]
+
+COLOURS = {
+    "L": "#c8102e",
+    "R": "#0b4ea2",
+    "L light": "#ef8a97",
+    "R light": "#85b0e6",
+    "ink": "#222222",
+    "mark": "#555555",
+}
+"""As in the paper: impacts on the left end red, on the right end blue; light for simulated dots, full for branches."""
+
+RC: dict[str, Any] = {
+    "font.family": "DejaVu Sans",
+    "font.size": 8.5,
+    "axes.labelsize": 9.5,
+    "axes.linewidth": 0.7,
+    "axes.spines.top": True,
+    "axes.spines.right": True,
+    "xtick.direction": "in",
+    "ytick.direction": "in",
+    "xtick.top": True,
+    "ytick.right": True,
+    "xtick.minor.visible": True,
+    "ytick.minor.visible": True,
+    "legend.frameon": False,
+    "legend.fontsize": 8,
+    "lines.linewidth": 1.3,
+    "mathtext.fontset": "dejavusans",
+    "savefig.dpi": 200,
+    # Element ids of an SVG are hashes; a fixed salt and text as outlines make the bytes repeatable anywhere.
+    "svg.hashsalt": "vines",
+    "svg.fonttype": "path",
+}
+
+
+def new_figure(width: float, height: float) -> Figure:
+    """Return an empty figure of that size [inch], drawn without any screen."""
+    import matplotlib as mpl
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+
+    with mpl.rc_context(RC):
+        figure = Figure(figsize=(width, height), layout="constrained")
+        FigureCanvasAgg(figure)
+    return figure
+
+
+def save(figure: Figure, folder: Path, name: str = "picture") -> list[Path]:
+    """Write ``<name>.png`` and ``<name>.svg`` into a folder, without dates, and return the paths."""
+    import matplotlib as mpl
+
+    files = [folder / f"{name}.png", folder / f"{name}.svg"]
+    with mpl.rc_context(RC):
+        figure.savefig(files[0], metadata={"Software": "vines"})
+        figure.savefig(files[1], metadata={"Date": None, "Creator": "vines"})
+    return files

@@ -1,0 +1,116 @@
+"""Body of the kind ``check``: published values against the tables of other stages."""
+
+from __future__ import annotations
+
+import tomllib
+from pathlib import Path
+from typing import Any
+
+import msgspec
+
+from vines.catalogue import connect_tables
+from vines.errors import DeclarationError, nearest
+from vines.pipeline import Batch, Input, WholeJob
+
+__all__ = ["Claim", "compute", "read_claims", "verdict"]
+
+
+class Claim(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """A published value and the query that finds ours.
+
+    `tolerance` is the precision of the print; texts have none. `remark` explains a known difference.
+    `not_reproducible` says why no value of ours can exist.
+    """
+
+    source: str
+    statement: str
+    published: float | str
+    ours: str
+    tolerance: float | None = None
+    remark: str = ""
+    not_reproducible: str = ""
+
+
+def read_claims(file: Path) -> dict[str, Claim]:
+    """Read published values.
+
+    Raises
+    ------
+    DeclarationError
+        If the file is not TOML or an entry is not a claim.
+    """
+    try:
+        return msgspec.convert(tomllib.loads(file.read_text(encoding="utf-8")), dict[str, Claim])
+    except (tomllib.TOMLDecodeError, msgspec.ValidationError) as error:
+        raise DeclarationError(f"{file.name}: {error}; see docs/tables.md for the form of a claim") from None
+
+
+def compute(job: WholeJob) -> Batch:
+    """Compare each claim that the stage names with the tables of the stages it needs."""
+    options: Any = job.options
+    claims = read_claims(job.files[0])
+    for name in options.claims:
+        if name not in claims:
+            raise DeclarationError(f"unknown claim {name!r} in {job.files[0].name}: {nearest(name, claims)}")
+    with connect_tables(_by_table(job.inputs)) as query:
+        rows = [_row(name, claims[name], query) for name in options.claims]
+    return Batch(tables={"checks": rows})
+
+
+def _by_table(inputs: dict[str, Input]) -> dict[str, dict[str, Any]]:
+    """Return the needed tables as {table: {stage: Arrow table}}."""
+    found: dict[str, dict[str, Any]] = {}
+    for stage in inputs.values():
+        for table in stage.tables:
+            found.setdefault(table, {})[stage.name] = stage.table(table)
+    return found
+
+
+def _row(name: str, claim: Claim, query: Any) -> dict[str, Any]:
+    value = None if claim.not_reproducible else _one_value(name, query(claim.ours))
+    number = isinstance(claim.published, int | float)
+    return {
+        "id": name,
+        "source": claim.source,
+        "statement": claim.statement,
+        "published": f"{claim.published:.10g}" if number else claim.published,
+        "ours": None if value is None else (f"{value:.10g}" if isinstance(value, float) else str(value)),
+        "published_value": float(claim.published) if number else None,
+        "our_value": float(value) if number and value is not None else None,
+        "tolerance": claim.tolerance,
+        "verdict": verdict(claim, value),
+        "remark": claim.not_reproducible or claim.remark,
+    }
+
+
+def _one_value(name: str, rows: list[tuple[Any, ...]]) -> Any:
+    if len(rows) > 1 or (rows and len(rows[0]) != 1):
+        raise DeclarationError(
+            f"claim {name!r}: its query gives {len(rows)} rows; it has to give one value (add a limit or an aggregate)"
+        )
+    return rows[0][0] if rows else None
+
+
+def verdict(claim: Claim, value: Any) -> str:
+    """Return ``reproduced``, ``differs`` or ``not_reproducible``.
+
+    Parameters
+    ----------
+    claim : Claim
+        What was published.
+    value : float, str or None
+        Ours; ``None`` where the tables have none, which counts as a difference.
+
+    Examples
+    --------
+    >>> claim = Claim(source="", statement="", published=0.018, ours="", tolerance=0.0005)
+    >>> verdict(claim, 0.01803), verdict(claim, 0.019), verdict(claim, None)
+    ('reproduced', 'differs', 'differs')
+    """
+    if claim.not_reproducible:
+        return "not_reproducible"
+    if value is None:
+        return "differs"
+    if isinstance(claim.published, str):
+        return "reproduced" if value == claim.published else "differs"
+    return "reproduced" if abs(float(value) - claim.published) <= (claim.tolerance or 0.0) else "differs"

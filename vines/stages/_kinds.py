@@ -1,0 +1,181 @@
+"""The kinds of stages that vines knows: light specifications, without numba, pyarrow, rerun or matplotlib.
+
+A body is named by its dotted path and imported only when there is something to compute.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any, Literal
+
+import msgspec
+
+from vines.errors import FileMissingError, ParameterError, StateError
+from vines.model import LAM_TABLE_1, Params
+from vines.pipeline import Kind, register
+from vines.places import shipped
+
+__all__ = [
+    "BranchOptions",
+    "CheckOptions",
+    "FigureOptions",
+    "Start",
+    "SweepOptions",
+    "TrajectoryOptions",
+    "register_kinds",
+]
+
+PARAMETERS: dict[str, float | None] = {"mu": None, "A": None, "Omega": 1.0, "r": 0.65, "lam": LAM_TABLE_1}
+
+
+class Start(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """Start state (dimensionless): the oscillator at rest and the ball moving, if nothing is said."""
+
+    x1: float = 0.0
+    v1: float = 0.0
+    x2: float = 0.0
+    v2: float = 0.1
+
+
+class TrajectoryOptions(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """One run of the simulator: `settle` periods unrecorded, then `record` periods into an MCAP log."""
+
+    start: Start = msgspec.field(default_factory=Start)
+    settle: int = 400
+    record: int = 10
+    per_period: int = 200
+
+
+class SweepOptions(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """The settled attractor of each point: `settle` periods, then `record` periods that are classified and measured.
+
+    `keep` is the number of recorded periods whose impacts are kept where the attractor is not periodic; of a periodic
+    one, one repetition is.
+    """
+
+    start: Start = msgspec.field(default_factory=Start)
+    settle: int = 400
+    record: int = 64
+    keep: int = 64
+
+
+class BranchOptions(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """A family of periodic orbits of one word, followed in the varied parameter."""
+
+    word: str
+    points: int = 400
+
+
+class FigureOptions(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """A picture of the needed stages."""
+
+    plot: Literal["bifurcation"]
+    panels: tuple[str, ...] = ("w_dot", "dt")
+    title: str = ""
+    width: float = 7.0
+
+
+class CheckOptions(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """Published values against the tables of the needed stages."""
+
+    claims: tuple[str, ...]
+
+
+def _check_simulation(params: dict[str, float], options: Any) -> None:
+    Params(**params)
+    for name, least in (("settle", 0), ("record", 1), ("per_period", 2), ("keep", 1)):
+        value = getattr(options, name, least)
+        if value < least:
+            raise ParameterError(f"{name} is {value}, allowed is {name} >= {least}")
+    gap = options.start.x1 - options.start.x2
+    if abs(gap) > 1:
+        raise StateError(
+            f"start has the gap w = x1 - x2 = {gap:g}, allowed is |w| <= 1: the ball would be outside the cavity"
+        )
+
+
+def _check_branch(params: dict[str, float], options: Any) -> None:
+    from vines.model import Word
+
+    Params(**params)
+    Word(options.word)
+    if options.points < 2:
+        raise ParameterError(f"points is {options.points}, allowed is points >= 2")
+
+
+def _claims_file(options: Any, root: Path) -> tuple[Path, ...]:
+    del options
+    for file in (root / "pipelines" / "claims.toml", shipped("pipelines") / "claims.toml"):
+        if file.is_file():
+            return (file,)
+    raise FileMissingError(
+        "pipelines/claims.toml, the published values, is missing; take it from the vines sources"
+    )
+
+
+def register_kinds() -> None:
+    """Make the kinds of vines known to declarations; calling it again changes nothing."""
+    register(
+        Kind(
+            name="trajectory",
+            summary="one run of the simulator, as an MCAP log",
+            shape="points",
+            options=TrajectoryOptions,
+            body="vines.stages._trajectory:compute",
+            tables=("points", "impacts"),
+            parameters=PARAMETERS,
+            vary="grid",
+            logs=True,
+            check=_check_simulation,
+        )
+    )
+    register(
+        Kind(
+            name="sweep",
+            summary="the settled attractor, impacts and energy measures of each point of a grid",
+            shape="points",
+            options=SweepOptions,
+            body="vines.stages._sweep:compute",
+            tables=("points", "impacts"),
+            parameters=PARAMETERS,
+            vary="grid",
+            carry=True,
+            check=_check_simulation,
+        )
+    )
+    register(
+        Kind(
+            name="branch",
+            summary="a family of periodic orbits with multipliers and bifurcations",
+            shape="whole",
+            options=BranchOptions,
+            body="vines.stages._branch:compute",
+            tables=("orbits", "branches", "bifurcations"),
+            parameters=PARAMETERS,
+            vary="range",
+            check=_check_branch,
+        )
+    )
+    register(
+        Kind(
+            name="figure",
+            summary="a picture of other stages, PNG and SVG",
+            shape="whole",
+            options=FigureOptions,
+            body="vines.stages._figure:compute",
+            needs=True,
+            pictures=True,
+        )
+    )
+    register(
+        Kind(
+            name="check",
+            summary="published values against the tables of other stages",
+            shape="whole",
+            options=CheckOptions,
+            body="vines.stages._check:compute",
+            tables=("checks",),
+            needs=True,
+            files=_claims_file,
+        )
+    )

@@ -1,0 +1,115 @@
+"""From what the science returns to rows of the tables ``points`` and ``impacts``."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from vines.dynamics import ball_locked, no_ball
+from vines.model import Word
+
+if TYPE_CHECKING:
+    from vines.attractors import Attractor
+    from vines.model import Params
+
+__all__ = ["impact_rows", "point_row"]
+
+STATE = ("x1", "v1", "x2", "v2", "phase")
+
+
+def point_row(
+    point_id: str,
+    attractor: Attractor,
+    start: dict[str, float],
+    *,
+    carry: str | None,
+    settled_for: float,
+    record: float,
+) -> dict[str, Any]:
+    """Return the row of ``points`` for one simulated point.
+
+    Parameters
+    ----------
+    point_id : str
+        Id of the point.
+    attractor : Attractor
+        What the simulation settled to.
+    start : dict
+        Start state of the whole run: x1, v1, x2, v2 and forcing phase [rad].
+    carry : str or None
+        The carried axis, if the start was the end of another point.
+    settled_for, record : float
+        Forcing periods before, and during, the recording.
+    """
+    p = attractor.params
+    m = attractor.measures
+    yardstick = no_ball(p)
+    periods = m.duration / p.period
+    return {
+        "point_id": point_id,
+        **p.as_dict(),
+        "carry": carry,
+        **{name: start[name] for name in STATE},
+        **{f"end_{name}": attractor.final[name] for name in STATE},
+        "settle_periods": settled_for,
+        "record_periods": record,
+        "regime": attractor.regime,
+        "settled": attractor.settled,
+        "remaining": attractor.remaining,
+        "name": attractor.name,
+        "alias": Word(attractor.word).alias if attractor.word else None,
+        "symmetric": attractor.symmetric,
+        "word": attractor.word,
+        "n": attractor.n,
+        "m": attractor.m,
+        "p": attractor.p,
+        "kinetic_ratio": m.kinetic_ratio,
+        "kinetic_ratio_error": attractor.kinetic_ratio_error,
+        "kinetic_1": m.kinetic_1,
+        "kinetic_2": m.kinetic_2,
+        "max_abs_x1": m.max_abs_x1,
+        "max_abs_x1_error": attractor.max_abs_x1_error,
+        "rms_x1": m.rms_x1,
+        "rms_x1_error": attractor.rms_x1_error,
+        "x1_no_ball": yardstick,
+        "x1_locked": ball_locked(p),
+        "reduction": m.max_abs_x1 / yardstick if yardstick > 0 else None,
+        "impacts_per_period": (m.impacts_left + m.impacts_right) / periods,
+        "impacts_left": m.impacts_left,
+        "impacts_right": m.impacts_right,
+        "sticks_per_period": (m.sticks_left + m.sticks_right) / periods,
+        "lyapunov": attractor.lyapunov,
+        "lyapunov_error": attractor.lyapunov_error,
+        "duration": m.duration,
+        "base_work": m.base_work,
+        "damper_loss": m.damper_loss,
+        "impact_loss_left": m.impact_loss_left,
+        "impact_loss_right": m.impact_loss_right,
+        "energy_change": m.energy_change,
+        "status": "ok" if attractor.status == "complete" else attractor.status,
+        "reason": attractor.reason,
+    }
+
+
+def impact_rows(point_id: str, params: Params, impacts: np.ndarray) -> dict[str, Any]:
+    """Return columns of ``impacts`` for a run of impacts; the last one has no successor and is left out.
+
+    Parameters
+    ----------
+    point_id : str
+        Id of the point.
+    params : Params
+        Its parameters, repeated in each row so that the table answers alone.
+    impacts : (n + 1,) structured array
+        As :attr:`Trajectory.impacts`.
+    """
+    n = max(len(impacts) - 1, 0)
+    kept = impacts[:n]
+    columns: dict[str, Any] = {"point_id": np.full(n, point_id, dtype=object)}
+    columns |= {name: np.full(n, value) for name, value in params.as_dict().items()}
+    columns["index"] = np.arange(n, dtype=np.int64)
+    for name in ("t", "side", "phase", "x1", "v1", "x2", "v2", "w_dot", "v1_after", "v2_after"):
+        columns[name] = kept[name]
+    columns["dt_next"] = np.diff(impacts["t"]) if n else np.empty(0)
+    return columns
