@@ -1,5 +1,25 @@
-"""Exact dynamics of the oscillator with a ball in its cavity: flight, impact, sticking, and their Jacobians."""
+"""Exact dynamics of the oscillator with a ball in its cavity.
 
+Flight, impact and sticking in closed form, events found for certain, and what follows: samples, energy measures,
+tangent maps. Importing this room loads numba but compiles nothing.
+"""
+
+from vines.dynamics._measures import Measures
 from vines.dynamics._saltation import jacobian
+from vines.dynamics._simulate import simulate
+from vines.dynamics._tangent import lyapunov_spectrum, tangent_map
+from vines.dynamics._trajectory import Trajectory
+from vines.dynamics._warm_up import warm_up
+from vines.dynamics._yardsticks import ball_locked, no_ball
 
-__all__ = ["jacobian"]
+__all__ = [
+    "Measures",
+    "Trajectory",
+    "ball_locked",
+    "jacobian",
+    "lyapunov_spectrum",
+    "no_ball",
+    "simulate",
+    "tangent_map",
+    "warm_up",
+]

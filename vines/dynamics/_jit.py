@@ -61,9 +61,9 @@ os.environ["NUMBA_CACHE_DIR"] = str(CACHE)
 
 import numba  # noqa: E402 - only now, because numba reads the name of its cache when it is imported
 
-numba.config.CACHE_DIR = str(CACHE)  # pyright: ignore[reportAttributeAccessIssue] - numba may be loaded already
+numba.config.CACHE_DIR = str(CACHE)  # pyright: ignore[reportPrivateImportUsage, reportAttributeAccessIssue] - numba may be loaded already
 
 
 def njit(function: _Function) -> _Function:
     """Compile a function with the settings of every kernel in vines: cached on disk, IEEE division, GIL released."""
-    return numba.njit(cache=True, error_model="numpy", nogil=True)(function)
+    return numba.njit(cache=True, error_model="numpy", nogil=True)(function)  # pyright: ignore[reportReturnType]

@@ -133,9 +133,7 @@ def jacobian(
     """
     x1, v1, x2, v2 = (float(value) for value in before)
     if abs(x1 - x2 - side) > GAP_TOLERANCE:
-        raise StateError(
-            f"before impact the gap x1 - x2 is {x1 - x2:.9g}, not side = {side}; give a state on the wall"
-        )
+        raise StateError(f"before impact the gap x1 - x2 is {x1 - x2:.9g}, not side = {side}; give a state on the wall")
     J, x1n, _, v2n = jacobian_kernel(p.mu, p.A, p.Omega, p.r, p.lam, x1, v1, v2, float(phase), float(tau))
     gap = x1n - (x2 + v2n * tau)
     if abs(gap - side_next) > GAP_TOLERANCE:

@@ -1,0 +1,284 @@
+"""The event loop: from one impact, merge or release to the next, resumable at any point.
+
+The whole state of a run is one array of doubles, so that the kernel can stop when its buffer of rows is full, or where
+a window of time ends, and go on later as if nothing had been: a run does not depend on how it was cut into calls.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from vines.dynamics._contact import CONTACT, NO_CONTACT, next_contact
+from vines.dynamics._flight import advance_phase, derivatives, phasors, turn
+from vines.dynamics._jit import njit
+from vines.dynamics._sticking import merges, next_release
+
+__all__ = [
+    "A_V1",
+    "A_V2",
+    "BUFFER_FULL",
+    "COMPLETE",
+    "EVENT_CAP",
+    "IMPACT",
+    "KIND",
+    "MODE",
+    "PHASE",
+    "RELEASE",
+    "ROW",
+    "RUN",
+    "SIDE",
+    "START",
+    "STEP_LIMIT",
+    "STICK",
+    "TAU",
+    "TIME",
+    "V1",
+    "V2",
+    "X1",
+    "X2",
+    "advance",
+    "begin",
+    "set_state",
+    "state_now",
+]
+
+# Kinds of rows. START is also written inside a very long flight, where the closed form is started afresh.
+START, IMPACT, STICK, RELEASE, END = range(5)
+
+# Columns of a row: what happened, on which wall, when (and how long after the row before), the state just before and
+# the velocities just after, the mode of the motion after it (0 flight, else the wall stuck to) and, for STICK, the
+# impacts of the chatter that it ends.
+KIND, SIDE, TIME, TAU, PHASE, X1, V1, X2, V2, A_V1, A_V2, MODE, RUN = range(13)
+ROW = 13
+
+# Entries of the state of a run.
+(
+    S_MODE,
+    S_WALL,
+    S_RELEASED,
+    S_X1,
+    S_V1,
+    S_X2,
+    S_V2,
+    S_PHASE,
+    S_T,
+    S_T_LOW,
+    S_CLEAR,
+    S_RUN,
+    S_RUN_SIDE,
+    S_PERIOD_START,
+    S_PERIOD_EVENTS,
+    S_DECIDE,
+) = range(16)
+STATE = 16
+
+COMPLETE, BUFFER_FULL, EVENT_CAP, STEP_LIMIT = 0, 1, 2, 3
+
+AFRESH = 256.0
+"""Time after which a flight without impact is started afresh, so that its phases keep their digits."""
+
+SNAP = 8.0 * 2.220446049250313e-16
+"""A start whose gap is this near to a wall, relative to the positions, is a start on that wall."""
+
+
+@njit
+def set_state(state, x1, v1, x2, v2, phase, t):
+    """Put a run at its start: a state with |x1 - x2| <= 1 up to rounding, the phase of the forcing, and the time."""
+    w = x1 - x2
+    side = 0
+    if abs(w) >= 1.0 - SNAP * (1.0 + abs(x1) + abs(x2)):
+        side = 1 if w > 0.0 else -1
+        x2 = x1 - side
+    state[:] = 0.0
+    approaching = side * (v1 - v2) > 0.0
+    state[S_WALL] = 0.0 if approaching else side
+    state[S_DECIDE] = 0.0 if approaching or side == 0 else 1.0
+    state[S_X1] = x1
+    state[S_V1] = v1
+    state[S_X2] = x2
+    state[S_V2] = v2
+    state[S_PHASE] = advance_phase(phase, 0.0)
+    state[S_T] = t
+    state[S_PERIOD_START] = t
+
+
+@njit
+def state_now(c, state, t):
+    """Return (x1, v1, x2, v2, phase, tau) at time t, which must not lie before the last event or after the next."""
+    tau = (t - state[S_T]) - state[S_T_LOW]
+    side = state[S_MODE]
+    o = c.stuck if side != 0.0 else c.free
+    zr, zi, qr, qi = phasors(o, c.Omega, state[S_X1], state[S_V1], state[S_PHASE])
+    zr, zi, qr, qi = turn(o, c.Omega, zr, zi, qr, qi, tau)
+    x1, v1, _, _, _ = derivatives(o, c.Omega, zr, zi, qr, qi)
+    phase = advance_phase(state[S_PHASE], c.Omega * tau)
+    if side != 0.0:
+        return x1, v1, x1 - side, v1, phase, tau
+    return x1, v1, state[S_X2] + state[S_V2] * tau, state[S_V2], phase, tau
+
+
+@njit
+def _move(c, state, tau):
+    """Move time and phase on by tau; time is kept as a sum of two doubles so that it loses nothing over many events."""
+    step = tau + state[S_T_LOW]
+    t = state[S_T]
+    total = t + step
+    rest = total - t
+    state[S_T_LOW] = (t - (total - rest)) + (step - rest)
+    state[S_T] = total
+    state[S_PHASE] = advance_phase(state[S_PHASE], c.Omega * tau)
+    state[S_CLEAR] = 0.0
+
+
+@njit
+def _write(row, state, kind, side, tau, x1, v1, x2, v2):
+    row[KIND] = kind
+    row[SIDE] = side
+    row[TIME] = state[S_T]
+    row[TAU] = tau
+    row[PHASE] = state[S_PHASE]
+    row[X1] = x1
+    row[V1] = v1
+    row[X2] = x2
+    row[V2] = v2
+    row[A_V1] = state[S_V1]
+    row[A_V2] = state[S_V2]
+    row[MODE] = state[S_MODE]
+    row[RUN] = 0.0
+
+
+@njit
+def _place(state, mode, wall, released, x1, v1, x2, v2):
+    state[S_MODE] = mode
+    state[S_WALL] = wall
+    state[S_RELEASED] = released
+    state[S_X1] = x1
+    state[S_V1] = v1
+    state[S_X2] = x2
+    state[S_V2] = v2
+
+
+@njit
+def begin(state, rows):
+    """Write the row of the start."""
+    _write(rows[0], state, START, state[S_WALL], 0.0, state[S_X1], state[S_V1], state[S_X2], state[S_V2])
+
+
+@njit
+def advance(c, state, stop, cap, rows, first):
+    """Run on to the time `stop` or until `rows` is full.
+
+    Parameters
+    ----------
+    c : Constants
+    state : ndarray, shape (STATE,)
+        Changed in place.
+    stop : float
+        Time at which to stop; what lies after the last event is not written.
+    cap : int
+        Most events in one forcing period.
+    rows : ndarray, shape (n, ROW)
+        Filled from row `first` on.
+
+    Returns
+    -------
+    (count, status)
+        Rows filled, `first` included, and COMPLETE, BUFFER_FULL, EVENT_CAP or STEP_LIMIT.
+    """
+    count = first
+    size = rows.shape[0]
+    period = 2.0 * math.pi / c.Omega
+    while True:
+        if count >= size:
+            return count, BUFFER_FULL
+        left = (stop - state[S_T]) - state[S_T_LOW]
+        if left < 0.0:
+            return count, COMPLETE
+        side = int(state[S_MODE])
+        x1 = state[S_X1]
+        v1 = state[S_V1]
+        x2 = state[S_X2]
+        v2 = state[S_V2]
+        o = c.stuck if side != 0 else c.free
+        zr, zi, qr, qi = phasors(o, c.Omega, x1, v1, state[S_PHASE])
+
+        if side != 0:
+            code, tau, x, v = next_release(c, side, zr, zi, qr, qi, state[S_CLEAR], min(left, AFRESH))
+            if code == CONTACT:
+                _move(c, state, tau)
+                _place(state, 0, side, 1.0, x, v, x - side, v)
+                zr, zi, qr, qi = phasors(c.free, c.Omega, x, v, state[S_PHASE])
+                _, _, _, j, _ = derivatives(c.free, c.Omega, zr, zi, qr, qi)
+                if side * j >= 0.0:
+                    # Contact was lost at once, with a push away from the wall that is not zero.
+                    state[S_RELEASED] = 0.0
+                _write(rows[count], state, RELEASE, side, tau, x, v, x - side, v)
+                count += 1
+                if _too_many(state, cap, period):
+                    return count, EVENT_CAP
+                continue
+        else:
+            wall = int(state[S_WALL])
+            if state[S_DECIDE] != 0.0:
+                state[S_DECIDE] = 0.0
+                if merges(c, wall, max(wall * (v2 - v1), 0.0), zr, zi, qr, qi, x2):
+                    common = (v1 + c.mu * v2) / (1.0 + c.mu)
+                    run = state[S_RUN]
+                    state[S_RUN] = 0.0
+                    _place(state, wall, wall, 0.0, x1, common, x1 - wall, common)
+                    _write(rows[count], state, STICK, wall, 0.0, x1, v1, x2, v2)
+                    rows[count, RUN] = run
+                    count += 1
+                    if _too_many(state, cap, period):
+                        return count, EVENT_CAP
+                    continue
+            code, tau, hit, x, v = next_contact(
+                c, zr, zi, qr, qi, x2, v2, wall, state[S_RELEASED] != 0.0, state[S_CLEAR], min(left, AFRESH)
+            )
+            if code == CONTACT:
+                _move(c, state, tau)
+                after1 = c.keep1 * v + c.pass1 * v2
+                after2 = c.pass2 * v + c.keep2 * v2
+                if hit != state[S_RUN_SIDE] or state[S_RELEASED] != 0.0:
+                    state[S_RUN] = 0.0
+                state[S_RUN] += 1.0
+                state[S_RUN_SIDE] = hit
+                _place(state, 0, hit, 0.0, x, after1, x - hit, after2)
+                state[S_DECIDE] = 1.0
+                _write(rows[count], state, IMPACT, hit, tau, x, v, x - hit, v2)
+                count += 1
+                if _too_many(state, cap, period):
+                    return count, EVENT_CAP
+                continue
+
+        state[S_CLEAR] = tau
+        if code != NO_CONTACT:
+            return count, STEP_LIMIT
+        if left <= AFRESH:
+            return count, COMPLETE
+        zr, zi, qr, qi = turn(o, c.Omega, zr, zi, qr, qi, tau)
+        x, v, _, _, _ = derivatives(o, c.Omega, zr, zi, qr, qi)
+        _move(c, state, tau)
+        if side != 0:
+            _place(state, side, side, 0.0, x, v, x - side, v)
+        else:
+            _place(state, 0, 0, 0.0, x, v, x2 + v2 * tau, v2)
+        _write(rows[count], state, START, 0, tau, x, v, state[S_X2], state[S_V2])
+        count += 1
+
+
+@njit
+def _too_many(state, cap, period):
+    """Count an event of the running period; say whether there were more than `cap`."""
+    if state[S_T] - state[S_PERIOD_START] >= period:
+        state[S_PERIOD_START] = state[S_T]
+        state[S_PERIOD_EVENTS] = 0.0
+    state[S_PERIOD_EVENTS] += 1.0
+    return state[S_PERIOD_EVENTS] > cap
+
+
+def new_state() -> np.ndarray:
+    """Return room for the state of a run."""
+    return np.zeros(STATE)

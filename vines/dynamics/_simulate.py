@@ -1,0 +1,107 @@
+"""Run the simulator from one start state and keep everything."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import numpy.typing as npt
+
+from vines.dynamics import _advance as col
+from vines.dynamics._advance import advance, begin, new_state, set_state, state_now
+from vines.dynamics._constants import Constants, constants
+from vines.dynamics._start import check_start
+from vines.dynamics._trajectory import Trajectory
+from vines.errors import StateError
+from vines.model import Params
+
+__all__ = ["EVENTS_PER_PERIOD", "STATUS", "record", "simulate"]
+
+EVENTS_PER_PERIOD = 10_000
+"""Default cap on events in one forcing period; a complete chatter takes about ln(1e-7)/ln(r) of them."""
+
+STATUS = {col.COMPLETE: "complete", col.EVENT_CAP: "impact_cap", col.STEP_LIMIT: "step_limit"}
+
+
+def record(
+    c: Constants, state: npt.NDArray[np.float64], stop: float, cap: int, expected: int
+) -> tuple[npt.NDArray[np.float64], str]:
+    """Run on to `stop` with every row kept, whatever their number, and a last row for the end.
+
+    Returns
+    -------
+    (rows, status)
+        Rows from one for the last event before the call to one for the end.
+    """
+    rows = np.empty((max(expected, 16), col.ROW))
+    begin(state, rows)
+    count, code = advance(c, state, stop, cap, rows, 1)
+    while code == col.BUFFER_FULL:
+        rows = np.concatenate([rows, np.empty_like(rows)])
+        count, code = advance(c, state, stop, cap, rows, count)
+    end = stop if code == col.COMPLETE else state[col.S_T] + state[col.S_CLEAR]
+    x1, v1, x2, v2, phase, tau = state_now(c, state, end)
+    last = np.zeros((1, col.ROW))
+    last[0, [col.KIND, col.TIME, col.TAU, col.PHASE, col.MODE]] = col.END, end, tau, phase, state[col.S_MODE]
+    last[0, [col.X1, col.V1, col.X2, col.V2, col.A_V1, col.A_V2]] = x1, v1, x2, v2, v1, v2
+    return np.concatenate([rows[:count], last]), STATUS[code]
+
+
+def simulate(
+    p: Params,
+    *,
+    x1: float = 0.0,
+    v1: float = 0.0,
+    x2: float = 0.0,
+    v2: float = 0.1,
+    t: float = 0.0,
+    phi: float = 0.0,
+    periods: float = 500,
+    max_impacts_per_period: int = EVENTS_PER_PERIOD,
+) -> Trajectory:
+    """Run the model exactly, event by event, and keep every event.
+
+    Parameters
+    ----------
+    p : Params
+        Dimensionless parameters.
+    x1, v1, x2, v2 : float
+        Start state of oscillator and ball, with a gap of at most 1. A start on a wall with the ball approaching begins
+        with an impact; with no relative velocity the sign of the push decides between sticking and flight.
+    t : float
+        Time of the start.
+    phi : float
+        Phase of the forcing at t = 0 [rad].
+    periods : float
+        Forcing periods to run, > 0.
+    max_impacts_per_period : int
+        Cap on events in one forcing period; when it is passed the run ends there with status ``impact_cap``.
+
+    Returns
+    -------
+    Trajectory
+
+    Raises
+    ------
+    StateError
+        If the start is not a state of the model, or `periods` or the cap is not positive.
+
+    Examples
+    --------
+    >>> run = simulate(Params(mu=0.01, A=0.015), periods=300)
+    >>> "".join("L" if hit["side"] > 0 else "R" for hit in run.impacts[-4:])
+    'LRLR'
+    >>> abs(run.measures(last=1).balance) < 1e-14
+    True
+    """
+    check_start(x1=x1, v1=v1, x2=x2, v2=v2, t=t, phi=phi)
+    if not (isinstance(periods, int | float) and math.isfinite(periods) and periods > 0):
+        raise StateError(f"periods is {periods!r}; give a finite number > 0")
+    if max_impacts_per_period < 1:
+        raise StateError(f"max_impacts_per_period is {max_impacts_per_period!r}; give an integer >= 1")
+    c = constants(p)
+    state = new_state()
+    set_state(state, float(x1), float(v1), float(x2), float(v2), math.fmod(p.Omega * t, 2 * math.pi) + phi, float(t))
+    stop = t + periods * p.period
+    rows, status = record(c, state, stop, max_impacts_per_period, int(4 * periods) + 64)
+    return Trajectory(p, float(phi), float(t), float(rows[-1, col.TIME]), status, rows)

@@ -1,0 +1,201 @@
+"""Growth of small disturbances along a run: tangent map, Floquet multipliers, Lyapunov spectrum.
+
+Disturbances are taken at fixed time, in (x1, v1, x2, v2). Between events they follow the homogeneous equations; an
+impact acts by its saltation matrix, a merge projects on the common motion, a release changes nothing
+(docs/dynamics.md).
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import numpy.typing as npt
+
+from vines.dynamics._advance import IMPACT, KIND, MODE, PHASE, STICK, TAU, TIME, V1, V2, X1
+from vines.dynamics._constants import constants
+from vines.dynamics._flight import derivatives, phasors
+from vines.dynamics._jit import njit
+from vines.dynamics._sincos import sincos
+from vines.dynamics._trajectory import Trajectory
+from vines.errors import StateError
+
+__all__ = ["lyapunov_blocks", "lyapunov_spectrum", "tangent_map", "tangent_product"]
+
+
+@njit
+def _flow(c, mode, tau, Y):
+    """Carry four disturbances, the columns of Y, over a time tau between events."""
+    o = c.stuck if mode != 0.0 else c.free
+    decay = math.exp(-o.half * tau)
+    sine, cosine = sincos(o.gamma * tau)
+    sine *= decay / o.gamma
+    cosine *= decay
+    stiffness = o.half * o.half + o.gamma * o.gamma
+    for j in range(4):
+        x = Y[0, j]
+        v = Y[1, j]
+        Y[0, j] = (cosine + o.half * sine) * x + sine * v
+        Y[1, j] = -stiffness * sine * x + (cosine - o.half * sine) * v
+        if mode != 0.0:
+            Y[2, j] = Y[0, j]
+            Y[3, j] = Y[1, j]
+        else:
+            Y[2, j] += tau * Y[3, j]
+
+
+@njit
+def _event(c, row, Y):
+    """Apply the effect of an event to the disturbances."""
+    if row[KIND] == IMPACT:
+        v1, v2 = row[V1], row[V2]
+        after1 = c.keep1 * v1 + c.pass1 * v2
+        after2 = c.pass2 * v1 + c.keep2 * v2
+        zr, zi, qr, qi = phasors(c.free, c.Omega, row[X1], v1, row[PHASE])
+        _, _, a, _, _ = derivatives(c.free, c.Omega, zr, zi, qr, qi)
+        a_after = a - c.lam * (after1 - v1)
+        closing = v1 - v2
+        for j in range(4):
+            # The disturbed run hits earlier by `shift`; before that it has the one motion, after it the other.
+            shift = (Y[0, j] - Y[2, j]) / closing if closing != 0.0 else 0.0
+            x1 = Y[0, j] - v1 * shift
+            w1 = Y[1, j] - a * shift
+            x2 = Y[2, j] - v2 * shift
+            w2 = Y[3, j]
+            Y[0, j] = x1 + after1 * shift
+            Y[1, j] = c.keep1 * w1 + c.pass1 * w2 + a_after * shift
+            Y[2, j] = x2 + after2 * shift
+            Y[3, j] = c.pass2 * w1 + c.keep2 * w2
+    elif row[KIND] == STICK:
+        share = 1.0 / (1.0 + c.mu)
+        for j in range(4):
+            x = share * (Y[0, j] + c.mu * Y[2, j])
+            v = share * (Y[1, j] + c.mu * Y[3, j])
+            Y[0, j] = x
+            Y[2, j] = x
+            Y[1, j] = v
+            Y[3, j] = v
+
+
+@njit
+def tangent_product(c, rows, first, last):
+    """Return the 4x4 tangent map from just after row `first` to just after row `last`."""
+    Y = np.eye(4)
+    for i in range(first + 1, last + 1):
+        _flow(c, rows[i - 1, MODE], rows[i, TAU], Y)
+        _event(c, rows[i], Y)
+    return Y
+
+
+@njit
+def _orthonormalise(Y, gains):
+    """Gram–Schmidt in place; the lengths before normalisation go to `gains` (0 where a direction has died)."""
+    for j in range(4):
+        for k in range(j):
+            dot = 0.0
+            for i in range(4):
+                dot += Y[i, k] * Y[i, j]
+            for i in range(4):
+                Y[i, j] -= dot * Y[i, k]
+        square = 0.0
+        for i in range(4):
+            square += Y[i, j] * Y[i, j]
+        length = math.sqrt(square)
+        gains[j] = length
+        scale = 1.0 / length if length > 1e-150 else 0.0
+        for i in range(4):
+            Y[i, j] *= scale
+
+
+@njit
+def lyapunov_blocks(c, rows, n, start, stop, blocks, Y):
+    """Return (blocks, 5): logarithmic growth of the four directions in equal blocks of time, and each block's length.
+
+    The columns of Y, orthonormal at the first row, are carried on in place; growth before `start` is not counted.
+    """
+    out = np.zeros((blocks, 5))
+    gains = np.zeros(4)
+    width = (stop - start) / blocks
+    for i in range(1, n):
+        _flow(c, rows[i - 1, MODE], rows[i, TAU], Y)
+        _event(c, rows[i], Y)
+        _orthonormalise(Y, gains)
+        t = rows[i, TIME]
+        if t > start:
+            b = min(int((t - start) / width), blocks - 1)
+            for j in range(4):
+                out[b, j] += math.log(gains[j]) if gains[j] > 1e-150 else -math.inf
+            out[b, 4] += min(rows[i, TAU], t - start)
+    return out
+
+
+def tangent_map(run: Trajectory) -> npt.NDArray[np.float64]:
+    """Return the tangent map of a whole run: disturbances of (x1, v1, x2, v2) at its end by those at its start.
+
+    Parameters
+    ----------
+    run : Trajectory
+        Any run; over a period of a periodic orbit the eigenvalues are its Floquet multipliers.
+
+    Returns
+    -------
+    ndarray, shape (4, 4)
+        With every impact followed one by one, its determinant is r^(2 N) exp(-lam t) for N impacts in a time t.
+
+    Examples
+    --------
+    >>> from vines.dynamics import simulate
+    >>> from vines.model import Params
+    >>> p = Params(mu=0.01, A=0.015)
+    >>> run = simulate(p, periods=10)
+    >>> J = tangent_map(run)
+    >>> expected = p.r ** (2 * len(run.impacts)) * np.exp(-p.lam * 10 * p.period)
+    >>> bool(abs(np.linalg.det(J) / expected - 1) < 1e-6)
+    True
+    """
+    return tangent_product(constants(run.params), run.rows, 0, len(run.rows) - 1)
+
+
+def lyapunov_spectrum(run: Trajectory, *, skip: float = 0.0) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:
+    """Return the four Lyapunov exponents of a run and their standard errors, per unit of dimensionless time.
+
+    Parameters
+    ----------
+    run : Trajectory
+        A run on the attractor.
+    skip : float
+        Forcing periods at the start during which the directions align and growth is not counted.
+
+    Returns
+    -------
+    exponents, errors : ndarray, shape (4,)
+        In descending order; -inf for directions that sticking removes. Errors are those of the mean of eight blocks.
+
+    Raises
+    ------
+    StateError
+        If nothing of the run is left after `skip`.
+
+    Notes
+    -----
+    They sum to -lam + 2 (impacts per time) ln r where no sticking occurs (docs/dynamics.md).
+    """
+    start = run.t_start + skip * run.params.period
+    if not start < run.t_end:
+        raise StateError(f"skip is {skip!r} periods; allowed is less than the length of the run")
+    grown = lyapunov_blocks(constants(run.params), run.rows, len(run.rows), start, run.t_end, 8, np.eye(4))
+    return exponents_of(grown)
+
+
+def exponents_of(grown: npt.NDArray[np.float64]) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:
+    """Return exponents and standard errors from growth by blocks, as `lyapunov_blocks` gives it."""
+    filled = grown[grown[:, 4] > 0]
+    length = filled[:, 4].sum()
+    alive = np.all(np.isfinite(filled[:, :4]), axis=0)
+    exponents = np.full(4, -np.inf)
+    errors = np.zeros(4)
+    exponents[alive] = filled[:, :4][:, alive].sum(axis=0) / length
+    if len(filled) > 1:
+        rates = filled[:, :4][:, alive] / filled[:, 4:]
+        errors[alive] = rates.std(axis=0, ddof=1) / math.sqrt(len(filled))
+    return exponents, errors

@@ -1,0 +1,258 @@
+"""A run of the simulator: its events, and everything that follows from them in closed form."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from functools import cached_property
+
+import numpy as np
+import numpy.typing as npt
+
+from vines.dynamics import _advance as col
+from vines.dynamics._constants import constants
+from vines.dynamics._measures import Measures, measures_from
+from vines.dynamics._totals import accumulate, sample_rows, window_totals
+from vines.errors import StateError
+from vines.model import Params
+
+__all__ = ["EVENT", "IMPACT", "SAMPLE", "STICK", "Trajectory", "impacts_of"]
+
+EVENT = np.dtype(
+    [("kind", "i1"), ("side", "i1")]
+    + [(name, "f8") for name in ("t", "phase", "x1", "v1", "x2", "v2", "v1_after", "v2_after")]
+)
+"""Kind 0 start (also a fresh start inside a very long flight), 1 impact, 2 stick, 3 release, 4 end."""
+
+IMPACT = np.dtype(
+    [("t", "f8"), ("side", "i1")]
+    + [(name, "f8") for name in ("x1", "v1", "x2", "v2", "w_dot", "v1_after", "v2_after", "phase")]
+    + [("index", "i8")]
+)
+STICK = np.dtype(
+    [("side", "i1")]
+    + [(name, "f8") for name in ("t_start", "t_release", "phase_start", "phase_release")]
+    + [("impacts", "i8")]
+)
+SAMPLE = np.dtype(
+    [(name, "f8") for name in ("t", "x1", "v1", "x2", "v2", "w", "w_dot", "phase")]
+    + [("stuck", "i1")]
+    + [(name, "f8") for name in ("base", "kinetic_1", "kinetic_2", "potential")]
+    + [(name, "f8") for name in ("base_work", "damper_loss", "impact_loss")]
+)
+
+_COLUMN = {
+    "kind": col.KIND,
+    "side": col.SIDE,
+    "t": col.TIME,
+    "phase": col.PHASE,
+    "x1": col.X1,
+    "v1": col.V1,
+    "x2": col.X2,
+    "v2": col.V2,
+    "v1_after": col.A_V1,
+    "v2_after": col.A_V2,
+}
+
+Table = npt.NDArray[np.void]
+
+
+def impacts_of(rows: npt.NDArray[np.float64]) -> Table:
+    """Return the impacts among rows as a structured array of dtype IMPACT."""
+    hits = rows[rows[:, col.KIND] == col.IMPACT]
+    out = np.empty(len(hits), dtype=IMPACT)
+    for name, column in _COLUMN.items():
+        if name != "kind":
+            out[name] = hits[:, column]
+    out["w_dot"] = hits[:, col.V1] - hits[:, col.V2]
+    out["index"] = np.arange(len(hits))
+    return out
+
+
+@dataclass(frozen=True)
+class Trajectory:
+    """One run, exact between its events; everything dimensionless.
+
+    Attributes
+    ----------
+    params : Params
+        Parameters of the run.
+    phi : float
+        Phase of the forcing at t = 0 [rad]: phase = (Omega t + phi) mod 2 pi.
+    t_start, t_end : float
+        Times of start and end.
+    status : str
+        ``complete``; ``impact_cap`` if a forcing period had more events than allowed, ``step_limit`` if a flight
+        needed more certified steps than allowed: the run then ends at the last event.
+    rows : ndarray, shape (n, 13)
+        The events as the kernels wrote them.
+    """
+
+    params: Params
+    phi: float
+    t_start: float
+    t_end: float
+    status: str
+    rows: npt.NDArray[np.float64] = field(repr=False)
+
+    @cached_property
+    def events(self) -> Table:
+        """All events with the state just before and the velocities just after; see :data:`EVENT`."""
+        out = np.empty(len(self.rows), dtype=EVENT)
+        for name, column in _COLUMN.items():
+            out[name] = self.rows[:, column]
+        return out
+
+    @cached_property
+    def impacts(self) -> Table:
+        """The impacts: t, side (+1 L, -1 R), state and w_dot just before, velocities just after, phase, index."""
+        return impacts_of(self.rows)
+
+    @cached_property
+    def sticks(self) -> Table:
+        """Spells of sticking: side, times and phases of merge and release (nan if still stuck), chatter impacts."""
+        begins = np.flatnonzero(self.rows[:, col.KIND] == col.STICK)
+        ends = np.flatnonzero(self.rows[:, col.KIND] == col.RELEASE)
+        out = np.empty(len(begins), dtype=STICK)
+        out["side"] = self.rows[begins, col.SIDE]
+        out["t_start"] = self.rows[begins, col.TIME]
+        out["phase_start"] = self.rows[begins, col.PHASE]
+        out["impacts"] = self.rows[begins, col.RUN]
+        out["t_release"] = np.nan
+        out["phase_release"] = np.nan
+        # A run that starts in contact has its merge too, so that the k-th release belongs to the k-th merge.
+        out["t_release"][: len(ends)] = self.rows[ends, col.TIME]
+        out["phase_release"][: len(ends)] = self.rows[ends, col.PHASE]
+        return out
+
+    @property
+    def final(self) -> dict[str, float]:
+        """State at the end: x1, v1, x2, v2, t and phase [rad]."""
+        last = self.rows[-1]
+        return {
+            "x1": float(last[col.X1]),
+            "v1": float(last[col.A_V1]),
+            "x2": float(last[col.X2]),
+            "v2": float(last[col.A_V2]),
+            "t": self.t_end,
+            "phase": float(last[col.PHASE]),
+        }
+
+    def measures(self, last: float | None = None) -> Measures:
+        """Return the energy measures of the whole run, or of its last forcing periods.
+
+        Parameters
+        ----------
+        last : float, optional
+            Forcing periods before the end, at most as many as were run.
+
+        Raises
+        ------
+        StateError
+            If the run is shorter than that.
+        """
+        start = self.t_start
+        if last is not None:
+            start = self.t_end - last * self.params.period
+            if not last > 0 or start < self.t_start - 1e-9 * self.params.period:
+                ran = (self.t_end - self.t_start) / self.params.period
+                raise StateError(
+                    f"last is {last!r} periods; allowed is more than 0 and at most the {ran:g} that were run"
+                )
+            start = max(start, self.t_start)
+        totals = window_totals(constants(self.params), self.rows, len(self.rows), start, self.t_end)
+        return measures_from(self.params, totals)
+
+    def sample(
+        self,
+        n: int | None = None,
+        *,
+        times: npt.ArrayLike | None = None,
+        per_period: int | None = None,
+        at_events: bool = False,
+    ) -> Table:
+        """Return the state at chosen times, from the closed forms.
+
+        Parameters
+        ----------
+        n : int, optional
+            This many evenly spaced times, both ends included. If nothing is chosen, 1000.
+        times : array_like, optional
+            These times, in ascending order, within the run.
+        per_period : int, optional
+            This many times a forcing period, from the start on.
+        at_events : bool
+            Add two samples at each impact, merge and release, just before and just after it.
+
+        Returns
+        -------
+        structured ndarray, dtype SAMPLE
+            t, x1, v1, x2, v2, w, w_dot, phase [rad], stuck (0 in flight, else the wall), base (A sin phase), energies
+            kinetic_1 = v1²/2, kinetic_2 = mu v2²/2, potential = (x1 - base)²/2, and since the start of the run
+            base_work, damper_loss and impact_loss (merges included).
+
+        Raises
+        ------
+        StateError
+            If times lie outside the run, or more than one of n, times, per_period is given.
+        """
+        chosen = self._times(n, times, per_period)
+        begins = self.rows[:, col.TIME]
+        segment = np.clip(np.searchsorted(begins, chosen, side="right") - 1, 0, len(begins) - 1)
+        tau = np.maximum(chosen - begins[segment], 0.0)
+        before = np.zeros(len(chosen), dtype=np.bool_)
+        t = chosen
+        if at_events:
+            kinds = self.rows[:, col.KIND]
+            events = np.flatnonzero((kinds >= col.IMPACT) & (kinds <= col.RELEASE))
+            keep = ~np.isin(chosen, begins[events])
+            t = np.concatenate([chosen[keep], np.repeat(begins[events], 2)])
+            segment = np.concatenate([segment[keep], np.stack([events - 1, events], axis=1).ravel()])
+            tau = np.concatenate(
+                [tau[keep], np.stack([self.rows[events, col.TAU], np.zeros(len(events))], axis=1).ravel()]
+            )
+            before = np.concatenate([before[keep], np.tile([True, False], len(events))])
+            order = np.lexsort((tau, segment, t))
+            t, segment, tau, before = t[order], segment[order], tau[order], before[order]
+        return self._fill(t, segment, tau, before)
+
+    def _times(self, n: int | None, times: npt.ArrayLike | None, per_period: int | None) -> npt.NDArray[np.float64]:
+        if sum(choice is not None for choice in (n, times, per_period)) > 1:
+            raise StateError("more than one of n, times and per_period is given; choose one")
+        if times is not None:
+            chosen = np.atleast_1d(np.asarray(times, dtype=np.float64))
+            slack = 1e-12 * max(1.0, abs(self.t_end), abs(self.t_start))
+            inside = np.all(np.isfinite(chosen)) and np.all(np.diff(chosen) >= 0)
+            if not inside or np.any(chosen < self.t_start - slack) or np.any(chosen > self.t_end + slack):
+                raise StateError(f"times must ascend and lie between {self.t_start:g} and {self.t_end:g}")
+            return chosen
+        if per_period is not None:
+            step = self.params.period / per_period
+            count = int(np.floor((self.t_end - self.t_start) / step * (1 + 1e-14))) + 1
+            return np.minimum(self.t_start + step * np.arange(count), self.t_end)
+        return np.linspace(self.t_start, self.t_end, 1000 if n is None else n)
+
+    def _fill(
+        self,
+        t: npt.NDArray[np.float64],
+        segment: npt.NDArray[np.int64],
+        tau: npt.NDArray[np.float64],
+        before: npt.NDArray[np.bool_],
+    ) -> Table:
+        c = constants(self.params)
+        raw = np.empty((len(t), 9))
+        sample_rows(c, self.rows, self._totals, segment, tau, before, raw)
+        out = np.empty(len(t), dtype=SAMPLE)
+        out["t"] = t
+        for k, name in enumerate(("x1", "v1", "x2", "v2", "phase", "stuck", "base_work", "damper_loss", "impact_loss")):
+            out[name] = raw[:, k]
+        out["w"] = out["x1"] - out["x2"]
+        out["w_dot"] = out["v1"] - out["v2"]
+        out["base"] = self.params.A * np.sin(out["phase"])
+        out["kinetic_1"] = 0.5 * out["v1"] ** 2
+        out["kinetic_2"] = 0.5 * self.params.mu * out["v2"] ** 2
+        out["potential"] = 0.5 * (out["x1"] - out["base"]) ** 2
+        return out
+
+    @cached_property
+    def _totals(self) -> npt.NDArray[np.float64]:
+        return accumulate(constants(self.params), self.rows)

@@ -1,0 +1,40 @@
+"""The two closed forms that give a measure its meaning: the oscillator with no ball, and with the ball locked in."""
+
+from __future__ import annotations
+
+import math
+
+from vines.model import Params
+
+__all__ = ["ball_locked", "no_ball"]
+
+
+def no_ball(p: Params) -> float:
+    """Return the steady amplitude of x1 when there is no ball.
+
+    The oscillator x1'' + lam x1' + x1 = A sin + lam Omega A cos (paper, eq. (8)) answers with
+    A sqrt(1 + lam² Omega²)/sqrt((1 - Omega²)² + lam² Omega²).
+
+    Examples
+    --------
+    >>> print(f"{no_ball(Params(mu=0.01, A=0.02)):.6f}")
+    1.667069
+    """
+    return _amplitude(p, 1.0)
+
+
+def ball_locked(p: Params) -> float:
+    """Return the steady amplitude of x1 when the ball is fixed to the oscillator, whose mass is then 1 + mu.
+
+    Examples
+    --------
+    >>> print(f"{ball_locked(Params(mu=0.01, A=0.02)):.6f}")
+    1.280589
+    """
+    return _amplitude(p, 1.0 + p.mu)
+
+
+def _amplitude(p: Params, mass: float) -> float:
+    damping = p.lam * p.Omega
+    detuning = math.hypot(1.0 - mass * p.Omega**2, damping)
+    return p.A * math.hypot(1.0, damping) / detuning if detuning > 0.0 else math.inf
