@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from vines.pipeline._axes import Axis
-    from vines.pipeline._declaration import Carry, Pipeline, Stage, find, load, shipped_names
+    from vines.pipeline._declaration import Carry, Pipeline, Stage, available, find, load
     from vines.pipeline._events import Event, RunSummary
     from vines.pipeline._jobs import Batch, Input, Job, Point, Range, WholeJob
     from vines.pipeline._kinds import Kind, kind, kinds, register
@@ -27,6 +27,7 @@ __all__ = [
     "Stage",
     "StagePlan",
     "WholeJob",
+    "available",
     "find",
     "kind",
     "kinds",
@@ -34,7 +35,6 @@ __all__ = [
     "plan",
     "register",
     "run_pipeline",
-    "shipped_names",
 ]
 
 _HOME = {
@@ -52,6 +52,7 @@ _HOME = {
     "Stage": "vines.pipeline._declaration",
     "StagePlan": "vines.pipeline._plan",
     "WholeJob": "vines.pipeline._jobs",
+    "available": "vines.pipeline._declaration",
     "find": "vines.pipeline._declaration",
     "kind": "vines.pipeline._kinds",
     "kinds": "vines.pipeline._kinds",
@@ -59,7 +60,6 @@ _HOME = {
     "plan": "vines.pipeline._plan",
     "register": "vines.pipeline._kinds",
     "run_pipeline": "vines.pipeline._run",
-    "shipped_names": "vines.pipeline._declaration",
 }
 
 

@@ -120,9 +120,7 @@ class Input:
         """
         wanted = name if name is not None else (self.tables[0] if self.tables else "")
         if wanted not in self.tables:
-            raise UnknownNameError(
-                f"stage {self.name!r} has no table {wanted!r}: {nearest(wanted, self.tables)}"
-            )
+            raise UnknownNameError(f"stage {self.name!r} has no table {wanted!r}: {nearest(wanted, self.tables)}")
         import pyarrow.parquet as pq
 
         return pq.read_table(self.folder / f"{wanted}.parquet")

@@ -32,8 +32,8 @@ class Column:
     dtype : str
         One of bool, float64, int8, int64, string, list<float64>, list<int8>.
     unit : str
-        ``"1"`` for a dimensionless number, ``"rad"``, ``"T"`` (forcing periods), ``"1/T"``, ``"B"``; empty for
-        what is not a number of something.
+        ``"1"`` for a dimensionless number, ``"rad"``, ``"T"`` (forcing periods), ``"1/T"``, ``"B"``; empty
+        for what is not a number of something.
     description : str
         What it holds, in one line.
     source : str

@@ -1,0 +1,169 @@
+"""Axes: the values of a varied parameter, exact rationals of the declared decimals, rounded once.
+
+In floating point 401 and 1201 points of one range share only some values; computed exactly they share all 401, so a
+refined grid computes only its new points.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from decimal import Context, Decimal
+from fractions import Fraction
+from typing import Any, Literal
+
+from vines.errors import DeclarationError, nearest
+
+__all__ = ["Axis", "exact", "read_axis"]
+
+_RANGE_KEYS = ("count", "from", "log", "step", "to")
+_MOST = 10_000_000
+
+
+@dataclass(frozen=True, slots=True)
+class Axis:
+    """A varied parameter.
+
+    Attributes
+    ----------
+    name : str
+        The parameter.
+    form : {"list", "linear", "log", "range"}
+        Listed values, so many values evenly spaced, the same on a logarithmic scale, or an interval without values.
+    ends : tuple of Fraction
+        The ends as declared; all values of a list.
+    count : int
+        How many values; 0 for an interval.
+    """
+
+    name: str
+    form: Literal["list", "linear", "log", "range"]
+    ends: tuple[Fraction, ...]
+    count: int
+
+    def values(self) -> tuple[float, ...]:
+        """Return the values in ascending order.
+
+        Examples
+        --------
+        >>> Axis("A", "linear", (Fraction("0.1"), Fraction("0.4")), 4).values()
+        (0.1, 0.2, 0.3, 0.4)
+        >>> Axis("A", "log", (Fraction(1), Fraction(100)), 3).values()
+        (1.0, 10.0, 100.0)
+        """
+        if self.form == "list":
+            return tuple(float(value) for value in sorted(self.ends))
+        first, last = min(self.ends), max(self.ends)
+        if self.count == 1:
+            return (float(first),)
+        if self.form == "log":
+            return tuple(_logarithmic(first, last, Fraction(i, self.count - 1)) for i in range(self.count))
+        # one common denominator: the quotient of two whole numbers is rounded correctly, once
+        denominator = first.denominator * last.denominator * (self.count - 1)
+        low = first.numerator * last.denominator
+        high = last.numerator * first.denominator
+        return tuple((low * (self.count - 1) + (high - low) * i) / denominator for i in range(self.count))
+
+    def canonical(self) -> list[Any]:
+        """Return the declaration as plain data, the same however the decimals were written."""
+        return [self.name, self.form, [str(end) for end in self.ends], self.count]
+
+
+def exact(value: object, where: str) -> Fraction:
+    """Return a number of a declaration as a rational.
+
+    Raises
+    ------
+    DeclarationError
+        If it is not a finite number.
+    """
+    if isinstance(value, bool) or not isinstance(value, int | float | Decimal):
+        raise DeclarationError(f"{where} is {value!r}, which is not a number; give a finite number")
+    # a float that comes from Python stands for the shortest decimal that it prints as
+    decimal = Decimal(repr(value)) if isinstance(value, float) else Decimal(value)
+    if not decimal.is_finite():
+        raise DeclarationError(f"{where} is {value}; give a finite number")
+    return Fraction(decimal)
+
+
+def read_axis(name: str, form: object, where: str, *, interval: bool) -> Axis:
+    """Read ``vary.<name>``.
+
+    Parameters
+    ----------
+    name : str
+        The parameter.
+    form : object
+        A list of numbers, or a table with ``from``, ``to`` and one of ``count`` and ``step``, and ``log`` if wanted.
+    where : str
+        File and key, for messages.
+    interval : bool
+        Whether the kind covers an interval: only ``from`` and ``to`` then.
+
+    Raises
+    ------
+    DeclarationError
+        If it is neither, a key is unknown, or the numbers contradict each other.
+    """
+    if isinstance(form, list) and not interval:
+        return _read_list(name, form, where)
+    allowed = ("from", "to") if interval else _RANGE_KEYS
+    if not isinstance(form, Mapping):
+        shape = "{ from = …, to = … }" if interval else "{ from = …, to = …, count = … } or a list"
+        raise DeclarationError(f"{where} is {form!r}; write {shape}")
+    for key in form:
+        if key not in allowed:
+            raise DeclarationError(f"{where}: unknown key {key!r}: {nearest(key, allowed)}")
+    for key in ("from", "to"):
+        if key not in form:
+            raise DeclarationError(f"{where}: {key!r} is missing; a range has both ends")
+    start, stop = exact(form["from"], f"{where}.from"), exact(form["to"], f"{where}.to")
+    if interval:
+        return Axis(name, "range", (start, stop), 0)
+    return _read_range(name, form, (start, stop), where)
+
+
+def _read_list(name: str, form: list[object], where: str) -> Axis:
+    values = tuple(exact(value, f"{where}[{i}]") for i, value in enumerate(form))
+    if not values:
+        raise DeclarationError(f"{where} is empty; list at least one value")
+    if len({float(value) for value in values}) < len(values):
+        raise DeclarationError(f"{where} lists a value twice; each point is computed once")
+    return Axis(name, "list", tuple(sorted(values)), len(values))
+
+
+def _read_range(name: str, form: Mapping[str, object], ends: tuple[Fraction, Fraction], where: str) -> Axis:
+    start, stop = ends
+    if ("count" in form) == ("step" in form):
+        raise DeclarationError(f"{where}: give either 'count' or 'step' beside 'from' and 'to'")
+    logarithmic = form.get("log", False)
+    if not isinstance(logarithmic, bool):
+        raise DeclarationError(f"{where}.log is {logarithmic!r}; allowed: true, false")
+    if logarithmic and (min(ends) <= 0 or "step" in form):
+        raise DeclarationError(f"{where}: a logarithmic range has ends > 0 and a 'count'")
+    if "step" in form:
+        step = exact(form["step"], f"{where}.step")
+        steps = (stop - start) / step if step > 0 else Fraction(-1)
+        if steps < 0 or steps.denominator != 1:
+            text = f"step {float(step):g} does not lead from {float(start):g} to {float(stop):g}"
+            raise DeclarationError(f"{where}: {text} in a whole number of steps > 0")
+        count = int(steps) + 1
+    else:
+        count = form["count"]
+    if isinstance(count, bool) or not isinstance(count, int) or not 1 <= count <= _MOST:
+        raise DeclarationError(f"{where}.count is {count!r}; allowed is a whole number from 1 to {_MOST}")
+    if (start == stop) != (count == 1):
+        raise DeclarationError(f"{where}: {count} values from {float(start):g} to {float(stop):g} cannot be")
+    return Axis(name, "log" if logarithmic else "linear", (min(ends), max(ends)), count)
+
+
+def _logarithmic(first: Fraction, last: Fraction, part: Fraction) -> float:
+    if part in (0, 1):
+        return float(last if part else first)
+    context = Context(prec=50)
+    low = context.ln(context.divide(Decimal(first.numerator), Decimal(first.denominator)))
+    high = context.ln(context.divide(Decimal(last.numerator), Decimal(last.denominator)))
+    way = context.divide(
+        context.multiply(context.subtract(high, low), Decimal(part.numerator)), Decimal(part.denominator)
+    )
+    return float(context.exp(context.add(low, way)))

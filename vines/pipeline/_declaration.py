@@ -1,0 +1,221 @@
+"""Declared pipelines: what a TOML file says, as typed and checked data."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from graphlib import CycleError, TopologicalSorter
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Literal
+
+from vines.errors import DeclarationError, FileMissingError, UnknownNameError, nearest
+from vines.places import shipped
+
+if TYPE_CHECKING:
+    import msgspec
+
+    from vines.pipeline._axes import Axis
+    from vines.pipeline._kinds import Kind
+
+__all__ = ["Carry", "Pipeline", "Stage", "available", "find", "load"]
+
+_STAGES = re.compile(r"^\s*\[\s*stages\b", re.MULTILINE)
+
+
+@dataclass(frozen=True, slots=True)
+class Carry:
+    """How the end state of a point becomes the start of the next.
+
+    Attributes
+    ----------
+    axis : str
+        The carried axis.
+    direction : {"up", "down"}
+        Whether the chain runs along rising or falling values.
+    stage : str or None
+        Another stage, one point of which gives the start of the first point.
+    at : dict of str to float
+        The varied values of that point.
+    """
+
+    axis: str
+    direction: Literal["up", "down"] = "up"
+    stage: str | None = None
+    at: tuple[tuple[str, float], ...] = ()
+
+    def canonical(self) -> dict[str, Any]:
+        """Return the declaration as plain data."""
+        return {"axis": self.axis, "direction": self.direction, "stage": self.stage, "at": dict(self.at)}
+
+
+@dataclass(frozen=True, slots=True)
+class Stage:
+    """One stage of a pipeline.
+
+    Attributes
+    ----------
+    name : str
+        Its name.
+    kind : Kind
+        What it does.
+    options : msgspec.Struct
+        The options of the kind, defaults filled in.
+    params : dict of str to float
+        The fixed parameters, defaults filled in; those that vary are left out.
+    axes : tuple of Axis
+        The varied parameters, in the order declared.
+    carry : Carry or None
+        Whether and how states are carried along an axis.
+    needs : tuple of str
+        Stages whose results it takes, in the order declared.
+    """
+
+    name: str
+    kind: Kind
+    options: msgspec.Struct
+    params: dict[str, float]
+    axes: tuple[Axis, ...]
+    carry: Carry | None
+    needs: tuple[str, ...]
+
+    @property
+    def after(self) -> tuple[str, ...]:
+        """The stages that must be done before this one: its needs, and where its start comes from."""
+        start = (self.carry.stage,) if self.carry is not None and self.carry.stage else ()
+        return (*self.needs, *start)
+
+
+@dataclass(frozen=True)
+class Pipeline:
+    """A declared pipeline.
+
+    Attributes
+    ----------
+    name, title, source : str
+        Its name, what it is, and which figure or section it reproduces.
+    path : Path
+        The file that declares it.
+    root : Path
+        The root of the project that it was loaded for.
+    stages : dict of str to Stage
+        In the order declared.
+    """
+
+    name: str
+    title: str
+    source: str
+    path: Path
+    root: Path
+    stages: dict[str, Stage]
+
+    @cached_property
+    def order(self) -> tuple[str, ...]:
+        """Names of the stages, each after those that it needs.
+
+        Raises
+        ------
+        DeclarationError
+            If a stage needs itself, directly or through others.
+        """
+        sorter: TopologicalSorter[str] = TopologicalSorter()
+        for stage in self.stages.values():
+            sorter.add(stage.name, *stage.after)
+        try:
+            return tuple(sorter.static_order())
+        except CycleError as error:
+            circle = " needs ".join(reversed(error.args[1]))
+            text = f"{self.path}: {circle}: a stage cannot need itself; remove one of these needs"
+            raise DeclarationError(text) from None
+
+    def select(self, names: Iterable[str] | None) -> tuple[str, ...]:
+        """Return the named stages and all that they need, in the order to run them; all if `names` is None.
+
+        Raises
+        ------
+        UnknownNameError
+            If there is no such stage.
+        """
+        if names is None:
+            return self.order
+        wanted: set[str] = set()
+        open_ends = list(names)
+        while open_ends:
+            name = open_ends.pop()
+            if name not in self.stages:
+                known = nearest(name, self.stages)
+                raise UnknownNameError(f"pipeline {self.name!r} has no stage {name!r}: {known}")
+            if name not in wanted:
+                wanted.add(name)
+                open_ends.extend(self.stages[name].after)
+        return tuple(name for name in self.order if name in wanted)
+
+
+def available(root: Path) -> dict[str, Path]:
+    """Return the files of all pipelines by name: those of the project, and those that ship with vines.
+
+    Files of ``pipelines/`` that declare no stages, such as published claims, are none.
+    """
+    found: dict[str, Path] = {}
+    for folder in (shipped("pipelines"), root / "pipelines"):
+        for path in sorted(folder.glob("*.toml")):
+            if _STAGES.search(path.read_text("utf-8", errors="replace")):
+                found[path.stem] = path
+    return dict(sorted(found.items()))
+
+
+def find(name: str, root: Path) -> Path:
+    """Return the file of a pipeline.
+
+    Parameters
+    ----------
+    name : str
+        A name, looked for in ``pipelines/`` of the project and then among those that ship with vines; or a path.
+    root : Path
+        Root of the project.
+
+    Raises
+    ------
+    UnknownNameError
+        If no pipeline has that name.
+    FileMissingError
+        If it is a path and there is no such file.
+    """
+    if name.endswith(".toml") or "/" in name:
+        path = Path(name)
+        if not path.is_file():
+            raise FileMissingError(f"{name}: there is no such file; 'vines list' shows the pipelines there are")
+        return path
+    for folder in (root / "pipelines", shipped("pipelines")):
+        path = folder / f"{name}.toml"
+        if path.is_file():
+            return path
+    raise UnknownNameError(f"unknown pipeline {name!r}: {nearest(name, available(root))}")
+
+
+def load(path: Path, overrides: Mapping[str, Any] | None = None, *, root: Path | None = None) -> Pipeline:
+    """Read a declaration.
+
+    Parameters
+    ----------
+    path : Path
+        A TOML file; its stem is the name of the pipeline.
+    overrides : mapping, optional
+        Values that replace those of the file, by dotted key such as ``stages.up.vary.A.count``. Texts are read as
+        TOML values where they are such.
+    root : Path, optional
+        Root of the project; found from the current folder if left out.
+
+    Raises
+    ------
+    FileMissingError
+        If there is no such file.
+    DeclarationError
+        If it cannot be read; one line with file, key, what is allowed and the nearest name.
+    ParameterError, StateError
+        If a parameter or start state is one that the model cannot have.
+    """
+    from vines.pipeline._reading import read
+
+    return read(Path(path), overrides or {}, root)

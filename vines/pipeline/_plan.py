@@ -1,0 +1,178 @@
+"""What there is to do: for each stage what is wanted, what is there, and why it is stale."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, Literal
+
+from vines.pipeline._code import CodeDigests
+from vines.pipeline._declaration import Pipeline, Stage
+from vines.pipeline._grid import Grid
+from vines.pipeline._ingredients import Ingredients, changes, gather
+from vines.store import Store, key_of
+
+__all__ = ["Planner", "Prepared", "StagePlan", "plan"]
+
+
+@dataclass(frozen=True, slots=True)
+class StagePlan:
+    """What a run would do with a stage.
+
+    Attributes
+    ----------
+    name, kind : str
+        The stage and its kind.
+    state : {"up_to_date", "stale", "missing", "never"}
+        The pinned result is what is asked for; it is another; its folder is gone; the stage was never finished.
+    reason : str
+        Why, with changed values before → after; empty if up to date.
+    wanted, done, failed : int
+        Points that are asked for; those that need not be computed; those among them that are rows with status
+        ``failed``. A stage of the whole shape counts as one point.
+    key : str
+        Key of the result; where points are still to be computed, the key if none of them fails.
+    """
+
+    name: str
+    kind: str
+    state: Literal["up_to_date", "stale", "missing", "never"]
+    reason: str
+    wanted: int
+    done: int
+    failed: int
+    key: str
+
+
+@dataclass
+class Prepared:
+    """A stage with its ingredients, ready to be planned or computed."""
+
+    stage: Stage
+    ingredients: Ingredients
+    origin: str
+    pin: dict[str, Any]
+
+    @cached_property
+    def pool_key(self) -> str:
+        """Key of its pool of points."""
+        return self.ingredients.pool_key
+
+    @cached_property
+    def request(self) -> str:
+        """Key of what is asked for."""
+        return self.ingredients.request
+
+    @cached_property
+    def grid(self) -> Grid:
+        """Its points."""
+        return Grid(self.stage, self.origin)
+
+    def result_key(self, failed: Iterable[str] = ()) -> str:
+        """Return the key of the result, given the points that failed."""
+        if self.stage.kind.shape == "whole":
+            return self.request
+        return key_of({"pool": self.pool_key, "points": sorted(self.grid.ids), "failed": sorted(failed)})
+
+
+class Planner:
+    """Plans stages one after the other; each needs the keys of those before it.
+
+    Parameters
+    ----------
+    pipeline : Pipeline
+        The declared pipeline.
+    store : Store
+        Where results are kept.
+    """
+
+    def __init__(self, pipeline: Pipeline, store: Store) -> None:
+        self.pipeline = pipeline
+        self.store = store
+        self.pins = store.pins(pipeline.name)
+        self.keys: dict[str, str] = {}
+        self.code = CodeDigests(store.cache / "code.json" if store.data.is_dir() else None)
+        self._prepared: dict[str, Prepared] = {}
+
+    def prepare(self, name: str) -> Prepared:
+        """Return a stage with its ingredients; the stages before it must have been planned."""
+        if name not in self._prepared:
+            stage = self.pipeline.stages[name]
+            origin = self._origin(stage)
+            ingredients = gather(stage, self.keys, origin, self.code, self.pipeline.root)
+            self._prepared[name] = Prepared(stage, ingredients, origin, self.pins.get(name, {}))
+        return self._prepared[name]
+
+    def plan(self, name: str) -> StagePlan:
+        """Return the plan of a stage and remember the key of its result for those after it."""
+        prepared = self.prepare(name)
+        stage, pin = prepared.stage, prepared.pin
+        if pin.get("request") == prepared.request and self.store.has(pin["result"]):
+            self.keys[name] = pin["result"]
+            counts = (pin["points"], pin["points"], pin["failed"])
+            return StagePlan(name, stage.kind.name, "up_to_date", "", *counts, pin["result"])
+        if stage.kind.shape == "whole":
+            key = prepared.result_key()
+            wanted, done, failed = 1, int(self.store.has(key)), 0
+        else:
+            key, wanted, done, failed = self._points(prepared)
+        self.keys[name] = key
+        state, reason = self._state(prepared, wanted, done)
+        return StagePlan(name, stage.kind.name, state, reason, wanted, done, failed, key)
+
+    def set_key(self, name: str, key: str) -> None:
+        """Say which key the result of a stage has now that it was computed."""
+        self.keys[name] = key
+
+    def _points(self, prepared: Prepared) -> tuple[str, int, int, int]:
+        wanted = prepared.grid.ids
+        pool = self.store.pool(prepared.pool_key)
+        computed, tried = pool.computed(), pool.failed()
+        failed = [point for point in wanted if point in tried]
+        done = sum(point in computed for point in wanted) + len(failed)
+        return prepared.result_key(failed), len(wanted), done, len(failed)
+
+    def _state(self, prepared: Prepared, wanted: int, done: int) -> tuple[Literal["stale", "missing", "never"], str]:
+        left = f"{wanted - done} of {wanted} points to compute" if wanted > 1 else "to compute"
+        if done == wanted:
+            left = "everything is computed, the result has to be put together"
+        pin = prepared.pin
+        if not pin:
+            return "never", f"never finished; {left}"
+        changed = changes(pin.get("ingredients", {}), prepared.ingredients.form)
+        if not changed and not self.store.has(pin["result"]):
+            return "missing", f"the result {pin['result'][:12]} is gone; {left}"
+        return "stale", f"{changed or 'the form of the key changed'}; {left}"
+
+    def _origin(self, stage: Stage) -> str:
+        """Return the identity of the point that starts the chains of a stage, if another stage gives it."""
+        if stage.carry is None or stage.carry.stage is None:
+            return ""
+        source = self.prepare(stage.carry.stage)
+        return f"{source.pool_key}/{source.grid.at(dict(stage.carry.at))}"
+
+
+def plan(pipeline: Pipeline, store: Store, stages: Iterable[str] | None = None) -> list[StagePlan]:
+    """Return what a run would do, stage by stage in the order of the run. Computes and writes nothing of value.
+
+    Parameters
+    ----------
+    pipeline : Pipeline
+        The declared pipeline.
+    store : Store
+        Where results are kept.
+    stages : iterable of str, optional
+        Only these and what they need.
+
+    Raises
+    ------
+    UnknownNameError
+        If there is no such stage.
+    FileMissingError
+        If a file that a stage needs is missing.
+    """
+    planner = Planner(pipeline, store)
+    plans = [planner.plan(name) for name in pipeline.select(stages)]
+    planner.code.save()
+    return plans

@@ -1,0 +1,336 @@
+"""From TOML to a checked declaration; every mistake is one line with file, key, what is allowed, the nearest name."""
+
+from __future__ import annotations
+
+import itertools
+import re
+import tomllib
+from collections.abc import Iterable, Mapping
+from decimal import Decimal
+from fractions import Fraction
+from pathlib import Path
+from typing import Any
+
+import msgspec
+
+from vines.errors import DeclarationError, FileMissingError, VinesError, nearest
+from vines.pipeline._axes import Axis, exact, read_axis
+from vines.pipeline._declaration import Carry, Pipeline, Stage
+from vines.pipeline._kinds import Kind, kind
+from vines.places import find_root
+
+__all__ = ["read"]
+
+_NAME = re.compile(r"[a-z][a-z0-9_]*")
+_TOP = ("params", "source", "stages", "title")
+_GENERAL = ("carry", "kind", "needs", "params", "vary")
+# Words that SQL keeps for itself; a pipeline's name stands unquoted before the dot in `<pipeline>.<stage>`.
+_RESERVED = frozenset(
+    [
+        "all",
+        "analyse",
+        "analyze",
+        "and",
+        "any",
+        "array",
+        "as",
+        "asc",
+        "asymmetric",
+        "both",
+        "case",
+        "cast",
+        "check",
+        "collate",
+        "column",
+        "constraint",
+        "create",
+        "default",
+        "deferrable",
+        "desc",
+        "describe",
+        "distinct",
+        "do",
+        "else",
+        "end",
+        "except",
+        "false",
+        "fetch",
+        "for",
+        "foreign",
+        "from",
+        "group",
+        "having",
+        "in",
+        "information_schema",
+        "initially",
+        "intersect",
+        "into",
+        "lambda",
+        "lateral",
+        "leading",
+        "limit",
+        "main",
+        "memory",
+        "not",
+        "null",
+        "offset",
+        "on",
+        "only",
+        "or",
+        "order",
+        "pg_catalog",
+        "pivot",
+        "pivot_longer",
+        "pivot_wider",
+        "placing",
+        "primary",
+        "qualify",
+        "references",
+        "returning",
+        "select",
+        "show",
+        "some",
+        "summarize",
+        "symmetric",
+        "system",
+        "table",
+        "temp",
+        "then",
+        "to",
+        "trailing",
+        "true",
+        "union",
+        "unique",
+        "unpivot",
+        "using",
+        "variadic",
+        "when",
+        "where",
+        "window",
+        "with",
+    ]
+)
+
+
+def read(path: Path, overrides: Mapping[str, Any], root: Path | None) -> Pipeline:
+    """Read a declaration; see :func:`vines.pipeline.load`."""
+    form = _override(_parse(path), overrides, path)
+    _known(form, _TOP, f"{path}")
+    name = path.stem
+    if not _NAME.fullmatch(name) or name in _RESERVED:
+        rule = "a name is [a-z][a-z0-9_]* and no reserved word of SQL"
+        raise DeclarationError(f"{path}: a pipeline cannot be called {name!r}; {rule}; rename the file")
+    tables = _table(form.get("stages", {}), f"{path}: stages")
+    if not tables:
+        raise DeclarationError(f"{path}: no stages; declare at least one as [stages.NAME]")
+    kinds = {stage: _kind(table, f"{path}: stages.{stage}") for stage, table in tables.items()}
+    common = _table(form.get("params", {}), f"{path}: params")
+    _known(common, sorted({p for each in kinds.values() for p in each.parameters}), f"{path}: params")
+    stages = {stage: _stage(stage, tables[stage], kinds[stage], common, path) for stage in tables}
+    title, source = (_text(form.get(key, ""), f"{path}: {key}") for key in ("title", "source"))
+    pipeline = Pipeline(name, title, source, path, root or find_root(), stages)
+    for stage in stages.values():
+        _check_needs(stage, stages, f"{path}: stages.{stage.name}")
+    assert pipeline.order  # finds circles
+    for stage in stages.values():
+        _check_box(stage, f"{path}: stages.{stage.name}")
+    return pipeline
+
+
+def _parse(path: Path) -> dict[str, Any]:
+    try:
+        return tomllib.loads(path.read_text("utf-8"), parse_float=Decimal)
+    except FileNotFoundError:
+        raise FileMissingError(f"{path}: there is no such file; 'vines list' shows the pipelines there are") from None
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError, OSError) as error:
+        raise DeclarationError(f"{path}: not a TOML file: {str(error).splitlines()[0]}") from None
+
+
+def _override(form: dict[str, Any], overrides: Mapping[str, Any], path: Path) -> dict[str, Any]:
+    for dotted, value in overrides.items():
+        keys = dotted.split(".")
+        place: Any = form
+        for depth, key in enumerate(keys[:-1]):
+            if keys[0] == "stages" and depth == 1 and key not in place:
+                raise DeclarationError(f"{path}: no stage {key!r} to set {dotted}: {nearest(key, place)}")
+            place = place.setdefault(key, {})
+            if not isinstance(place, dict):
+                inner = ".".join(keys[: depth + 1])
+                raise DeclarationError(f"{path}: cannot set {dotted}: {inner} is {place!r}, not a table")
+        place[keys[-1]] = _value(value)
+    return form
+
+
+def _value(value: Any) -> Any:
+    if not isinstance(value, str):
+        return value
+    try:
+        return tomllib.loads(f"value = {value}", parse_float=Decimal)["value"]
+    except tomllib.TOMLDecodeError:
+        return value
+
+
+def _stage(name: str, table: dict[str, Any], spec: Kind, common: dict[str, Any], path: Path) -> Stage:
+    where = f"{path}: stages.{name}"
+    if not _NAME.fullmatch(name):
+        raise DeclarationError(f"{where}: a stage cannot be called {name!r}; a name is [a-z][a-z0-9_]*")
+    fields = msgspec.structs.fields(spec.options)
+    general = [key for key in _GENERAL if _allows(spec, key)]
+    _known(table, [*general, *(field.encode_name for field in fields)], where)
+    axes = _axes(table.get("vary", {}), spec, where)
+    params = _params(table.get("params", {}), spec, common, axes, path, where)
+    plain = _plain({key: value for key, value in table.items() if key not in _GENERAL})
+    try:
+        options = msgspec.convert(plain, spec.options)
+    except msgspec.ValidationError as error:
+        raise DeclarationError(_say(error, where)) from None
+    carry = _carry(table["carry"], axes, f"{where}.carry") if "carry" in table else None
+    needs = table.get("needs", [])
+    if not isinstance(needs, list) or not all(isinstance(need, str) for need in needs):
+        raise DeclarationError(f'{where}.needs is {needs!r}; list names of stages, such as ["up"]')
+    if len(set(needs)) < len(needs):
+        raise DeclarationError(f"{where}.needs names a stage twice; once is enough")
+    return Stage(name, spec, options, params, axes, carry, tuple(needs))
+
+
+def _kind(table: object, where: str) -> Kind:
+    stage = _table(table, where)
+    if "kind" not in stage:
+        raise DeclarationError(f"{where}: 'kind' is missing; every stage has one, such as kind = \"sweep\"")
+    try:
+        return kind(_text(stage["kind"], f"{where}.kind"))
+    except DeclarationError as error:
+        text = str(error)
+        raise DeclarationError(text if text.startswith(where) else f"{where}.kind: {text}") from None
+
+
+def _allows(spec: Kind, key: str) -> bool:
+    return {"carry": spec.carry, "needs": spec.needs, "vary": spec.vary != "none", "params": bool(spec.parameters)}.get(
+        key, True
+    )
+
+
+def _axes(form: object, spec: Kind, where: str) -> tuple[Axis, ...]:
+    table = _table(form, f"{where}.vary")
+    _known(table, spec.parameters, f"{where}.vary")
+    interval = spec.vary == "range"
+    return tuple(read_axis(name, value, f"{where}.vary.{name}", interval=interval) for name, value in table.items())
+
+
+def _params(
+    form: object, spec: Kind, common: dict[str, Any], axes: tuple[Axis, ...], path: Path, where: str
+) -> dict[str, float]:
+    own = _table(form, f"{where}.params")
+    _known(own, spec.parameters, f"{where}.params")
+    varied = {axis.name for axis in axes}
+    params: dict[str, float] = {}
+    for name, default in spec.parameters.items():
+        if name in own and name in varied:
+            raise DeclarationError(f"{where}: {name} is both fixed under params and varied; keep one of them")
+        if name in varied:
+            continue
+        if name in own:
+            params[name] = float(exact(own[name], f"{where}.params.{name}"))
+        elif name in common:
+            params[name] = float(exact(common[name], f"{path}: params.{name}"))
+        elif default is not None:
+            params[name] = float(default)
+        else:
+            raise DeclarationError(f"{where}: parameter {name!r} is missing; give it under [params] or vary.{name}")
+    return params
+
+
+def _carry(form: object, axes: tuple[Axis, ...], where: str) -> Carry:
+    table = {"axis": form} if isinstance(form, str) else _table(form, where)
+    _known(table, ("axis", "direction", "start"), where)
+    names = [axis.name for axis in axes]
+    axis = table.get("axis")
+    if axis not in names:
+        raise DeclarationError(f"{where}: axis {axis!r} is not varied: {nearest(str(axis), names)}")
+    direction = table.get("direction", "up")
+    if direction not in ("up", "down"):
+        raise DeclarationError(f"{where}.direction is {direction!r}; allowed: up, down")
+    if "start" not in table:
+        return Carry(axis, direction)
+    start = _table(table["start"], f"{where}.start")
+    _known(start, ("at", "from"), f"{where}.start")
+    stage = _text(start.get("from"), f"{where}.start.from")
+    at = _table(start.get("at", {}), f"{where}.start.at")
+    values = {name: float(exact(value, f"{where}.start.at.{name}")) for name, value in at.items()}
+    return Carry(axis, direction, stage, tuple(sorted(values.items())))
+
+
+def _check_needs(stage: Stage, stages: Mapping[str, Stage], where: str) -> None:
+    for need in stage.needs:
+        if need not in stages:
+            others = [name for name in stages if name != stage.name]
+            raise DeclarationError(f"{where}.needs: unknown stage {need!r}: {nearest(need, others)}")
+    if stage.carry is None or stage.carry.stage is None:
+        return
+    source = stages.get(stage.carry.stage)
+    fit = [name for name, each in stages.items() if each.kind.tables == stage.kind.tables and name != stage.name]
+    if source is None or source.kind.tables[:1] != stage.kind.tables[:1]:
+        raise DeclarationError(f"{where}.carry.start.from: {stage.carry.stage!r}: {nearest(stage.carry.stage, fit)}")
+    varied = {axis.name: axis.values() for axis in source.axes}
+    at = dict(stage.carry.at)
+    if set(at) != set(varied) or any(value not in varied[name] for name, value in at.items()):
+        axes = ", ".join(varied) or "nothing"
+        text = f"no point of stage {source.name!r}, which varies {axes}; name one value of each"
+        raise DeclarationError(f"{where}.carry.start.at: {at} is {text}")
+
+
+def _check_box(stage: Stage, where: str) -> None:
+    if stage.kind.check is None:
+        return
+    ends = [[(axis.name, end) for end in _extremes(axis)] for axis in stage.axes]
+    for corner in itertools.product(*ends):
+        params = {name: {**stage.params, **dict(corner)}[name] for name in stage.kind.parameters}
+        try:
+            stage.kind.check(params, stage.options)
+        except VinesError as error:
+            raise type(error)(f"{where}: {error}") from None
+
+
+def _extremes(axis: Axis) -> tuple[float, ...]:
+    ends: tuple[Fraction, ...] = (min(axis.ends), max(axis.ends))
+    return tuple(dict.fromkeys(float(end) for end in ends))
+
+
+def _known(table: Iterable[str], allowed: Iterable[str], where: str) -> None:
+    names = list(allowed)
+    for key in table:
+        if key not in names:
+            raise DeclarationError(f"{where}: unknown key {key!r}: {nearest(key, names)}")
+
+
+def _table(form: object, where: str) -> dict[str, Any]:
+    if not isinstance(form, dict):
+        raise DeclarationError(f"{where} is {_shown(form)}; a table of keys is needed here")
+    return form
+
+
+def _text(form: object, where: str) -> str:
+    if not isinstance(form, str):
+        raise DeclarationError(f"{where} is {_shown(form)}; a text is needed here")
+    return form
+
+
+def _shown(form: object) -> str:
+    return str(form) if isinstance(form, Decimal) else repr(form)
+
+
+def _plain(form: Any) -> Any:
+    if isinstance(form, Decimal):
+        return float(form)
+    if isinstance(form, dict):
+        return {key: _plain(value) for key, value in form.items()}
+    if isinstance(form, list):
+        return [_plain(value) for value in form]
+    return form
+
+
+def _say(error: msgspec.ValidationError, where: str) -> str:
+    """Turn ``Expected `int`, got `str` - at `$.settle``` into a line with file and key."""
+    text, _, place = str(error).partition(" - at `$")
+    text = (text[:1].lower() + text[1:]).replace("`", "")
+    return f"{where}{place.rstrip('`')}: {text}"

@@ -1,0 +1,214 @@
+"""What a process does with a chunk of points: call the body, find the points that fail, store a part.
+
+Runs in the main process for small work and in worker processes for more; those import nothing else of the pipeline.
+"""
+
+from __future__ import annotations
+
+import importlib
+import time
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from vines import schema
+from vines.errors import SchemaError
+from vines.pipeline._jobs import Batch, Job, Point
+from vines.store import Store, commit_part
+
+if TYPE_CHECKING:
+    import msgspec
+    import pyarrow as pa
+
+__all__ = ["Done", "Task", "body_of", "compute_task", "prepare_worker"]
+
+
+@dataclass(frozen=True, slots=True)
+class Task:
+    """A chunk of points of one stage; travels to a worker process.
+
+    Attributes
+    ----------
+    number : int
+        Number of the part that it will be.
+    body, tables, options, provenance
+        As in :class:`Kind` and :class:`Job`.
+    points : tuple of Point
+        The points, in the order of the chain if carried.
+    carry : str or None
+        The carried axis.
+    start : dict or None
+        Row of the predecessor.
+    broken : str
+        Why the points cannot be computed, because the chain broke before them; empty if they can.
+    data : Path
+        The folder of the store.
+    pool : Path
+        The folder of the pool.
+    """
+
+    number: int
+    body: str
+    tables: tuple[str, ...]
+    options: msgspec.Struct
+    provenance: dict[str, Any]
+    points: tuple[Point, ...]
+    carry: str | None
+    start: dict[str, Any] | None
+    broken: str
+    data: Path
+    pool: Path
+
+
+@dataclass(frozen=True, slots=True)
+class Done:
+    """What became of a task: how many points, which failed, how long it took, and the last row if carried."""
+
+    number: int
+    points: int
+    failed: tuple[str, ...]
+    seconds: float
+    last: dict[str, Any] | None
+
+
+@dataclass
+class _Gathered:
+    """Rows of a chunk as they come in, by table."""
+
+    tables: dict[str, list[pa.Table]]
+    logs: dict[str, str] = field(default_factory=dict)
+    failed: dict[str, str] = field(default_factory=dict)
+
+
+def prepare_worker(parent: int) -> None:
+    """Set up a worker process: one thread each, the parent decides when to stop, and no worker outlives it.
+
+    Parameters
+    ----------
+    parent : int
+        Process id of the parent.
+    """
+    import os
+    import signal
+    import threading
+
+    os.environ["NUMBA_NUM_THREADS"] = "1"
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+
+    def watch() -> None:
+        while os.getppid() == parent:
+            time.sleep(0.5)
+        os._exit(1)
+
+    threading.Thread(target=watch, daemon=True).start()
+
+
+def body_of(path: str) -> Callable[[Any], Batch]:
+    """Import the body of a kind, given as ``"package.module:function"``."""
+    module, _, name = path.partition(":")
+    return getattr(importlib.import_module(module), name)
+
+
+def compute_task(task: Task) -> Done:
+    """Compute a chunk and store it as a part of the pool.
+
+    An exception of the body is narrowed down by halves to the points that cause it; each becomes a row with status
+    ``failed`` and the reason. In a carried chain the points after a failed one have no start and fail with it.
+
+    Raises
+    ------
+    SchemaError
+        If the body returns rows that don't fit: a mistake in the kind, not in a point.
+    """
+    began = time.perf_counter()
+    gathered = _Gathered({name: [] for name in task.tables})
+    with Store(task.data).staging() as place:
+        part = place / "part"
+        part.mkdir()
+        if task.broken:
+            _fail(task, task.points, task.broken, gathered)
+        else:
+            _attempt(task, task.points, task.start, part, gathered)
+        import pyarrow as pa
+
+        tables = {name: pa.concat_tables(pieces) for name, pieces in gathered.tables.items()}
+        ids = [point.id for point in task.points]
+        commit_part(task.pool, part, task.number, tables, ids=ids, failed=gathered.failed, logs=gathered.logs)
+    last = None
+    if task.carry is not None and ids[-1] not in gathered.failed:
+        last = _row_of(tables[task.tables[0]], ids[-1])
+    return Done(task.number, len(ids), tuple(gathered.failed), time.perf_counter() - began, last)
+
+
+def _attempt(
+    task: Task, points: Sequence[Point], start: dict[str, Any] | None, part: Path, gathered: _Gathered
+) -> dict[str, Any] | None:
+    """Compute points, by halves where that fails; return the last row if they are carried and none failed."""
+    folder = part.parent / f"work-{points[0].id}-{len(points)}"
+    folder.mkdir()
+    job = Job(task.options, tuple(points), task.carry, start, folder, task.provenance)
+    try:
+        batch = body_of(task.body)(job)
+    except Exception as error:  # whatever a body raises is a property of a point, and the others go on
+        if len(points) == 1:
+            _fail(task, points, _say(error), gathered)
+            return None
+        half = len(points) // 2
+        last = _attempt(task, points[:half], start, part, gathered)
+        if task.carry is not None and last is None:
+            _fail(task, points[half:], "a point before it in the carried chain failed", gathered)
+            return None
+        return _attempt(task, points[half:], last, part, gathered)
+    tables = _check(task, points, batch)
+    for name, table in tables.items():
+        gathered.tables[name].append(table)
+    for point, name in batch.logs.items():
+        kept = f"{point}{Path(name).suffix}"
+        (folder / name).rename(part / kept)
+        gathered.logs[point] = kept
+    return _row_of(tables[task.tables[0]], points[-1].id) if task.carry is not None else None
+
+
+def _check(task: Task, points: Sequence[Point], batch: Batch) -> dict[str, pa.Table]:
+    """Cast the tables of a batch and see that they are those of its points."""
+    ids = [point.id for point in points]
+    unknown = set(batch.tables) - set(task.tables)
+    if unknown:
+        raise SchemaError(f"{task.body}: returned table {min(unknown)!r}, which its kind does not name")
+    tables = {name: schema.cast(name, batch.tables.get(name, ())) for name in task.tables}
+    primary = task.tables[0]
+    if sorted(tables[primary].column("point_id").to_pylist()) != sorted(ids):
+        raise SchemaError(f"{task.body}: table {primary!r} needs exactly one row for each of its {len(ids)} points")
+    for name, table in tables.items():
+        strange = set(table.column("point_id").unique().to_pylist()) - set(ids)
+        if strange:
+            raise SchemaError(f"{task.body}: table {name!r} has rows of point {min(strange)}, which was not asked for")
+    if set(batch.logs) - set(ids):
+        raise SchemaError(f"{task.body}: a log of point {min(set(batch.logs) - set(ids))}, which was not asked for")
+    return tables
+
+
+def _fail(task: Task, points: Sequence[Point], reason: str, gathered: _Gathered) -> None:
+    primary = task.tables[0]
+    columns = schema.table(primary).names
+    rows = [_failed_row(point, task.carry, reason, columns) for point in points]
+    gathered.tables[primary].append(schema.cast(primary, rows))
+    for name in task.tables[1:]:
+        gathered.tables[name].append(schema.cast(name, ()))
+    gathered.failed.update((point.id, reason) for point in points)
+
+
+def _failed_row(point: Point, carry: str | None, reason: str, columns: Sequence[str]) -> Mapping[str, Any]:
+    row = {**point.params, "point_id": point.id, "carry": carry, "status": "failed", "reason": reason}
+    return {name: value for name, value in row.items() if name in columns}
+
+
+def _row_of(table: pa.Table, point: str) -> dict[str, Any]:
+    place = table.column("point_id").to_pylist().index(point)
+    return table.slice(place, 1).to_pylist()[0]
+
+
+def _say(error: Exception) -> str:
+    text = (str(error).splitlines() or [""])[0]
+    return f"{type(error).__name__}: {text}" if text else type(error).__name__

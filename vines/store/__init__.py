@@ -1,0 +1,48 @@
+"""The store: keys, immutable results, pools of points, pins; every write is atomic.
+
+Lazy (PEP 562): to read pins and manifests loads neither pyarrow nor filelock.
+"""
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from vines.store._atomic import write_text
+    from vines.store._keys import canonical, key_of
+    from vines.store._parquet import write_parquet
+    from vines.store._pools import Pool, commit_part
+    from vines.store._provenance import revision, versions
+    from vines.store._results import Result
+    from vines.store._store import Store
+
+__all__ = [
+    "Pool",
+    "Result",
+    "Store",
+    "canonical",
+    "commit_part",
+    "key_of",
+    "revision",
+    "versions",
+    "write_parquet",
+    "write_text",
+]
+
+_HOMES = {
+    "Pool": "vines.store._pools",
+    "Result": "vines.store._results",
+    "Store": "vines.store._store",
+    "canonical": "vines.store._keys",
+    "commit_part": "vines.store._pools",
+    "key_of": "vines.store._keys",
+    "revision": "vines.store._provenance",
+    "versions": "vines.store._provenance",
+    "write_parquet": "vines.store._parquet",
+    "write_text": "vines.store._atomic",
+}
+
+
+def __getattr__(name: str) -> Any:
+    if name not in _HOMES:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    return getattr(import_module(_HOMES[name]), name)

@@ -1,0 +1,67 @@
+"""Writes that are there as a whole or not at all, also after a power cut."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import shutil
+import uuid
+from collections.abc import Iterator
+from pathlib import Path
+
+__all__ = ["commit_folder", "staging", "sync_file", "write_text"]
+
+
+def sync_file(path: Path) -> None:
+    """Make the contents of a file or folder durable."""
+    handle = os.open(path, os.O_RDONLY)
+    try:
+        os.fsync(handle)
+    finally:
+        os.close(handle)
+
+
+def write_text(path: Path, text: str) -> None:
+    """Replace a file atomically; its folder is made if need be."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    temporary = path.parent / f".{path.name}.{uuid.uuid4().hex[:12]}"
+    try:
+        with temporary.open("w", encoding="utf-8", newline="\n") as stream:
+            stream.write(text)
+            stream.flush()
+            os.fsync(stream.fileno())
+        temporary.replace(path)
+    except BaseException:
+        temporary.unlink(missing_ok=True)
+        raise
+    sync_file(path.parent)
+
+
+@contextlib.contextmanager
+def staging(folder: Path) -> Iterator[Path]:
+    """Give an empty folder below `folder`; what is left in it at the end is removed."""
+    place = folder / uuid.uuid4().hex
+    place.mkdir(parents=True)
+    try:
+        yield place
+    finally:
+        shutil.rmtree(place, ignore_errors=True)
+
+
+def commit_folder(source: Path, target: Path) -> bool:
+    """Move a finished folder to its place and make it durable; return whether it was not there yet.
+
+    What stands there already has the same key and so the same contents: it is kept.
+    """
+    for path in source.rglob("*"):
+        sync_file(path)
+    sync_file(source)
+    target.parent.mkdir(parents=True, exist_ok=True)
+    try:
+        source.rename(target)
+    except OSError:
+        if target.is_dir():
+            return False
+        raise
+    sync_file(target.parent)
+    return True

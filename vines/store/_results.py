@@ -1,0 +1,106 @@
+"""Results: immutable folders under their key, each with a manifest."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from vines.errors import StoreError, UnknownNameError, nearest
+
+if TYPE_CHECKING:
+    import pyarrow as pa
+
+__all__ = ["Result", "describe_files", "read_result"]
+
+
+@dataclass(frozen=True, slots=True)
+class Result:
+    """A stored result.
+
+    Attributes
+    ----------
+    key : str
+        Its key; also the name of its folder.
+    folder : Path
+        Where it lies.
+    manifest : dict
+        ``kind``, ``ingredients``, ``tables`` (rows and columns of each, the primary one first), ``files``
+        (sha256 and bytes of each), ``logs``, ``points``, ``failed``, ``provenance``, and, only here,
+        ``written`` and ``host``.
+    """
+
+    key: str
+    folder: Path
+    manifest: dict[str, Any]
+
+    @property
+    def tables(self) -> tuple[str, ...]:
+        """Names of its tables, the primary one first."""
+        return tuple(self.manifest["tables"])
+
+    @property
+    def logs(self) -> dict[str, Path]:
+        """Log file of each point that has one, by point id."""
+        return {log["point_id"]: self.folder / log["file"] for log in self.manifest["logs"]}
+
+    @property
+    def files(self) -> dict[str, Path]:
+        """All files except the manifest, by their names inside the folder."""
+        return {name: self.folder / name for name in self.manifest["files"]}
+
+    def table(self, name: str | None = None) -> pa.Table:
+        """Return one of its tables, the primary one if no name is given.
+
+        Raises
+        ------
+        UnknownNameError
+            If there is no such table.
+        """
+        wanted = name if name is not None else next(iter(self.tables), "")
+        if wanted not in self.tables:
+            raise UnknownNameError(f"result {self.key[:12]} has no table {wanted!r}: {nearest(wanted, self.tables)}")
+        import pyarrow.parquet as pq
+
+        return pq.read_table(self.folder / f"{wanted}.parquet")
+
+    def damage(self) -> list[str]:
+        """Return what is wrong with the files, one line each; empty if every checksum is right."""
+        found = []
+        for name, said in self.manifest["files"].items():
+            path = self.folder / name
+            if not path.is_file():
+                found.append(f"{name} is missing")
+            elif _describe(path) != said:
+                found.append(f"{name} is damaged: its checksum differs from the manifest's")
+        return found
+
+
+def read_result(folder: Path) -> Result:
+    """Read the manifest of a result.
+
+    Raises
+    ------
+    StoreError
+        If the manifest is missing or unreadable.
+    """
+    path = folder / "manifest.json"
+    try:
+        manifest = json.loads(path.read_text("utf-8"))
+    except (OSError, ValueError) as error:
+        raise StoreError(f"{path} cannot be read: {error}: compute it again with --force") from None
+    return Result(folder.name, folder, manifest)
+
+
+def describe_files(folder: Path) -> dict[str, dict[str, Any]]:
+    """Return sha256 and size of every file below a folder, by name, in order."""
+    paths = sorted(path for path in folder.rglob("*") if path.is_file() and path.name != "manifest.json")
+    return {path.relative_to(folder).as_posix(): _describe(path) for path in paths}
+
+
+def _describe(path: Path) -> dict[str, Any]:
+    with path.open("rb") as stream:
+        digest = hashlib.file_digest(stream, "sha256").hexdigest()
+    return {"sha256": digest, "bytes": path.stat().st_size}
