@@ -1,0 +1,84 @@
+"""From the impacts of a closed orbit to an `Orbit` with all that follows from them; the same for every word."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import numpy.typing as npt
+
+from vines.dynamics._constants import constants
+from vines.model import Params, Word
+from vines.orbits._budget import orbit_measures
+from vines.orbits._floquet import half_map, monodromy, sorted_multipliers, squared
+from vines.orbits._orbit import Orbit
+from vines.orbits._survey import survey_kernel
+
+__all__ = ["assemble"]
+
+Floats = npt.NDArray[np.float64]
+
+_SAME = 1e-9
+"""Largest difference, in any component, of an orbit to its mirror image that counts as symmetric."""
+
+
+def assemble(word: Word, p: Params, t: Floats, states: Floats, remark: str = "") -> Orbit:
+    """Return the orbit with these impacts.
+
+    Parameters
+    ----------
+    word : Word
+    p : Params
+    t : (N,) float array
+        Times of the impacts in the order of any rotation of the word, increasing within one period pT; the phase of
+        the forcing is zero at t = 0.
+    states : (N, 4) float array
+        x1, v1, x2, v2 just before each impact.
+    remark : str
+        Kept with the orbit.
+    """
+    t, states = _canonical(word, p, t, states)
+    duration = word.p * p.period
+    side = np.array(word.sides, dtype=np.int64)
+    c = constants(p)
+    jacobians, residual, clearance, violation, wall = survey_kernel(c, duration, side, t, states)
+    symmetric = _is_symmetric(word, duration, t, states)
+    half = sorted_multipliers(half_map(jacobians)) if symmetric else None
+    for array in (t, states, jacobians):
+        array.setflags(write=False)
+    return Orbit(
+        word=word,
+        params=p,
+        t=t,
+        states=states,
+        jacobians=jacobians,
+        multipliers=squared(half) if half is not None else sorted_multipliers(monodromy(jacobians)),
+        half_multipliers=half,
+        symmetric=symmetric,
+        admissible=wall == 0 and clearance > 0,
+        min_clearance=float(clearance),
+        violation_time=float(violation),
+        violation_side=int(wall),
+        residual=float(residual),
+        measures=orbit_measures(p, c, word, t, states),
+        remark=remark,
+    )
+
+
+def _canonical(word: Word, p: Params, t: Floats, states: Floats) -> tuple[Floats, Floats]:
+    """Rotate to the canonical first impact, the one of least phase if there are several, and shift it into [0, T)."""
+    letters = "".join("L" if gap > 0 else "R" for gap in states[:, 0] - states[:, 2])
+    starts = [k for k in range(len(t)) if letters[k:] + letters[:k] == word.letters]
+    k = min(starts, key=lambda k: (float(t[k] % p.period), k))
+    times = np.concatenate([t[k:], t[:k] + word.p * p.period])
+    times -= math.floor(times[0] / p.period) * p.period
+    return times, np.concatenate([states[k:], states[:k]])
+
+
+def _is_symmetric(word: Word, duration: float, t: Floats, states: Floats) -> bool:
+    if not word.symmetric:
+        return False
+    half = len(t) // 2
+    return bool(
+        np.abs(t[half:] - t[:half] - duration / 2).max() < _SAME and np.abs(states[half:] + states[:half]).max() < _SAME
+    )

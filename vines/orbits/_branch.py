@@ -1,0 +1,104 @@
+"""A family of orbits that was followed in one parameter, and what was met on it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+import numpy.typing as npt
+
+from vines.model import Params, Word
+from vines.orbits._orbit import Orbit, short_hash
+
+__all__ = ["Bifurcation", "Branch"]
+
+
+@dataclass(frozen=True, eq=False)
+class Bifurcation:
+    """A bifurcation, located by the root of its defining equation.
+
+    Attributes
+    ----------
+    type : str
+        fold, symmetry_breaking, period_doubling, neimark_sacker or grazing; in `Branch.events` pair_turns_real.
+    parameter : str
+        The parameter in which the branch was followed.
+    value : float
+        Its value there.
+    params : Params
+        All parameters there.
+    multiplier : complex
+        The critical Floquet multiplier over pT; nan for grazing.
+    half_multiplier : complex
+        For a symmetric orbit that of the half map, -1 at a symmetry breaking; else `multiplier`.
+    orbit : Orbit
+        The orbit there.
+    """
+
+    type: str
+    parameter: str
+    value: float
+    params: Params
+    multiplier: complex
+    half_multiplier: complex
+    orbit: Orbit
+
+    @property
+    def word(self) -> Word:
+        """Word of the orbit."""
+        return self.orbit.word
+
+    def __repr__(self) -> str:
+        return f"<Bifurcation {self.type} of {self.orbit.name} at {self.parameter} = {self.value:.12g}>"
+
+
+@dataclass(frozen=True, eq=False)
+class Branch:
+    """A family of orbits followed in one parameter.
+
+    Attributes
+    ----------
+    word : Word
+    parameter : str
+    orbits : tuple of Orbit
+        In the order of travel, with the orbits at the bifurcations among them.
+    bifurcations : tuple of Bifurcation
+        In the order of travel.
+    events : tuple of Bifurcation
+        What is worth a remark but changes no stability: pair_turns_real, where two multipliers meet on the real
+        axis and a complex pair becomes two real ones, or the reverse.
+    ends : tuple of str, str
+        Why the branch begins and ends where it does: ``range`` (of the parameter), ``grazing``, ``points`` (as many
+        as were allowed), ``lost`` (the corrector failed at the smallest step).
+    """
+
+    word: Word
+    parameter: str
+    orbits: tuple[Orbit, ...]
+    bifurcations: tuple[Bifurcation, ...]
+    events: tuple[Bifurcation, ...]
+    ends: tuple[str, str]
+
+    @property
+    def values(self) -> npt.NDArray[np.float64]:
+        """Values of the parameter at the orbits."""
+        return np.array([getattr(orbit.params, self.parameter) for orbit in self.orbits])
+
+    @property
+    def symmetric(self) -> bool:
+        """Whether the orbits are their own mirror images."""
+        return self.orbits[0].symmetric
+
+    @cached_property
+    def branch_id(self) -> str:
+        """Name of the branch, from its parameter and its first and last orbits."""
+        return short_hash(self.word, self.parameter, self.orbits[0].orbit_id, self.orbits[-1].orbit_id)
+
+    def __repr__(self) -> str:
+        first, last = self.values[[0, -1]]
+        met = ", ".join(f"{b.type} at {b.value:.6g}" for b in self.bifurcations) or "no bifurcation"
+        return (
+            f"<Branch {self.word}, {self.parameter} from {first:g} to {last:g}, {len(self.orbits)} orbits, {met}; "
+            f"ends: {', '.join(self.ends)}>"
+        )

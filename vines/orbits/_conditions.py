@@ -1,0 +1,108 @@
+"""The defining equations of bifurcations: functions that pass through zero where one happens.
+
+They are smooth in the parameter, also where multipliers collide, because each is a symmetric function of them
+(docs/orbits.md, "Bifurcations"). For a symmetric orbit they are taken of the half map.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from itertools import combinations
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from vines.orbits._problem import Point
+
+__all__ = ["GRAZING", "REMARKS", "Condition", "conditions", "critical_multiplier", "grazing_margin"]
+
+Multipliers = npt.NDArray[np.complex128]
+
+GRAZING = "grazing"
+REMARKS = ("pair_turns_real",)
+"""Types that are not bifurcations: nothing changes its stability there."""
+
+_PAIRS = tuple(combinations(range(4), 2))
+_REAL = 1e-7
+"""Imaginary part, relative to the modulus, below which a multiplier is taken to be real."""
+
+
+class Condition(NamedTuple):
+    """One defining equation.
+
+    Attributes
+    ----------
+    type : str
+        Type of the bifurcation.
+    function : callable
+        Of a point; changes its sign at the bifurcation.
+    """
+
+    type: str
+    function: Callable[[Point], float]
+
+
+def grazing_margin(point: Point) -> float:
+    """Return the least of the clearances of turning points and the speeds at which the walls are met."""
+    orbit = point.orbit
+    return min(orbit.min_clearance, float(np.min(orbit.side * orbit.w_dot)))
+
+
+def _multipliers(point: Point) -> Multipliers:
+    half = point.orbit.half_multipliers
+    return point.orbit.multipliers if half is None else half
+
+
+def _fold(point: Point) -> float:
+    return float(point.tangent[-1])
+
+
+def _minus_one(point: Point) -> float:
+    return float(np.prod(1 + _multipliers(point)).real)
+
+
+def _product_one(point: Point) -> float:
+    m = _multipliers(point)
+    return float(np.prod([1 - m[i] * m[j] for i, j in _PAIRS]).real)
+
+
+def _discriminant(point: Point) -> float:
+    m = _multipliers(point)
+    return float(np.prod([(m[i] - m[j]) ** 2 for i, j in _PAIRS]).real)
+
+
+def conditions(symmetric: bool) -> tuple[Condition, ...]:
+    """Return the defining equations for a family of symmetric or of other orbits."""
+    return (
+        Condition("fold", _fold),
+        Condition("symmetry_breaking" if symmetric else "period_doubling", _minus_one),
+        Condition("neimark_sacker", _product_one),
+        Condition("pair_turns_real", _discriminant),
+        Condition(GRAZING, grazing_margin),
+    )
+
+
+def critical_multiplier(kind: str, point: Point) -> tuple[complex, complex] | None:
+    """Return the multiplier that makes the bifurcation, of the map it is defined by and over the whole period.
+
+    None, if the zero of the defining equation is no bifurcation: a product of two real multipliers that passes through
+    one is no Neimark-Sacker point. Nan for grazing, where the Jacobian jumps.
+    """
+    m = _multipliers(point)
+    if kind == GRAZING or not np.isfinite(m).all():
+        found = complex(np.nan, np.nan)
+    elif kind == "fold":
+        found = m[np.argmin(abs(m - 1))]
+    elif kind in ("symmetry_breaking", "period_doubling"):
+        found = m[np.argmin(abs(m + 1))]
+    elif kind == "neimark_sacker":
+        i, j = min(_PAIRS, key=lambda pair: abs(1 - m[pair[0]] * m[pair[1]]))
+        if abs(m[i].imag) < _REAL * abs(m[i]) or abs(m[i] - m[j].conjugate()) > _REAL * abs(m[i]):
+            return None
+        found = m[i]
+    else:
+        i, j = min(_PAIRS, key=lambda pair: abs(m[pair[0]] - m[pair[1]]))
+        # Two multipliers that differ by rounding are one, whose real part is the mean.
+        found = complex((m[i] + m[j]).real / 2)
+    return complex(found), complex(found**2 if point.orbit.half_multipliers is not None else found)

@@ -1,0 +1,241 @@
+"""Families of orbits followed by pseudo-arclength continuation, with their bifurcations located on the way."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+from scipy.optimize import root_scalar
+
+from vines.errors import OrbitNotFound, ParameterError, nearest
+from vines.model import PARAMETER_NAMES
+from vines.orbits._branch import Bifurcation, Branch
+from vines.orbits._conditions import (
+    GRAZING,
+    REMARKS,
+    Condition,
+    conditions,
+    critical_multiplier,
+    grazing_margin,
+)
+from vines.orbits._orbit import Orbit
+from vines.orbits._problem import Curve, Point, Problem
+from vines.orbits._symmetric import SymmetricProblem
+
+__all__ = ["continue_orbit"]
+
+_SMALLEST_STEP = 1e-8
+_SHARPEST_TURN = math.cos(0.15)
+"""Steps over which the tangent turns by more than .15 rad are halved, so that no fold or event slips through."""
+
+
+def continue_orbit(
+    orbit: Orbit,
+    parameter: str,
+    stop: float,
+    *,
+    at: Sequence[float] = (),
+    step: float = 0.02,
+    beyond_grazing: bool = False,
+    max_points: int = 5000,
+) -> Branch:
+    """Follow an orbit in one parameter, through folds, and locate the bifurcations on the way.
+
+    The branch ends where the parameter leaves the range from its present value to `stop`, on either side, or at the
+    grazing that ends admissibility.
+
+    Parameters
+    ----------
+    orbit : Orbit
+        Where to begin.
+    parameter : str
+        mu, A, Omega, r or lam.
+    stop : float
+        The other end of the range; the branch sets out towards it.
+    at : sequence of float
+        Values of the parameter that are to be among the orbits, on every sheet of the branch.
+    step : float
+        Largest step, relative to the size of range and unknowns.
+    beyond_grazing : bool
+        Whether to go on where the orbits are no longer admissible.
+    max_points : int
+        Most steps.
+
+    Returns
+    -------
+    Branch
+
+    Raises
+    ------
+    ParameterError
+        If the parameter does not exist, `stop` is out of its range or its present value, or the orbit is of a kind that
+        cannot be followed.
+    OrbitNotFound
+        If the branch is lost while a bifurcation is being located.
+
+    Notes
+    -----
+    Each bifurcation is the root of its defining equation along the branch (docs/orbits.md, "Bifurcations"), not an
+    interpolation.
+
+    Examples
+    --------
+    >>> from vines.model import Params
+    >>> from vines.orbits import symmetric_orbits
+    >>> branch = continue_orbit(symmetric_orbits(Params(mu=0.01, A=0.016))[0], "A", 0.02)
+    >>> [(b.type, round(b.value, 4)) for b in branch.bifurcations]
+    [('symmetry_breaking', 0.018)]
+    """
+    if parameter not in PARAMETER_NAMES:
+        raise ParameterError(f"unknown parameter {parameter!r}: {nearest(str(parameter), PARAMETER_NAMES)}")
+    start = getattr(orbit.params, parameter)
+    stop = getattr(orbit.params.replace(**{parameter: stop}), parameter)
+    if start == stop:
+        raise ParameterError(f"stop is {stop:g}, which is where {parameter} is already; give another value")
+    if not 0 < step <= 1:
+        raise ParameterError(f"step is {step!r}, allowed is 0 < step <= 1")
+    walk = _Walk(_problem(orbit, parameter), orbit, stop, tuple(at), step, beyond_grazing, max_points)
+    return walk.run()
+
+
+def _problem(orbit: Orbit, parameter: str) -> Problem:
+    if orbit.symmetric and len(orbit.word) == 2:
+        return SymmetricProblem(orbit, parameter)
+    raise ParameterError(f"{orbit.word} is asymmetric or not 1:1/pT; only symmetric 1:1/pT orbits can be followed")
+
+
+@dataclass
+class _Walk:
+    """One run of the continuation."""
+
+    problem: Problem
+    orbit: Orbit
+    stop: float
+    at: tuple[float, ...]
+    step: float
+    beyond_grazing: bool
+    max_points: int
+    orbits: list[Orbit] = field(default_factory=list)
+    bifurcations: list[Bifurcation] = field(default_factory=list)
+    events: list[Bifurcation] = field(default_factory=list)
+
+    def run(self) -> Branch:
+        start = float(self.problem.start[-1])
+        self.low, self.high = sorted((start, self.stop))
+        self.curve = Curve(self.problem, self.high - self.low)
+        self.conditions = conditions(self.orbit.symmetric)
+        towards = np.zeros(len(self.problem.start))
+        towards[-1] = np.sign(self.stop - start)
+        here = Point(self.problem.start, self.curve.tangent(self.problem.start, towards), self.orbit)
+        self.orbits.append(self.orbit)
+        end = self._follow(here)
+        return Branch(
+            self.problem.word,
+            self.problem.parameter,
+            tuple(self.orbits),
+            tuple(self.bifurcations),
+            tuple(self.events),
+            ("range", end),
+        )
+
+    def _follow(self, here: Point) -> str:
+        length = self.step / 4
+        for _ in range(self.max_points):
+            there, iterations, last = self._advance(here, length)
+            while there is None:
+                length /= 2
+                if length < _SMALLEST_STEP:
+                    return "lost"
+                there, iterations, last = self._advance(here, length)
+            if self._record(here, there):
+                return GRAZING
+            if last:
+                return "range"
+            if iterations <= 5 and here.tangent @ there.tangent > math.sqrt(_SHARPEST_TURN):
+                length = min(1.5 * length, self.step)
+            here = there
+        return "points"
+
+    def _advance(self, here: Point, length: float) -> tuple[Point | None, int, bool]:
+        """Return the next point, how many Newton steps it took, and whether it is at the end of the range."""
+        found = self.curve.correct(here.y + length * self.curve.scale * here.tangent, here.tangent)
+        if found is None:
+            return None, 0, False
+        y, iterations = found
+        last = not self.low < y[-1] < self.high
+        if last:
+            bound = self.low if y[-1] <= self.low else self.high
+            share = (bound - here.value) / (y[-1] - here.value) if y[-1] != here.value else 1.0
+            exact = self.curve.at_value(here.y + share * (y - here.y), bound)
+            if exact is None:
+                return None, 0, False
+            y = exact
+        there = self.curve.point(y, (y - here.y) / self.curve.scale)
+        turned = here.tangent @ there.tangent < _SHARPEST_TURN
+        return (None, 0, False) if turned else (there, iterations, last)
+
+    def _record(self, here: Point, there: Point) -> bool:
+        """Add what lies between two points, and the second one; say whether the branch ends at a grazing there."""
+        met = sorted(
+            (hit for condition in self.conditions if (hit := self._locate(condition, here, there)) is not None),
+            key=lambda hit: hit[0],
+        )
+        before = here
+        for _, kind, point in met:
+            critical = critical_multiplier(kind, point)
+            if critical is None:
+                continue
+            half, whole = critical
+            event = Bifurcation(kind, self.problem.parameter, point.value, point.orbit.params, whole, half, point.orbit)
+            if kind in REMARKS:
+                self.events.append(event)
+                continue
+            self._add_values(before, point)
+            self.bifurcations.append(event)
+            self.orbits.append(point.orbit)
+            before = point
+            if kind == GRAZING and not self.beyond_grazing and grazing_margin(here) > 0:
+                return True
+        self._add_values(before, there)
+        self.orbits.append(there.orbit)
+        return False
+
+    def _locate(self, condition: Condition, here: Point, there: Point) -> tuple[float, str, Point] | None:
+        first, second = condition.function(here), condition.function(there)
+        if not (math.isfinite(first) and math.isfinite(second)) or (first > 0) == (second > 0):
+            return None
+        seen: dict[float, Point] = {0.0: here, 1.0: there}
+
+        def function(fraction: float) -> float:
+            if fraction not in seen:
+                seen[fraction] = self._between(here, there, fraction)
+            return condition.function(seen[fraction])
+
+        root = float(root_scalar(function, bracket=(0.0, 1.0), method="brentq", xtol=1e-15, rtol=1e-14).root)
+        function(root)
+        if condition.type == GRAZING:
+            # Of the points that the search has seen next to the root take one that is still admissible.
+            inside = [fraction for fraction, point in seen.items() if grazing_margin(point) > 0]
+            root = min(inside, key=lambda fraction: abs(fraction - root))
+        return root, condition.type, seen[root]
+
+    def _between(self, here: Point, there: Point, fraction: float) -> Point:
+        point = self.curve.between(here, there, fraction)
+        if point is None:
+            raise OrbitNotFound(
+                f"the {self.problem.word} branch was lost between {self.problem.parameter} = {here.value:.9g} and "
+                f"{there.value:.9g} while a bifurcation was being located; give a smaller step than {self.step:g}"
+            )
+        return point
+
+    def _add_values(self, here: Point, there: Point) -> None:
+        """Add the orbits at the wanted values of the parameter between two points."""
+        low, high = sorted((here.value, there.value))
+        wanted = sorted((value for value in self.at if low < value < high), reverse=here.value > there.value)
+        for value in wanted:
+            share = (value - here.value) / (there.value - here.value)
+            y = self.curve.at_value(here.y + share * (there.y - here.y), value)
+            if y is not None:
+                self.orbits.append(self.problem.orbit(y))

@@ -1,0 +1,184 @@
+"""A periodic orbit: its impacts and everything that is known about it, whatever its word."""
+
+from __future__ import annotations
+
+import hashlib
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+import numpy.typing as npt
+
+from vines.dynamics import Measures
+from vines.dynamics._trajectory import IMPACT
+from vines.model import Params, Word
+
+__all__ = ["Orbit", "short_hash"]
+
+Floats = npt.NDArray[np.float64]
+
+
+def short_hash(*parts: object) -> str:
+    """Return 12 hexadecimal digits of the SHA-256 of the parts' texts.
+
+    Examples
+    --------
+    >>> short_hash("LR", 0.02)
+    'e1a2a4d919e9'
+    """
+    return hashlib.sha256("|".join(str(part) for part in parts).encode()).hexdigest()[:12]
+
+
+@dataclass(frozen=True, eq=False)
+class Orbit:
+    """A periodic solution, stable or not, admissible or not. All values are dimensionless.
+
+    The first impact is that of the canonical word (if its letters repeat, the one of least phase); times are those of
+    a forcing of phase zero at t = 0, the first in [0, T).
+
+    Attributes
+    ----------
+    word : Word
+    params : Params
+    t : (N,) float array
+        Times of the impacts over one period pT.
+    states : (N, 4) float array
+        x1, v1, x2, v2 just before each impact.
+    jacobians : (N, 4, 4) float array
+        Jacobian of the map from each impact to the next in (v1, v2, x2, t).
+    multipliers : (4,) complex array
+        Floquet multipliers over pT, the largest modulus first.
+    half_multipliers : (4,) complex array or None
+        Multipliers of the half map of a symmetric orbit; `multipliers` are their squares.
+    symmetric : bool
+        Whether the orbit is its own mirror image.
+    admissible : bool
+        Whether |w| < 1 strictly between the impacts, certified, and every impact comes from inside the cavity.
+    min_clearance : float
+        Least distance of a turning point of w to the wall it points at, negative beyond it; 2 if no flight turns.
+    violation_time, violation_side : float, int
+        The first contact between the impacts, nan and 0 if there is none.
+    residual : float
+        Largest difference of the end of a flight, flown afresh from each impact, to the next stored state.
+    measures : Measures
+        Energy measures and energy budget over one period pT, in closed form.
+    remark : str
+        What the search has to say, such as how many other solutions there are.
+    """
+
+    word: Word
+    params: Params
+    t: Floats
+    states: Floats
+    jacobians: Floats
+    multipliers: npt.NDArray[np.complex128]
+    half_multipliers: npt.NDArray[np.complex128] | None
+    symmetric: bool
+    admissible: bool
+    min_clearance: float
+    violation_time: float
+    violation_side: int
+    residual: float
+    measures: Measures
+    remark: str = ""
+
+    @property
+    def name(self) -> str:
+        """The type n:m/pT."""
+        return self.word.name
+
+    @property
+    def alias(self) -> str:
+        """The paper's label of the type."""
+        return self.word.alias
+
+    @property
+    def period(self) -> float:
+        """The period pT."""
+        return self.word.p * self.params.period
+
+    @property
+    def side(self) -> npt.NDArray[np.int8]:
+        """The wall of each impact, +1 for L and -1 for R, shape (N,)."""
+        return np.array(self.word.sides, dtype=np.int8)
+
+    @property
+    def w_dot(self) -> Floats:
+        """Relative velocity w' = v1 - v2 just before each impact, shape (N,)."""
+        return self.states[:, 1] - self.states[:, 3]
+
+    @property
+    def phase(self) -> Floats:
+        """Phase of the forcing at each impact, Omega t modulo 2 pi [rad], shape (N,)."""
+        return (self.params.Omega * self.t) % (2 * np.pi)
+
+    @property
+    def flight_times(self) -> Floats:
+        """Time from each impact to the next, the last back to the first, shape (N,)."""
+        return np.diff(self.t, append=self.t[0] + self.period)
+
+    @property
+    def max_multiplier(self) -> float:
+        """Largest modulus of a multiplier over pT."""
+        return float(abs(self.multipliers[0]))
+
+    @property
+    def stable(self) -> bool:
+        """Whether all multipliers lie inside the unit circle."""
+        return self.max_multiplier < 1
+
+    @property
+    def energy_imbalance(self) -> float:
+        """What base work less damper and impact losses leaves over, relative to the base work: rounding."""
+        m = self.measures
+        lost = m.damper_loss + m.impact_loss
+        return (m.base_work - lost) / max(abs(m.base_work), lost)
+
+    @cached_property
+    def orbit_id(self) -> str:
+        """Name of the orbit, from its word, its parameters and its impacts to 1e-8."""
+        coarse = np.round(np.column_stack([self.t, self.states]), 8) + 0.0
+        return short_hash(self.word, *self.params.as_dict().values(), coarse.tolist())
+
+    @property
+    def impacts(self) -> npt.NDArray[np.void]:
+        """The impacts as a structured array with the fields of `Trajectory.impacts`, shape (N,)."""
+        out = np.empty(len(self.t), dtype=IMPACT)
+        out["t"], out["side"], out["w_dot"], out["phase"] = self.t, self.side, self.w_dot, self.phase
+        out["x1"], out["v1"], out["x2"], out["v2"] = self.states.T
+        out["v1_after"], out["v2_after"] = self._after().T
+        out["index"] = np.arange(len(self.t))
+        return out
+
+    def _after(self) -> Floats:
+        """Return v1, v2 just after each impact (paper, eq. (12)), shape (N, 2)."""
+        mu, r = self.params.mu, self.params.r
+        law = np.array([[1 - r * mu, mu * (1 + r)], [1 + r, mu - r]]) / (1 + mu)
+        return self.states[:, [1, 3]] @ law.T
+
+    def start(self) -> dict[str, float]:
+        """Return a state just after the first impact from which `vines.simulate` follows the orbit.
+
+        Returns
+        -------
+        dict
+            x1, v1, x2, v2, t: arguments of `vines.simulate`.
+        """
+        (x1, _, x2, _), (v1, v2) = self.states[0].tolist(), self._after()[0].tolist()
+        return {"x1": x1, "v1": v1, "x2": x2, "v2": v2, "t": float(self.t[0])}
+
+    def __str__(self) -> str:
+        kind = [
+            "symmetric" if self.symmetric else "asymmetric",
+            "stable" if self.stable else "unstable",
+            "admissible"
+            if self.admissible
+            else f"inadmissible (meets side {self.violation_side:+d} at t = {self.violation_time:.6g})",
+        ]
+        return (
+            f"{self.name} ({self.word}) at {self.params}: {', '.join(kind)}, "
+            f"largest multiplier {self.max_multiplier:.6g}, residual {self.residual:.1e}"
+        )
+
+    def __repr__(self) -> str:
+        return f"<Orbit {self}>"

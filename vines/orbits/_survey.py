@@ -1,0 +1,129 @@
+"""One pass over the flights of a closed orbit: Jacobians, how well it closes, and whether it is admissible."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from vines.dynamics._flight import derivatives, phasors, turn
+from vines.dynamics._jit import njit
+from vines.dynamics._saltation import jacobian_kernel
+from vines.orbits._turning import turning_points_kernel
+
+__all__ = ["NO_TURNING", "survey_kernel"]
+
+NO_TURNING = 2.0
+"""Clearance of an orbit whose flights never turn back: the width of the cavity."""
+
+
+@njit
+def _gap(c, zr, zi, qr, qi, x2, v2, tau):
+    """Return w, w', w'' at tau."""
+    zrt, zit, qrt, qit = turn(c.free, c.Omega, zr, zi, qr, qi, tau)
+    x, v, a, _, _ = derivatives(c.free, c.Omega, zrt, zit, qrt, qit)
+    return x - (x2 + v2 * tau), v - v2, a
+
+
+@njit
+def _crossing(c, zr, zi, qr, qi, x2, v2, side, inside, outside):
+    """Return the time in [inside, outside] at which a monotone gap passes the wall."""
+    for _ in range(200):
+        mid = 0.5 * (inside + outside)
+        if mid <= inside or mid >= outside:
+            break
+        if side * _gap(c, zr, zi, qr, qi, x2, v2, mid)[0] < 1.0:
+            inside = mid
+        else:
+            outside = mid
+    return outside
+
+
+@njit
+def _inspect(c, side, x1, v1, x2, v2, phase, tau):
+    """Inspect the flight that starts at `side` just after an impact and lasts tau.
+
+    Returns
+    -------
+    (clearance, violation, wall)
+        Least distance of a turning point to the wall it points at, negative beyond it; time and side of the
+        first contact within the flight, nan and 0 if there is none.
+    """
+    zr, zi, qr, qi = phasors(c.free, c.Omega, x1, v1, phase)
+    _, speed, push = _gap(c, zr, zi, qr, qi, x2, v2, 0.0)
+    clearance = NO_TURNING
+    violation = math.nan
+    wall = 0
+    if side * speed > 0.0 or (speed == 0.0 and side * push >= 0.0):
+        violation = 0.0
+        wall = side
+    before = 0.0
+    for at in turning_points_kernel(c, zr, zi, qr, qi, v2, tau):
+        w, _, bend = _gap(c, zr, zi, qr, qi, x2, v2, at)
+        towards = 1 if bend < 0.0 else -1
+        distance = 1.0 - towards * w
+        clearance = min(clearance, distance)
+        if distance <= 0.0 and wall == 0:
+            wall = towards
+            violation = _crossing(c, zr, zi, qr, qi, x2, v2, towards, before, at)
+        before = at
+    return clearance, violation, wall
+
+
+@njit
+def survey_kernel(c, duration, side, t, states):
+    """Fly a closed orbit once, flight by flight from its stored states.
+
+    Parameters
+    ----------
+    c : vines.dynamics._constants.Constants
+    duration : float
+        Period of the orbit, pT.
+    side : (N,) int array
+    t : (N,) float array
+        Times of the impacts, increasing within one period; the phase of the forcing is zero at t = 0.
+    states : (N, 4) float array
+        x1, v1, x2, v2 just before each impact.
+
+    Returns
+    -------
+    jacobians : (N, 4, 4) float array
+        Saltation Jacobians of the maps from each impact to the next.
+    residual : float
+        Largest difference, in any component, of where a flight ends to the state stored there.
+    clearance : float
+        Least signed distance of a turning point of the gap to the wall it points at, NO_TURNING without one.
+    violation, wall : float, int
+        Time and side of the first contact within a flight, nan and 0 if there is none.
+    """
+    N = t.size
+    jacobians = np.empty((N, 4, 4))
+    residual = 0.0
+    clearance = NO_TURNING
+    violation = math.nan
+    wall = 0
+    for j in range(N):
+        k = (j + 1) % N
+        tau = (t[k] - t[j]) if k > 0 else (t[0] + duration - t[j])
+        phase = (c.Omega * t[j]) % (2.0 * math.pi)
+        x1, v1, x2, v2 = states[j, 0], states[j, 1], states[j, 2], states[j, 3]
+        J, x1n, v1n, v2n = jacobian_kernel(c.mu, c.A, c.Omega, c.r, c.lam, x1, v1, v2, phase, tau)
+        jacobians[j] = J
+        residual = max(
+            residual,
+            abs(x1 - x2 - side[j]),
+            abs(x1n - states[k, 0]),
+            abs(v1n - states[k, 1]),
+            abs(x2 + v2n * tau - states[k, 2]),
+            abs(v2n - states[k, 3]),
+        )
+        after = c.keep1 * v1 + c.pass1 * v2
+        distance, when, where = _inspect(c, side[j], x1, after, x2, v2n, phase, tau)
+        clearance = min(clearance, distance)
+        if where != 0 and wall == 0:
+            violation = t[j] + when
+            wall = where
+        if side[k] * (states[k, 1] - states[k, 3]) <= 0.0 and wall == 0:
+            violation = t[j] + tau
+            wall = side[k]
+    return jacobians, residual, clearance, violation, wall

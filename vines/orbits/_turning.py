@@ -1,0 +1,99 @@
+"""All turning points of a flight, found for certain: what makes admissibility a certificate and not a sample.
+
+Between two consecutive zeros of w' the gap is monotone, so that the extremes of w over a flight are its ends
+and its turning points. The zeros are enclosed by bisection with Taylor bounds on w' (docs/orbits.md,
+"Admissibility"): an interval is left only when w' provably has no zero in it, or exactly one, which is then
+computed.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from vines.dynamics._flight import derivatives, fourth_bound, turn
+from vines.dynamics._jit import njit
+
+__all__ = ["turning_points_kernel"]
+
+_DEEPEST = 80
+"""Intervals on the stack at most; each bisection adds one, and intervals below _SHORTEST are not bisected."""
+
+_SHORTEST = 1e-9
+"""Where w' and w'' may both vanish within so short an interval, w changes by less than rounding in it."""
+
+_ULP = 4e-16
+
+
+@njit
+def _rate(c, zr, zi, qr, qi, drift, tau):
+    """Return u = x1' - drift, u' and u'' at tau."""
+    zrt, zit, qrt, qit = turn(c.free, c.Omega, zr, zi, qr, qi, tau)
+    _, v, a, j, _ = derivatives(c.free, c.Omega, zrt, zit, qrt, qit)
+    return v - drift, a, j
+
+
+@njit
+def _root(c, zr, zi, qr, qi, drift, a, b, ua):
+    """Return the zero of u in [a, b], where u is monotone, has the sign of ua at a and the other one at b."""
+    tau = 0.5 * (a + b)
+    for _ in range(100):
+        u, du, _ = _rate(c, zr, zi, qr, qi, drift, tau)
+        if (u > 0.0) == (ua > 0.0):
+            a = tau
+        else:
+            b = tau
+        moved = tau - u / du if du != 0.0 else 0.5 * (a + b)
+        if not a <= moved <= b:
+            moved = 0.5 * (a + b)
+        if abs(moved - tau) <= _ULP * (1.0 + tau) or b - a <= _ULP * (1.0 + tau):
+            return moved
+        tau = moved
+    return tau
+
+
+@njit
+def turning_points_kernel(c, zr, zi, qr, qi, drift, duration):
+    """Return the times in (0, duration) at which x1' = drift, in order.
+
+    With the velocity of the ball as drift these are the turning points of the gap.
+
+    Parameters
+    ----------
+    c : vines.dynamics._constants.Constants
+    zr, zi, qr, qi : float
+        Phasors of the oscillator at the start of the flight.
+    drift : float
+    duration : float
+    """
+    found = np.empty(16)
+    count = 0
+    left = np.empty(_DEEPEST + 2)
+    right = np.empty(_DEEPEST + 2)
+    left[0], right[0] = 0.0, duration
+    depth = 1
+    slack = 1e-15 * (abs(zr) + abs(zi) + (1.0 + c.Omega) * (abs(qr) + abs(qi)) + abs(drift))
+    while depth > 0:
+        depth -= 1
+        a, b = left[depth], right[depth]
+        h = 0.5 * (b - a)
+        zra, zia, qra, qia = turn(c.free, c.Omega, zr, zi, qr, qi, a)
+        _, va, _, _, ka = derivatives(c.free, c.Omega, zra, zia, qra, qia)
+        bound = fourth_bound(c, zra, zia, qra, qia, ka, 2.0 * h)
+        u, du, ddu = _rate(c, zr, zi, qr, qi, drift, a + h)
+        if abs(u) > slack + h * (abs(du) + h * (0.5 * abs(ddu) + h * bound / 6.0)):
+            continue
+        if abs(du) > h * (abs(ddu) + 0.5 * h * bound):
+            ua = va - drift
+            ub, _, _ = _rate(c, zr, zi, qr, qi, drift, b)
+            if ua * ub < 0.0 or (ua == 0.0 and a > 0.0):
+                if count == found.size:
+                    grown = np.empty(2 * count)
+                    grown[:count] = found
+                    found = grown
+                found[count] = _root(c, zr, zi, qr, qi, drift, a, b, ua) if ua != 0.0 else a
+                count += 1
+        elif h > _SHORTEST and depth < _DEEPEST:
+            left[depth], right[depth] = a + h, b
+            left[depth + 1], right[depth + 1] = a, a + h
+            depth += 2
+    return found[:count].copy()

@@ -1,0 +1,31 @@
+"""Compile every kernel of this room, visibly."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+
+from vines.model import Params
+from vines.orbits._symmetric import symmetric_orbits
+
+__all__ = ["warm_up"]
+
+
+def warm_up(report: Callable[[str], object] = print) -> None:
+    """Compile the kernels of the orbits, or load them from the cache, and report one line.
+
+    Parameters
+    ----------
+    report : callable
+        Takes the line.
+
+    Examples
+    --------
+    >>> lines = []
+    >>> warm_up(lines.append)
+    >>> len(lines)
+    1
+    """
+    began = time.perf_counter()
+    symmetric_orbits(Params(mu=0.01, A=0.017))
+    report(f"  periodic orbits, admissibility: {time.perf_counter() - began:.1f} s")
