@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
@@ -164,7 +165,7 @@ def _draw(
                 group.values[panel][mine],
                 linestyle="none",
                 marker=".",
-                markersize=3.4,
+                markersize=4.8,
                 markeredgewidth=0,
                 color=COLOURS[f"{name} light"],
                 rasterized=bool(np.count_nonzero(mine) > 20_000),
@@ -180,7 +181,7 @@ def _draw(
                 line.values[panel][part],
                 color=colour,
                 linestyle="-" if stable else (0, (1, 1.6)),
-                linewidth=1.3 if stable else 1.5,
+                linewidth=1.1 if stable else 1.4,
                 zorder=2,
             )
     for marker in markers:
@@ -251,4 +252,4 @@ def runs(flags: npt.NDArray[np.bool_]) -> list[tuple[int, int, bool]]:
         return []
     edges = np.flatnonzero(np.diff(flags.astype(np.int8))) + 1
     bounds = [0, *edges.tolist(), len(flags)]
-    return [(a, b, bool(flags[a])) for a, b in zip(bounds[:-1], bounds[1:], strict=True)]
+    return [(a, b, bool(flags[a])) for a, b in itertools.pairwise(bounds)]

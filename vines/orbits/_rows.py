@@ -110,6 +110,8 @@ def bifurcation_row(bifurcation: Bifurcation, branch_id: str | None = None) -> R
         "multiplier_im": bifurcation.multiplier.imag,
         "orbit_id": orbit.orbit_id,
         "t": (orbit.t - orbit.t[0]).tolist(),
+        "side": orbit.side.tolist(),
+        "x1": orbit.states[:, 0].tolist(),
         "w_dot": orbit.w_dot.tolist(),
         "phase": orbit.phase.tolist(),
     }

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
+import numpy as np
+
 from vines.errors import DeclarationError
 from vines.model import Params
 from vines.orbits import bifurcation_row, branch_row, continue_orbit, find_orbit, orbit_row
@@ -19,7 +21,8 @@ def compute(job: WholeJob) -> Batch:
         raise DeclarationError(f"a branch is followed in one parameter, this one varies {len(job.ranges)}")
     (axis, span), *_ = job.ranges.items()
     start = Params(**{**job.params, axis: span.start})
-    branch = continue_orbit(find_orbit(options.word, start), axis, stop=span.stop, points=options.points)
+    at = np.linspace(span.start, span.stop, options.points).tolist()
+    branch = continue_orbit(find_orbit(options.word, start), axis, stop=span.stop, at=at)
     row = branch_row(branch)
     name = row["branch_id"]
     return Batch(

@@ -23,7 +23,7 @@ def compute(job: WholeJob) -> Batch:
     axes = dict.fromkeys(axis for stage in job.inputs.values() for axis in stage.axes)
     if len(axes) != 1:
         raise DeclarationError(
-            f"a bifurcation figure needs stages that vary the same one parameter; these vary {', '.join(axes) or 'none'}"
+            f"a bifurcation figure needs stages that vary one and the same parameter; here: {', '.join(axes) or 'none'}"
         )
     (axis,) = axes
     dots = [_dots(stage, axis) for stage in job.inputs.values() if "impacts" in stage.tables]

@@ -60,7 +60,10 @@ class SweepOptions(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 
 class BranchOptions(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """A family of periodic orbits of one word, followed in the varied parameter."""
+    """A family of periodic orbits of one word, followed in the varied parameter.
+
+    `points` values of the parameter, evenly spaced from end to end, are among the orbits on every sheet of the branch.
+    """
 
     word: str
     points: int = 400

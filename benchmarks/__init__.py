@@ -1,0 +1,1 @@
+"""Speed and size: each script prints what it measured; medians of at least five."""

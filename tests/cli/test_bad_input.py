@@ -1,0 +1,82 @@
+"""Bad input: one clear line, exit 2, nothing written."""
+
+import pytest
+
+PIPELINE = """
+title = "a test"
+[params]
+mu = 0.01
+Omega = 1.0
+[stages.up]
+kind = "sweep"
+vary.A = { from = 0.015, to = 0.016, count = 3 }
+settle = 10
+record = 4
+"""
+
+BAD = {
+    "unknown parameter": ("mu = 0.01", "mue = 0.01", "'mu'"),
+    "unknown kind": ('"sweep"', '"swep"', "'sweep'"),
+    "misspelt option": ("settle = 10", "settel = 10", "'settle'"),
+    "misspelt stage key": ("vary.A", "vari.A", "'vary'"),
+    "misspelt top key": ("title =", "titel =", "'title'"),
+    "misspelt axis": ("vary.A", "vary.B", "allowed"),
+    "r above 1": ("Omega = 1.0", "r = 1.2", "0 <= r <= 1"),
+    "mu not positive": ("mu = 0.01", "mu = 0.0", "mu > 0"),
+    "lam too large": ("Omega = 1.0", "lam = 2.0", "0 <= lam < 2"),
+    "ball outside": ("settle = 10", "settle = 10\nstart = { x1 = 1.5 }", "|w| <= 1"),
+    "wrong type": ("settle = 10", 'settle = "ten"', "settle"),
+    "no TOML": ("[params]", "[params", "line"),
+}
+
+
+@pytest.mark.parametrize("case", BAD)
+def test_bad_declaration(project, case):
+    old, new, expected = BAD[case]
+    assert old in PIPELINE
+    (project.root / "pipelines" / "mine.toml").write_text(PIPELINE.replace(old, new))
+    done = project.vines("run", "mine", check=False)
+    assert done.returncode == 2
+    assert done.stdout == ""
+    assert done.stderr.count("\n") == 1
+    assert "Traceback" not in done.stderr
+    assert expected in done.stderr
+    assert not (project.data / "results").exists()
+    assert not (project.data / "points").exists()
+
+
+def test_a_declaration_that_needs_itself(project):
+    figure = '\n[stages.a]\nkind = "figure"\nplot = "bifurcation"\nneeds = ["b"]\n'
+    other = figure.replace("stages.a", "stages.b").replace('["b"]', '["a"]')
+    (project.root / "pipelines" / "mine.toml").write_text(PIPELINE + figure + other)
+    done = project.vines("run", "mine", check=False)
+    assert (done.returncode, done.stderr.count("\n")) == (2, 1)
+    assert "itself" in done.stderr
+
+
+@pytest.mark.parametrize(
+    ("arguments", "expected"),
+    [
+        (["run", "quickstrt"], "'quickstart'"),
+        (["run", "no/such/file.toml"], "file.toml"),
+        (["rnu", "quickstart"], "'run'"),
+        (["run", "quickstart", "nosuchstage"], "nosuchstage"),
+        (["run", "quickstart", "--set", "params.mue=1"], "'mu'"),
+        (["run", "quickstart", "--set", "params.r=2"], "0 <= r <= 1"),
+        (["run", "quickstart", "--set", "nonsense"], "nonsense"),
+        (["schema", "piont"], "allowed"),
+        (["query", "select * from nosuch"], "nosuch"),
+        (["query", "selec 1"], "selec"),
+        (["view", "quickstart.symmetric_run"], "run"),
+        (["view", "missing.mcap"], "missing.mcap"),
+        (["check", "quickstart"], "run"),
+        (["check", "quickstrt"], "quickstrt"),
+    ],
+)
+def test_wrong_use(project, arguments, expected):
+    done = project.vines(*arguments, check=False)
+    assert done.returncode == 2, done.stdout
+    assert "Traceback" not in done.stderr
+    assert done.stderr.count("\n") == 1, done.stderr
+    assert expected in done.stderr
+    assert not (project.data / "results").exists()

@@ -1,0 +1,65 @@
+"""What all tests share: compiled kernels from the project's cache, and one run of the quickstart to look at."""
+
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from vines.places import cache_folder
+
+REPOSITORY = Path(__file__).resolve().parent.parent
+
+# Tests keep their results in temporary folders; the kernels they use are those that `make run` compiled.
+os.environ.setdefault("NUMBA_CACHE_DIR", str(cache_folder()))
+os.environ["RERUN_ANALYTICS"] = "0"
+os.environ.pop("VINES_ROOT", None)
+os.environ.pop("VINES_DATA", None)
+
+
+class Project:
+    """A project in a temporary folder and its command line."""
+
+    def __init__(self, root: Path):
+        self.root = root
+
+    def vines(self, *arguments, check=True, **options):
+        """Run the command line in a process of its own."""
+        environment = {**os.environ, "VINES_ROOT": str(self.root), "COLUMNS": "160"}
+        done = subprocess.run(
+            [sys.executable, "-m", "vines.cli", *map(str, arguments)],
+            capture_output=True,
+            text=True,
+            cwd=self.root,
+            env=environment,
+            timeout=300,
+            check=False,
+            **options,
+        )
+        if check:
+            assert done.returncode == 0, done.stderr + done.stdout
+        return done
+
+    @property
+    def data(self):
+        """The folder of results."""
+        return self.root / "data"
+
+
+@pytest.fixture()
+def project(tmp_path):
+    """Return a project of its own with the pipelines of vines."""
+    shutil.copytree(REPOSITORY / "pipelines", tmp_path / "pipelines")
+    return Project(tmp_path)
+
+
+@pytest.fixture(scope="session")
+def quickstart(tmp_path_factory):
+    """Return a project in which the pipeline quickstart has been run once; not to be changed."""
+    root = tmp_path_factory.mktemp("quick start")  # a path with a space in it
+    shutil.copytree(REPOSITORY / "pipelines", root / "pipelines")
+    project = Project(root)
+    project.first = project.vines("run", "quickstart")
+    return project

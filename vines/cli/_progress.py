@@ -1,0 +1,132 @@
+"""Progress of a run: bars on a terminal, plain lines in a log, nothing when asked."""
+
+from __future__ import annotations
+
+import sys
+import time
+from types import TracebackType
+from typing import TYPE_CHECKING, Any
+
+import click
+
+if TYPE_CHECKING:
+    from vines.pipeline import Event
+
+__all__ = ["Lines", "Quiet", "progress"]
+
+PAUSE = 2.0
+"""Seconds between two plain lines of the same stage."""
+
+
+class Quiet:
+    """Says nothing."""
+
+    def __enter__(self) -> Quiet:
+        return self
+
+    def __exit__(self, *ignored: object) -> None:
+        return None
+
+    def __call__(self, event: Event) -> None:
+        """Take note of nothing."""
+        del event
+
+
+class Lines(Quiet):
+    """A line when a stage starts and ends, and every few seconds in between, with rate and time left."""
+
+    def __init__(self) -> None:
+        self._started: dict[str, tuple[float, int]] = {}
+        self._said = 0.0
+
+    def __call__(self, event: Event) -> None:
+        """Write a line if there is something new to say."""
+        now = time.monotonic()
+        match event.what:
+            case "waiting":
+                click.echo("waiting for another vines run on the same data", err=True)
+            case "started":
+                self._started[event.stage] = (now, event.done)
+                self._said = now
+                if event.wanted > 1:
+                    click.echo(
+                        f"{event.stage}: {event.wanted - event.done} of {event.wanted} points to compute ({event.text})"
+                    )
+            case "progress" if now - self._said >= PAUSE:
+                self._said = now
+                click.echo(f"{event.stage}: {event.done} of {event.wanted}{self._pace(event, now)}")
+            case "done":
+                click.echo(f"{event.stage}: done{self._took(event, now)}{_failures(event)}")
+            case "failed" | "skipped":
+                click.echo(f"{event.stage}: {event.what}: {event.text}", err=True)
+            case _:
+                pass
+
+    def _pace(self, event: Event, now: float) -> str:
+        start, before = self._started.get(event.stage, (now, event.done))
+        fresh = event.done - before
+        if fresh <= 0 or now <= start:
+            return ""
+        rate = fresh / (now - start)
+        return f", {rate:.0f} points/s, {(event.wanted - event.done) / rate:.0f} s left{_failures(event)}"
+
+    def _took(self, event: Event, now: float) -> str:
+        start, _ = self._started.get(event.stage, (now, 0))
+        points = f", {event.wanted} points" if event.wanted > 1 else ""
+        return f"{points} ({now - start:.1f} s)"
+
+
+class Bars(Lines):
+    """A bar for each stage that is computed."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
+        from rich.progress import TimeRemainingColumn as Remaining
+
+        self._bars = Progress(
+            TextColumn("{task.description:18s}"),
+            BarColumn(bar_width=28),
+            MofNCompleteColumn(),
+            TimeElapsedColumn(),
+            Remaining(),
+            TextColumn("{task.fields[note]}"),
+        )
+        self._tasks: dict[str, Any] = {}
+
+    def __enter__(self) -> Bars:
+        self._bars.start()
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self._bars.stop()
+
+    def __call__(self, event: Event) -> None:
+        """Move the bar of the stage."""
+        match event.what:
+            case "started":
+                self._tasks[event.stage] = self._bars.add_task(
+                    event.stage, total=event.wanted, completed=event.done, note=""
+                )
+            case "progress" | "done" if event.stage in self._tasks:
+                completed = event.wanted if event.what == "done" else event.done
+                self._bars.update(self._tasks[event.stage], completed=completed, note=_failures(event))
+            case "waiting":
+                self._bars.console.print("waiting for another vines run on the same data")
+            case "failed" | "skipped":
+                self._bars.console.print(f"{event.stage}: {event.what}: {event.text}", markup=False)
+            case _:
+                pass
+
+
+def progress(quiet: bool) -> Quiet:
+    """Return what shows the progress of a run on this kind of output."""
+    if quiet:
+        return Quiet()
+    return Bars() if sys.stdout.isatty() else Lines()
+
+
+def _failures(event: Event) -> str:
+    return f", {event.failed} failed" if event.failed else ""

@@ -1,0 +1,39 @@
+"""``vines status [NAME]``: what is computed, what is stale, and why."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import asdict
+
+import click
+
+
+@click.command("status")
+@click.argument("name", required=False)
+@click.option("--json", "as_json", is_flag=True, help="For machines.")
+def command(name: str | None, as_json: bool) -> None:
+    """Say what is computed, what is stale, and why: of the pipeline NAME, or of all."""
+    from vines.cli._layout import print_rows
+    from vines.stages import list_pipelines, status
+
+    names = [name] if name is not None else [row["name"] for row in list_pipelines()]
+    plans = {each: status(each) for each in names}
+    if as_json:
+        click.echo(json.dumps({each: [asdict(p) for p in found] for each, found in plans.items()}, indent=2))
+        return
+    if name is None:
+        rows = []
+        for each, found in plans.items():
+            ready = sum(p.state == "up_to_date" for p in found)
+            first = next((f"{p.name}: {p.reason}" for p in found if p.state != "up_to_date"), "up to date")
+            rows.append([each, f"{ready} of {len(found)}", first])
+        print_rows(["pipeline", "stages ready", "first to do"], rows, wrap=2)
+        return
+    print_rows(
+        ["stage", "kind", "state", "points", "failed", "why"],
+        [
+            [p.name, p.kind, p.state.replace("_", " "), f"{p.done}/{p.wanted}", p.failed or "", p.reason]
+            for p in plans[name]
+        ],
+        wrap=5,
+    )

@@ -1,0 +1,57 @@
+"""Stages: the only room that sees physics and stored things. One module a kind, and the functions that users call.
+
+Lazy (PEP 562): a list or a status loads no numba, pyarrow, rerun or matplotlib.
+"""
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from vines.stages._asking import checks, list_tables, query, table, write_query
+    from vines.stages._finding import find_logs
+    from vines.stages._found import found
+    from vines.stages._kinds import register_kinds
+    from vines.stages._running import list_pipelines, load_pipeline, open_store, run, status, warm_up
+    from vines.stages._study import init_study
+
+__all__ = [
+    "checks",
+    "find_logs",
+    "found",
+    "init_study",
+    "list_pipelines",
+    "list_tables",
+    "load_pipeline",
+    "open_store",
+    "query",
+    "register_kinds",
+    "run",
+    "status",
+    "table",
+    "warm_up",
+    "write_query",
+]
+
+_HOME = {
+    "checks": "_asking",
+    "find_logs": "_finding",
+    "found": "_found",
+    "init_study": "_study",
+    "list_pipelines": "_running",
+    "list_tables": "_asking",
+    "load_pipeline": "_running",
+    "open_store": "_running",
+    "query": "_asking",
+    "register_kinds": "_kinds",
+    "run": "_running",
+    "status": "_running",
+    "table": "_asking",
+    "warm_up": "_running",
+    "write_query": "_asking",
+}
+
+
+def __getattr__(name: str) -> Any:
+    if name not in _HOME:
+        raise AttributeError(f"module 'vines.stages' has no attribute {name!r}")
+    return getattr(import_module(f"vines.stages.{_HOME[name]}"), name)

@@ -1,0 +1,108 @@
+"""The short screen at the end of a run: what was found, where it lies, and what to type next."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections import Counter
+from collections.abc import Iterable
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from vines.stages._running import load_pipeline, open_store
+
+if TYPE_CHECKING:
+    from vines.store import Result, Store
+
+__all__ = ["found"]
+
+
+def found(name: str) -> list[str]:
+    """Return the lines of the screen.
+
+    What was found is read from the result tables once and kept in the cache, under a name made of the keys of the
+    results, so that a run with nothing to do stays quick.
+    """
+    store = open_store()
+    declared = load_pipeline(name)
+    pipeline = declared.name
+    pins = store.pins(pipeline)
+    results = {
+        stage: store.result(pins[stage]["result"])
+        for stage in declared.stages
+        if stage in pins and store.has(pins[stage]["result"])
+    }
+    if not results:
+        return []
+    findings = _cached(store, pipeline, results)
+    lines = ["Found", *(f"  {line}" for line in findings), "", "Files", *_files(store, results), "", "Next"]
+    lines += [f"  {command:68s} {what}" for command, what in _next(pipeline, results)]
+    return lines
+
+
+def _cached(store: Store, pipeline: str, results: dict[str, Result]) -> list[str]:
+    identity = hashlib.sha256(json.dumps({stage: r.key for stage, r in results.items()}).encode()).hexdigest()[:20]
+    file = store.cache / "found" / f"{pipeline}-{identity}.json"
+    try:
+        return json.loads(file.read_text("utf-8"))
+    except (OSError, ValueError):
+        pass
+    lines = list(_findings(results))
+    file.parent.mkdir(parents=True, exist_ok=True)
+    file.write_text(json.dumps(lines), encoding="utf-8")
+    return lines
+
+
+def _findings(results: dict[str, Result]) -> Iterable[str]:
+    for stage, result in results.items():
+        if "bifurcations" in result.tables:
+            for row in result.table("bifurcations").to_pylist():
+                what = row["type"].replace("_", " ")
+                yield f"{what} at {row['parameter']} = {row['value']:.6g} on the {row['name']} orbit  ({stage})"
+        if "points" in result.tables:
+            yield f"{_attractors(result.table('points').to_pylist())}  ({stage})"
+    verdicts = Counter(
+        row["verdict"] for r in results.values() if "checks" in r.tables for row in r.table("checks").to_pylist()
+    )
+    if verdicts:
+        total = sum(verdicts.values())
+        yield f"{verdicts['reproduced']} of {total} published values reproduced"
+
+
+def _attractors(rows: list[dict[str, Any]]) -> str:
+    """Return what the points of a stage settled to, the most frequent first."""
+    kinds = Counter(row["name"] if row["settled"] and row["name"] else row["regime"] or row["status"] for row in rows)
+    if len(rows) == 1:
+        (row,) = rows
+        side = "" if row["symmetric"] is None else ("symmetric " if row["symmetric"] else "asymmetric ")
+        alias = f" (the paper's {row['alias']})" if row["alias"] != row["name"] else ""
+        return f"A = {row['A']:g}: {side}{next(iter(kinds))}{alias}, max|x1| {row['reduction']:.3g} of that with no ball"
+    listed = ", ".join(f"{count} {kind}" for kind, count in kinds.most_common(6))
+    return f"{len(rows)} points: {listed}"
+
+
+def _files(store: Store, results: dict[str, Result]) -> Iterable[str]:
+    tables = sum(len(result.tables) for result in results.values())
+    logs = [path for result in results.values() for path in result.logs.values()]
+    pictures = [r.folder / "picture.png" for r in results.values() if (r.folder / "picture.png").is_file()]
+    yield f"  {_short(store.data / 'results')}: {tables} Parquet tables" + (f", {len(logs)} MCAP logs" if logs else "")
+    for picture in pictures:
+        yield f"  {_short(picture)} (and .svg)"
+
+
+def _next(pipeline: str, results: dict[str, Result]) -> Iterable[tuple[str, str]]:
+    logged = [stage for stage, result in results.items() if result.logs]
+    if logged:
+        yield f"vines view {pipeline}.{logged[0]}", "see a run in the Rerun viewer"
+    if any("points" in result.tables for result in results.values()):
+        yield 'vines query "select A, name, reduction from points order by A"', "ask the tables in SQL"
+    if any("checks" in result.tables for result in results.values()):
+        yield f"vines check {pipeline}", "compare with the published values"
+
+
+def _short(path: Path) -> str:
+    """Return a path as seen from the current folder where that is shorter."""
+    try:
+        return str(path.relative_to(Path.cwd()))
+    except ValueError:
+        return str(path)
