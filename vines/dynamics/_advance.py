@@ -40,7 +40,10 @@ __all__ = [
     "X2",
     "advance",
     "begin",
+    "new_state",
+    "pass_over",
     "set_state",
+    "shift_time",
     "state_now",
 ]
 
@@ -282,3 +285,19 @@ def _too_many(state, cap, period):
 def new_state() -> np.ndarray:
     """Return room for the state of a run."""
     return np.zeros(STATE)
+
+
+@njit
+def pass_over(c, state, stop, cap, rows):
+    """Run on to `stop` keeping no row; `rows` is only room to work in. Returns COMPLETE, EVENT_CAP or STEP_LIMIT."""
+    status = BUFFER_FULL
+    while status == BUFFER_FULL:
+        _, status = advance(c, state, stop, cap, rows, 0)
+    return status
+
+
+@njit
+def shift_time(state, by):
+    """Count the time of a run from an origin that lies `by` later."""
+    state[S_T] -= by
+    state[S_PERIOD_START] -= by

@@ -61,7 +61,8 @@ os.environ["NUMBA_CACHE_DIR"] = str(CACHE)
 
 import numba  # noqa: E402 - only now, because numba reads the name of its cache when it is imported
 
-numba.config.CACHE_DIR = str(CACHE)  # pyright: ignore[reportPrivateImportUsage, reportAttributeAccessIssue] - numba may be loaded already
+# numba may have been loaded already, in which case it has read another name.
+numba.config.CACHE_DIR = str(CACHE)  # pyright: ignore[reportPrivateImportUsage, reportAttributeAccessIssue]
 
 
 def njit(function: _Function) -> _Function:
