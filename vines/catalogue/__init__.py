@@ -1,0 +1,21 @@
+"""The catalogue: what is pinned now, as views of an in-memory DuckDB."""
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from vines.catalogue._catalogue import Catalogue, connect, connect_tables
+
+__all__ = ["Catalogue", "connect", "connect_tables"]
+
+_HOMES = {
+    "Catalogue": "vines.catalogue._catalogue",
+    "connect": "vines.catalogue._catalogue",
+    "connect_tables": "vines.catalogue._catalogue",
+}
+
+
+def __getattr__(name: str) -> Any:
+    if name not in _HOMES:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    return getattr(import_module(_HOMES[name]), name)

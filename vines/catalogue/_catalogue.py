@@ -1,0 +1,170 @@
+"""Views over stored tables, and SQL on them. Nothing is downloaded and nothing written."""
+
+from __future__ import annotations
+
+import contextlib
+import re
+from collections.abc import Callable, Iterator, Mapping
+from types import TracebackType
+from typing import TYPE_CHECKING, Any
+
+from vines import schema
+from vines.catalogue._views import define_views, quote, select
+from vines.errors import QueryError, UnknownNameError, nearest
+from vines.store import Store
+
+if TYPE_CHECKING:
+    import pyarrow as pa
+
+__all__ = ["Catalogue", "connect", "connect_tables"]
+
+_NO_TABLE = re.compile(r"Table with name (\S+) does not exist")
+_KIND = re.compile(r"^(Catalog|Parser|Binder|Conversion|Invalid Input|Out of Range) Error: ")
+
+
+class Catalogue:
+    """An open connection; close it, or use it in a ``with`` statement.
+
+    Parameters
+    ----------
+    connection : duckdb.DuckDBPyConnection
+        In memory, with the views defined.
+    names : sequence of str
+        The views there are.
+    """
+
+    def __init__(self, connection: Any, names: list[str]) -> None:
+        self._connection = connection
+        self.names = tuple(names)
+
+    def __enter__(self) -> Catalogue:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.close()
+
+    def close(self) -> None:
+        """Close the connection."""
+        self._connection.close()
+
+    def query(self, sql: str) -> pa.Table:
+        """Answer a query with an Arrow table.
+
+        Raises
+        ------
+        QueryError
+            If the query cannot be answered; one line, with the nearest table if one was misspelt.
+        """
+        return self._run(sql, lambda relation: relation.to_arrow_table())
+
+    def fetch(self, sql: str) -> tuple[list[str], list[tuple[Any, ...]]]:
+        """Answer a query with the names of the columns and the rows; quicker than Arrow for what is only shown.
+
+        Raises
+        ------
+        QueryError
+            As :meth:`query`.
+        """
+        return self._run(sql, lambda relation: (list(relation.columns), relation.fetchall()))
+
+    def table(self, name: str) -> pa.Table:
+        """Return all rows of a view.
+
+        Parameters
+        ----------
+        name : str
+            A table of ``schemas/``, ``<pipeline>.<stage>`` for the primary table of one stage, or
+            ``<pipeline>.<stage>.<table>``.
+
+        Raises
+        ------
+        UnknownNameError
+            If there is no such view.
+        """
+        if name not in self.names:
+            raise UnknownNameError(f"unknown table {name!r}: {nearest(name, self.names)}")
+        return self.query(f"select * from {quote(name)}")
+
+    def _run(self, sql: str, take: Callable[[Any], Any]) -> Any:
+        import duckdb
+
+        try:
+            relation = self._connection.sql(sql)
+            if relation is None:
+                raise QueryError(f"{sql.strip()[:60]!r} asks for nothing; write a query such as 'select * from points'")
+            return take(relation)
+        except duckdb.Error as error:
+            raise QueryError(self._say(str(error))) from None
+
+    def _say(self, text: str) -> str:
+        unknown = _NO_TABLE.search(text)
+        if unknown:
+            name = unknown.group(1)
+            return f"no table {name!r}: {nearest(name, self.names)}"
+        lines = [line.strip() for line in text.splitlines() if line.strip() and not line.startswith("LINE ")]
+        told = [line for line in lines[1:] if line.startswith(("Candidate", "Did you mean"))]
+        return "; ".join([_KIND.sub("", lines[0]) if lines else "the query failed", *told])
+
+
+def connect(store: Store) -> Catalogue:
+    """Open the catalogue of what is pinned in a store.
+
+    There is one view a table of ``schemas/`` over all stages, with the columns ``pipeline`` and ``stage`` first, empty
+    where nothing was computed yet; and for each stage ``"<pipeline>.<stage>"`` with its primary table and
+    ``"<pipeline>.<stage>.<table>"`` with the others. The first also answers without quotes.
+
+    Parameters
+    ----------
+    store : Store
+        Where the results are.
+
+    Examples
+    --------
+    >>> from pathlib import Path
+    >>> with connect(Store(Path("nowhere"))) as catalogue:
+    ...     catalogue.fetch("select count(*) from points")
+    (['count_star()'], [(0,)])
+    """
+    connection = _open()
+    return Catalogue(connection, define_views(connection, store))
+
+
+@contextlib.contextmanager
+def connect_tables(
+    tables: Mapping[str, Mapping[str, Any]],
+) -> Iterator[Callable[[str], list[tuple[Any, ...]]]]:
+    """Ask tables in memory as if they were in the catalogue.
+
+    Parameters
+    ----------
+    tables : mapping
+        Arrow tables of stages by table of ``schemas/`` and stage: ``{"points": {"up": table}}``.
+
+    Yields
+    ------
+    callable
+        Takes SQL and returns the rows as tuples. Raises `QueryError`.
+    """
+    connection = _open()
+    try:
+        for name, spec in schema.tables().items():
+            pieces = []
+            for i, (stage, table) in enumerate(tables.get(name, {}).items()):
+                connection.register(f"vines_{name}_{i}", table)
+                pieces.append(select(spec, "", stage, f"vines_{name}_{i}", table.column_names))
+            view = " UNION ALL ".join(pieces) or select(spec, "", "", None, ())
+            connection.execute(f"CREATE VIEW {quote(name)} AS {view}")
+        catalogue = Catalogue(connection, list(schema.tables()))
+        yield lambda sql: catalogue.fetch(sql)[1]
+    finally:
+        connection.close()
+
+
+def _open() -> Any:
+    import duckdb
+
+    return duckdb.connect(
+        ":memory:", config={"autoinstall_known_extensions": "false", "autoload_known_extensions": "false"}
+    )
