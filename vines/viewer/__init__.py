@@ -1,0 +1,23 @@
+"""Runs in the Rerun viewer: a recording, a picture, or a window.
+
+Importing this room loads no rerun: each function does when it is called.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from vines.viewer._show import save_rrd, screenshot, view
+
+if TYPE_CHECKING:
+    from vines.viewer._layout import Shown, blueprint
+
+__all__ = ["Shown", "blueprint", "save_rrd", "screenshot", "view"]
+
+
+def __getattr__(name: str) -> Any:
+    if name not in {"Shown", "blueprint"}:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    from vines.viewer import _layout
+
+    return getattr(_layout, name)

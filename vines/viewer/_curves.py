@@ -1,0 +1,113 @@
+"""The curves over time: ends and ball, w, w', the energies and their running balance."""
+
+from __future__ import annotations
+
+import numpy as np
+import rerun as rr
+
+from vines.viewer._clock import Clock
+from vines.viewer._style import BALL, BASE, DAMPER, IMPACTS, LEFT, LINE, MASS, RIGHT, SPRING, STORED
+
+__all__ = ["balance", "curves"]
+
+_Colour = tuple[int, int, int]
+
+
+def balance(states: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
+    """Return the running energy balance since the first state.
+
+    Parameters
+    ----------
+    states : dict of str to numpy.ndarray, shape (n,)
+        Columns of ``vines.v1.State``, n > 0.
+
+    Returns
+    -------
+    dict of str to numpy.ndarray, shape (n,)
+        In M b² omega0², each 0 at first: ``base_work``, ``damper_loss``, ``impact_loss`` and ``stored`` (change of
+        kinetic and potential energy); base_work = damper_loss + impact_loss + stored but for rounding.
+    """
+    stored = states["kinetic_1"] + states["kinetic_2"] + states["potential"]
+    since = {name: states[name] - states[name][0] for name in ("base_work", "damper_loss", "impact_loss")}
+    return {**since, "stored": stored - stored[0]}
+
+
+def curves(
+    rec: rr.RecordingStream,
+    root: str,
+    states: dict[str, np.ndarray],
+    impacts: dict[str, np.ndarray],
+    clock: Clock,
+) -> None:
+    """Send all curves and the marks of the impacts on them.
+
+    Parameters
+    ----------
+    rec : rerun.RecordingStream
+        Where they go.
+    root : str
+        Path of the entities.
+    states, impacts : dict of str to numpy.ndarray
+        Columns of ``vines.v1.State`` (n > 0 rows) and ``vines.v1.Impact``.
+    clock : Clock
+        Gives rows their times.
+    """
+    x1, x2 = states["x1"], states["x2"]
+    indexes = clock.columns(states["t"])
+    # The LEFT end is at x1 - 1: there x2 = x1 - 1, so w = x1 - x2 = +1.
+    ends: list[tuple[str, np.ndarray, _Colour]] = [
+        ("right end, x1 + 1", x1 + 1.0, RIGHT),
+        ("ball, x2", x2, BALL),
+        ("left end, x1 − 1", x1 - 1.0, LEFT),
+    ]
+    _lines(rec, f"{root}/ends", ends, indexes)
+    _lines(rec, f"{root}/w/gap", [("w", states["w"], LINE)], indexes)
+    _lines(rec, f"{root}/w_dot/rate", [("w'", states["w_dot"], LINE)], indexes)
+    total = states["kinetic_1"] + states["kinetic_2"] + states["potential"]
+    energies: list[tuple[str, np.ndarray, _Colour]] = [
+        ("total", total, MASS),
+        ("mass, v1²/2", states["kinetic_1"], LINE),
+        ("spring, (x1 − e)²/2", states["potential"], SPRING),
+        ("ball, µ v2²/2", states["kinetic_2"], BALL),
+    ]
+    _lines(rec, f"{root}/energy", energies, indexes)
+    parts = balance(states)
+    running: list[tuple[str, np.ndarray, _Colour]] = [
+        ("work of the base", parts["base_work"], BASE),
+        ("lost in the damper", parts["damper_loss"], DAMPER),
+        ("lost in impacts", parts["impact_loss"], IMPACTS),
+        ("stored", parts["stored"], STORED),
+    ]
+    _lines(rec, f"{root}/balance", running, indexes)
+
+    for name, side, colour in (("left", 1, LEFT), ("right", -1, RIGHT)):
+        hits = impacts["side"] == side
+        if not hits.any():
+            continue
+        times = clock.columns(impacts["t"][hits])
+        for path, values in (
+            ("ends", impacts["x2"]),
+            ("w", np.asarray(impacts["side"], float)),
+            ("w_dot", impacts["w_dot"]),
+        ):
+            marks = f"{root}/{path}/{name}"
+            style = rr.SeriesPoints(
+                colors=colour, markers="circle", marker_sizes=4.0, names=f"impact {name[0].upper()}"
+            )
+            rec.log(marks, style, static=True)
+            rec.send_columns(marks, indexes=times, columns=rr.Scalars.columns(scalars=values[hits]))
+
+
+def _lines(
+    rec: rr.RecordingStream,
+    path: str,
+    series: list[tuple[str, np.ndarray, _Colour]],
+    indexes: list[rr.TimeColumn],
+) -> None:
+    """Send several curves as one entity, which is the smaller and faster form."""
+    names, values, colours = zip(*series, strict=True)
+    style = rr.SeriesLines(colors=list(colours), widths=[1.6] * len(series), names=list(names))
+    rec.log(path, style, static=True)
+    every = np.column_stack(values)
+    columns = rr.Scalars.columns(scalars=every.ravel()).partition(np.full(len(every), len(series)))
+    rec.send_columns(path, indexes=indexes, columns=columns)

@@ -1,0 +1,168 @@
+"""The blueprint: which views there are and where."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import rerun.blueprint as rrb
+from rerun.blueprint.encodings import TimelineColumn
+
+from vines.viewer._clock import CYCLE, SIM_TIME
+from vines.viewer._scene import CAVITY_BOUNDS, PHASE_BOUNDS
+
+__all__ = ["Shown", "blueprint"]
+
+_WINDOW = 20
+"""Forcing cycles up to which curves show a whole run; longer runs scroll with the time cursor."""
+_TRAIL = 0.25
+"""Length of the trail in the phase plane, in forcing cycles."""
+_DARK = [13, 17, 23]
+
+
+@dataclass(frozen=True)
+class Shown:
+    """What the layout must know of a run.
+
+    Attributes
+    ----------
+    root : str
+        Path of its entities, such as ``"/run"``.
+    name : str
+        What it is called.
+    start, end : float
+        First and last time, 1/omega0.
+    period : float
+        Forcing period, 1/omega0.
+    """
+
+    root: str
+    name: str
+    start: float
+    end: float
+    period: float
+
+
+def blueprint(runs: Sequence[Shown], *, still: bool = False) -> rrb.Blueprint:
+    """Return the layout for one run, or for several side by side with one time cursor.
+
+    Parameters
+    ----------
+    runs : sequence of Shown
+        At least one.
+    still : bool
+        For a picture that nobody can pan: curves leave room for their legends, the top bar is hidden.
+    """
+    panel = rrb.TimePanel(
+        state="collapsed", timeline=SIM_TIME, play_state="paused", loop_mode="all", playback_speed=2.0
+    )
+    if len(runs) == 1:
+        (run,) = runs
+        body = rrb.Horizontal(
+            rrb.Vertical(
+                _cavity(run), _ends(run, still), _gap(run, still), _rate(run, still), row_shares=[2.75, 2.5, 2.0, 2.0]
+            ),
+            rrb.Vertical(_phase(run), _energy(run, still), _balance(run, still), row_shares=[4.4, 2.4, 2.4]),
+            rrb.Vertical(_about(run), _impacts(run), row_shares=[4.6, 4.6]),
+            column_shares=[4.6, 3.6, 2.6],
+        )
+    else:
+        body = rrb.Horizontal(*(_column(run, still) for run in runs))
+    parts = (body, panel, rrb.TopPanel(state="hidden")) if still else (body, panel)
+    return rrb.Blueprint(*parts, collapse_panels=True)
+
+
+def _column(run: Shown, still: bool) -> rrb.Vertical:
+    """Return one of several runs beside each other."""
+    more = rrb.Tabs(_impacts(run), _about(run), _energy(run, still), _balance(run, still))
+    return rrb.Vertical(
+        _cavity(run),
+        _phase(run),
+        _gap(run, still),
+        _rate(run, still),
+        more,
+        row_shares=[2.7, 3.6, 1.7, 1.9, 1.9],
+    )
+
+
+def _cavity(run: Shown) -> rrb.Spatial2DView:
+    (left, right), (top, bottom) = CAVITY_BOUNDS
+    return rrb.Spatial2DView(
+        origin=f"{run.root}/cavity",
+        name=f"Cavity and ball, to scale: {run.name}",
+        background=_DARK,
+        visual_bounds=rrb.VisualBounds2D(x_range=(left, right), y_range=(top, bottom)),
+    )
+
+
+def _phase(run: Shown) -> rrb.Spatial2DView:
+    (left, right), (top, bottom) = PHASE_BOUNDS
+    back = {SIM_TIME: _TRAIL * run.period, CYCLE: _TRAIL}
+    return rrb.Spatial2DView(
+        origin=f"{run.root}/phase",
+        name="Phase plane: w across, w' up, trail of a quarter cycle",
+        background=_DARK,
+        visual_bounds=rrb.VisualBounds2D(x_range=(left, right), y_range=(top, bottom)),
+        time_ranges=[
+            rrb.VisibleTimeRange(
+                timeline,
+                start=rrb.TimeRangeBoundary.cursor_relative(seconds=-length),
+                end=rrb.TimeRangeBoundary.cursor_relative(),
+            )
+            for timeline, length in back.items()
+        ],
+    )
+
+
+def _series(run: Shown, part: str, name: str, still: bool, legend: bool = True) -> rrb.TimeSeriesView:
+    span = run.end - run.start
+    boundary = rrb.TimeRangeBoundary
+    if span > _WINDOW * run.period:
+        reach = _WINDOW * run.period
+        start = boundary.cursor_relative(seconds=-0.6 * reach)
+        end = boundary.cursor_relative(seconds=0.4 * reach)
+    elif still:
+        start = boundary.absolute(seconds=run.start)
+        end = boundary.absolute(seconds=run.end + 0.3 * span)
+    else:
+        # Without numbers, since they would be those of one timeline only.
+        start, end = boundary.infinite(), boundary.infinite()
+    return rrb.TimeSeriesView(
+        origin=f"{run.root}/{part}",
+        name=name,
+        axis_x=rrb.TimeAxis(view_range=rrb.TimeRange(start=start, end=end)),
+        plot_legend=rrb.PlotLegend(corner=rrb.Corner2D.RightTop, visible=legend),
+    )
+
+
+def _ends(run: Shown, still: bool) -> rrb.TimeSeriesView:
+    return _series(run, "ends", "Ends of the cavity x1 ± 1 and ball x2", still)
+
+
+def _gap(run: Shown, still: bool) -> rrb.TimeSeriesView:
+    return _series(run, "w", "Gap w = x1 − x2: +1 is an impact on L (red), −1 on R (blue)", still, legend=False)
+
+
+def _rate(run: Shown, still: bool) -> rrb.TimeSeriesView:
+    return _series(run, "w_dot", "Rate of the gap w', marked just before impacts on L (red) and R (blue)", still, False)
+
+
+def _energy(run: Shown, still: bool) -> rrb.TimeSeriesView:
+    return _series(run, "energy", "Energy", still)
+
+
+def _balance(run: Shown, still: bool) -> rrb.TimeSeriesView:
+    return _series(run, "balance", "Running balance: work = damper + impacts + stored", still)
+
+
+def _impacts(run: Shown) -> rrb.TextLogView:
+    hidden = [TimelineColumn(timeline, visible=False) for timeline in (SIM_TIME, CYCLE)]
+    return rrb.TextLogView(
+        origin=f"{run.root}/impacts",
+        name="Impacts",
+        columns=rrb.TextLogColumns(timeline_columns=hidden, text_log_columns=["LogLevel", "Body"]),
+    )
+
+
+def _about(run: Shown) -> rrb.TextDocumentView:
+    return rrb.TextDocumentView(origin=f"{run.root}/about", name="Parameters")

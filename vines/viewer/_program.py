@@ -1,0 +1,147 @@
+"""Start the Rerun viewer, with a window or without, and wait for it."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import socket
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Iterator
+from importlib.util import find_spec
+from pathlib import Path
+from typing import IO, TYPE_CHECKING
+
+from vines.errors import ViewerError
+
+if TYPE_CHECKING:
+    from rerun.experimental import ViewerClient
+
+__all__ = ["headless", "native"]
+
+_START_SECONDS = 60.0
+_NO_VULKAN = ("Failed to get render context", "No graphics adapter", "No suitable graphics adapter")
+"""What the viewer says on its way out where there is no Vulkan."""
+_VULKAN = "on Debian: apt-get install mesa-vulkan-drivers libvulkan1"
+
+
+def _command(file: Path, port: int) -> list[str]:
+    """Return the command line that both ways of starting share: it listens on this machine only."""
+    spec = find_spec("rerun_cli")
+    folder = Path(spec.origin).parent if spec and spec.origin else None
+    name = "rerun.exe" if sys.platform == "win32" else "rerun"
+    if folder is None or not (folder / name).is_file():
+        raise ViewerError("the Rerun viewer is not installed; pip install rerun-sdk")
+    return [str(folder / name), str(file), "--bind", "127.0.0.1", "--port", str(port), "--hide-welcome-screen"]
+
+
+def _environment(**more: str) -> dict[str, str]:
+    return {**os.environ, "RERUN_ANALYTICS": "0", "NO_COLOR": "1", **more}
+
+
+def _free_port() -> int:
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        return probe.getsockname()[1]
+
+
+def native(file: Path) -> None:
+    """Show a recording in a window and wait until it is closed.
+
+    Parameters
+    ----------
+    file : Path
+        The .rrd file.
+
+    Raises
+    ------
+    ViewerError
+        If there is no display, or the viewer cannot start.
+    """
+    if sys.platform.startswith("linux") and not (os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")):
+        raise ViewerError(
+            "the viewer needs a display and none is set (DISPLAY, WAYLAND_DISPLAY); "
+            "write a picture with --png FILE or a recording with --save FILE.rrd"
+        )
+    with tempfile.TemporaryFile() as said:
+        command = _command(file, _free_port())
+        status = subprocess.run(command, env=_environment(), stdout=said, stderr=said, check=False).returncode
+        if status != 0:
+            raise ViewerError(_why(said, status))
+
+
+@contextlib.contextmanager
+def headless(file: Path, size: tuple[int, int]) -> Iterator[ViewerClient]:
+    """Run the viewer without a window on a recording, loaded; it ends with the context.
+
+    Parameters
+    ----------
+    file : Path
+        The .rrd file.
+    size : tuple of int
+        Width and height of what is drawn, in points.
+
+    Raises
+    ------
+    ViewerError
+        If the viewer cannot start (no Vulkan) or does not load the recording within a minute.
+    """
+    from rerun.experimental import ViewerClient
+
+    port = _free_port()
+    arguments = ["--headless", "--window-size", f"{size[0]}x{size[1]}"]
+    # The viewer's memory is a folder of its own: a layout that someone saved must not alter a picture. What it
+    # logs below an error would show as notices over the views.
+    with tempfile.TemporaryFile() as said, tempfile.TemporaryDirectory() as memory:
+        environment = _environment(XDG_DATA_HOME=memory, XDG_CONFIG_HOME=memory, RUST_LOG="error")
+        command = [*_command(file, port), *arguments]
+        process = subprocess.Popen(command, env=environment, stdout=said, stderr=said)
+        try:
+            deadline = time.monotonic() + _START_SECONDS
+            client = None
+            while client is None:
+                if process.poll() is not None:
+                    raise ViewerError(_why(said, process.returncode))
+                if time.monotonic() > deadline:
+                    raise ViewerError(f"the viewer did not load {file.name} within {_START_SECONDS:g} s; try again")
+                time.sleep(0.2)
+                client = _loaded(ViewerClient, port)
+            yield client
+        finally:
+            process.terminate()
+            try:
+                process.wait(timeout=10)
+            except subprocess.TimeoutExpired:
+                process.kill()
+                process.wait()
+
+
+def _loaded(kind: type[ViewerClient], port: int) -> ViewerClient | None:
+    """Return a client once the viewer answers and has its recording and its views, else None."""
+    with socket.socket() as probe:
+        probe.settimeout(1.0)
+        if probe.connect_ex(("127.0.0.1", port)) != 0:
+            return None
+    try:
+        client = kind.connect(f"rerun+http://127.0.0.1:{port}/proxy")
+        state = client.get_state()
+    except (RuntimeError, ConnectionError, ValueError):
+        return None
+    ready = state.recordings and state.recordings[0].timelines and state.views and not state.loading
+    return client if ready else None
+
+
+def _why(said: IO[bytes], status: int) -> str:
+    """Return one line about a viewer that ended by itself, from what it printed."""
+    said.seek(0)
+    text = said.read().decode(errors="replace")
+    if any(sign in text for sign in _NO_VULKAN):
+        return f"the viewer found no graphics adapter; Mesa's software Vulkan will do ({_VULKAN})"
+    lines = [line.strip() for line in text.splitlines() if line.strip()]
+    telling = [line for line in lines if line.startswith("Error") or "panicked" in line] or lines or ["it said nothing"]
+    return (
+        f"the viewer ended with status {status}: {telling[-1]}; "
+        "write a recording with --save FILE.rrd and open it where there is a display"
+    )

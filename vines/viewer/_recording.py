@@ -1,0 +1,117 @@
+"""From logs to a Rerun recording."""
+
+from __future__ import annotations
+
+import hashlib
+import math
+import re
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pyarrow as pa
+import rerun as rr
+
+from vines.errors import ViewerError
+from vines.logs import Log
+from vines.viewer._clock import Clock
+from vines.viewer._curves import curves
+from vines.viewer._layout import Shown, blueprint
+from vines.viewer._scene import cavity, phase_plane
+from vines.viewer._text import about, send_impact_log
+
+__all__ = ["APPLICATION", "write_recording"]
+
+APPLICATION = "vines"
+"""Application id under which the viewer keeps layouts."""
+
+
+def write_recording(logs: Sequence[Log], out: Path, *, still: bool = False) -> None:
+    """Write runs as one recording, side by side, with the layout that shows them.
+
+    Parameters
+    ----------
+    logs : sequence of Log
+        At least one; each needs a state.
+    out : Path
+        The .rrd file, replaced if it exists.
+    still : bool
+        Whether its layout is for a picture.
+
+    Raises
+    ------
+    ViewerError
+        If there is no log, or a log without a state.
+    """
+    if not logs:
+        raise ViewerError("no log was named; name one or more, as in `vines view quickstart.up`")
+    roots = _roots([log.name for log in logs])
+    shown: list[Shown] = []
+    for root, log in zip(roots, logs, strict=True):
+        if not log.states.num_rows:
+            raise ViewerError(f"{log.path} holds no states, so there is nothing to show; record the run with samples")
+        times = log.states["t"].to_numpy()
+        period = 2 * math.pi / log.parameters.get("Omega", 1.0)
+        shown.append(Shown(root, log.name, float(times[0]), float(times[-1]), period))
+    rec = rr.RecordingStream(APPLICATION, recording_id=_identity(logs), send_properties=False)
+    rec.save(out, default_blueprint=blueprint(shown, still=still))
+    rec.send_recording_name(", ".join(log.name for log in logs))
+    rec.send_property("vines", _properties(logs))
+    for root, log in zip(roots, logs, strict=True):
+        _send(rec, root, log)
+    rec.flush()
+    rec.disconnect()
+
+
+def _send(rec: rr.RecordingStream, root: str, log: Log) -> None:
+    """Send one run."""
+    states, impacts = _columns(log.states), _columns(log.impacts)
+    clock = Clock(float(states["t"][0]), float(states["phase"][0]), log.parameters.get("Omega"))
+    cavity(rec, f"{root}/cavity", states, clock)
+    phase_plane(rec, f"{root}/phase", states, impacts, clock)
+    curves(rec, root, states, impacts, clock)
+    send_impact_log(rec, f"{root}/impacts", impacts, clock)
+    rec.log(f"{root}/about", rr.TextDocument(about(log), media_type=rr.MediaType.MARKDOWN), static=True)
+
+
+def _columns(table: pa.Table) -> dict[str, np.ndarray]:
+    return {name: table[name].to_numpy() for name in table.column_names}
+
+
+def _roots(names: Sequence[str]) -> list[str]:
+    """Return one entity path a run, readable and unlike the others.
+
+    Examples
+    --------
+    >>> _roots(["fig2.a up", "fig2.a up"])
+    ['/fig2_a_up', '/fig2_a_up_2']
+    """
+    roots: list[str] = []
+    for name in names:
+        base = "/" + (re.sub(r"[^A-Za-z0-9]+", "_", name).strip("_") or "run")
+        root, number = base, 1
+        while root in roots:
+            number += 1
+            root = f"{base}_{number}"
+        roots.append(root)
+    return roots
+
+
+def _identity(logs: Sequence[Log]) -> str:
+    """Return an id that is the same for the same logs, so that opening them twice shows them once."""
+    digest = hashlib.sha256()
+    for log in logs:
+        digest.update(repr((log.name, log.provenance, log.parameters, log.states.num_rows)).encode())
+        digest.update(log.states["w"].to_numpy().tobytes())
+    return digest.hexdigest()[:32]
+
+
+def _properties(logs: Sequence[Log]) -> rr.AnyValues:
+    """Return what a catalogue of recordings shows as columns: names, parameters and provenance."""
+    properties: dict[str, Any] = {"name": [log.name for log in logs]}
+    for key in dict.fromkeys(key for log in logs for key in log.parameters):
+        properties[key] = [log.parameters.get(key, math.nan) for log in logs]
+    for key in dict.fromkeys(key for log in logs for key in log.provenance):
+        properties[f"provenance_{key}"] = [log.provenance.get(key, "") for log in logs]
+    return rr.AnyValues(**properties)

@@ -1,0 +1,199 @@
+"""The two drawn views: cavity and ball to scale, and the phase plane.
+
+Lengths are those of the model (in b), and y points down as in every 2-D view of Rerun. The ball is drawn as a disc
+while the model's is a point, so the ends of the cavity are drawn one radius further out: disc and wall touch exactly
+when ``|w| = 1``.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import rerun as rr
+
+from vines.viewer._clock import Clock
+from vines.viewer._style import BALL, BASE, GRID, LEFT, LINE, MASS, RIGHT, SPRING, TRAIL
+
+__all__ = ["CAVITY_BOUNDS", "PHASE_BOUNDS", "cavity", "phase_plane"]
+
+_RADIUS = 0.09
+_WALL = 0.07
+_HEIGHT = 0.34
+_MOUNT = -2.9
+"""Where the shaken base is drawn, in b left of the middle; only its displacement is to scale."""
+_FLOOR = 0.62
+CAVITY_BOUNDS = ((-3.2, 2.4), (-0.85, 1.05))
+"""What the view of the cavity shows, x and y, unless a run moves further."""
+PHASE_BOUNDS = ((-1.4, 1.2), (-0.9, 1.13))
+"""What the view of the phase plane shows, in the units in which w is drawn."""
+_HIGHEST = 0.75
+"""Height in the phase plane at which the largest ``|w'|`` of a run is drawn."""
+
+
+def cavity(rec: rr.RecordingStream, root: str, states: dict[str, np.ndarray], clock: Clock) -> None:
+    """Draw the shaken base, the spring, the mass with its cavity, and the ball.
+
+    Parameters
+    ----------
+    rec : rerun.RecordingStream
+        Where it goes.
+    root : str
+        Path of the entities.
+    states : dict of str to numpy.ndarray, shape (n,)
+        Columns of ``vines.v1.State``, n > 0.
+    clock : Clock
+        Gives rows their times.
+    """
+    x1, x2, base = states["x1"], states["x2"], states["base"]
+    indexes = clock.columns(states["t"])
+    inner = 1.0 + _RADIUS
+    outer = inner + 2 * _WALL
+    for name, sign, colour in (("left", -1, LEFT), ("right", 1, RIGHT)):
+        x = sign * (inner + _WALL)
+        rec.log(
+            f"{root}/mass/{name}",
+            rr.LineStrips2D([[(x, -_HEIGHT + _WALL), (x, _HEIGHT - _WALL)]], radii=_WALL, colors=colour),
+            static=True,
+        )
+    shell = [[(-outer, y), (outer, y)] for y in (-_HEIGHT - 0.04, _HEIGHT + 0.04)]
+    rec.log(f"{root}/mass/shell", rr.LineStrips2D(shell, radii=0.04, colors=MASS), static=True)
+    _write(rec, f"{root}/mass/names", [(-inner - _WALL, -0.64), (inner + _WALL, -0.64)], ["L", "R"])
+    _move(rec, f"{root}/mass", indexes, x1)
+
+    rec.log(f"{root}/ball", rr.Points2D([(0.0, 0.0)], radii=_RADIUS, colors=BALL, draw_order=40.0), static=True)
+    _move(rec, f"{root}/ball", indexes, x2)
+
+    wall = [[(0.0, -_HEIGHT - 0.1), (0.0, _HEIGHT + 0.1)]]
+    rec.log(f"{root}/base", rr.LineStrips2D(wall, radii=0.05, colors=BASE), static=True)
+    _move(rec, f"{root}/base", indexes, _MOUNT + base)
+
+    turns = np.concatenate([[0.0, 0.12], np.linspace(0.16, 0.84, 13), [0.88, 1.0]])
+    sway = np.concatenate([[0.0, 0.0], 0.14 * (-1.0) ** np.arange(13), [0.0, 0.0]])
+    coil = np.column_stack([turns, sway])
+    rec.log(f"{root}/spring", rr.LineStrips2D([coil], radii=rr.Radius.ui_points(1.2), colors=SPRING), static=True)
+    length = x1 - outer - (_MOUNT + base)
+    _move(rec, f"{root}/spring", indexes, _MOUNT + base, scale=length)
+
+    reach = max(2.0, float(np.ceil(np.abs(np.concatenate([x1, x2])).max())))
+    ticks = np.arange(-reach, reach + 0.5)
+    strips = [[(-reach, _FLOOR), (reach, _FLOOR)], *([(x, _FLOOR), (x, _FLOOR + 0.06)] for x in ticks)]
+    rec.log(f"{root}/ruler", rr.LineStrips2D(strips, radii=rr.Radius.ui_points(0.8), colors=GRID), static=True)
+    _write(rec, f"{root}/ruler/scale", [(x, _FLOOR + 0.2) for x in ticks], [f"{x:g}" for x in ticks])
+
+
+def phase_plane(
+    rec: rr.RecordingStream,
+    root: str,
+    states: dict[str, np.ndarray],
+    impacts: dict[str, np.ndarray],
+    clock: Clock,
+) -> None:
+    """Draw the orbit in the plane of w and w', its recent part as a trail, where it is now, and its impacts.
+
+    Parameters
+    ----------
+    rec : rerun.RecordingStream
+        Where it goes.
+    root : str
+        Path of the entities; their positions are (w, w').
+    states, impacts : dict of str to numpy.ndarray
+        Columns of ``vines.v1.State`` (n > 0 rows) and ``vines.v1.Impact``.
+    clock : Clock
+        Gives rows their times.
+    """
+    indexes = clock.columns(states["t"])
+    path = np.column_stack([states["w"], states["w_dot"]])
+    after = impacts["v1_after"] - impacts["v2_after"]
+    fastest = float(np.abs(np.concatenate([states["w_dot"], impacts["w_dot"], after])).max()) or 1.0
+    stretch = _HIGHEST / fastest
+    # Beneath the origin of the view, whose own transform would not show.
+    root = f"{root}/plane"
+    rec.log(root, rr.Transform3D(scale=[1.0, -stretch, 1.0]), static=True)
+    thin = rr.Radius.ui_points(0.8)
+    rec.log(
+        f"{root}/orbit",
+        rr.LineStrips2D([path], radii=rr.Radius.ui_points(1.0), colors=LINE, draw_order=10.0),
+        static=True,
+    )
+
+    pieces = np.stack([np.concatenate([path[:1], path[:-1]]), path], axis=1)
+    trail = rr.LineStrips2D.columns(strips=list(pieces))
+    rec.log(
+        f"{root}/trail",
+        rr.LineStrips2D.from_fields(radii=rr.Radius.ui_points(2.2), colors=TRAIL, draw_order=20.0),
+        static=True,
+    )
+    rec.send_columns(f"{root}/trail", indexes=indexes, columns=trail)
+    rec.log(
+        f"{root}/now",
+        rr.Points2D([(0.0, 0.0)], radii=rr.Radius.ui_points(6.0), colors=BALL, draw_order=40.0),
+        static=True,
+    )
+    _move(rec, f"{root}/now", indexes, path[:, 0], path[:, 1])
+
+    for name, side, colour in (("left", 1, LEFT), ("right", -1, RIGHT)):
+        hits = impacts["side"] == side
+        marks = np.column_stack([np.full(hits.sum(), float(side)), impacts["w_dot"][hits]])
+        leaves = np.column_stack([np.full(hits.sum(), float(side)), after[hits]])
+        if len(marks):
+            size = rr.Radius.ui_points(4.5)
+            rec.log(
+                f"{root}/impacts/{name}",
+                rr.Points2D(np.concatenate([marks, leaves]), radii=size, colors=colour, draw_order=30.0),
+                static=True,
+            )
+    top = fastest * 1.12
+    frame = [
+        [(-1.0, -top), (-1.0, top)],
+        [(1.0, -top), (1.0, top)],
+        [(-1.0, 0.0), (1.0, 0.0)],
+        [(0.0, -top), (0.0, top)],
+    ]
+    rec.log(
+        f"{root}/frame",
+        rr.LineStrips2D(frame, radii=thin, colors=[RIGHT, LEFT, GRID, GRID], draw_order=1.0),
+        static=True,
+    )
+    step = _step(fastest)
+    marks = np.arange(-np.floor(fastest / step), np.floor(fastest / step) + 0.5) * step
+    _write(rec, f"{root}/frame/w_dot", [(-1.18, v) for v in marks], [f"{v:.3g}" for v in marks])
+    _write(rec, f"{root}/frame/w", [(x, -top * 1.13) for x in (-1.0, 0.0, 1.0)], ["R  w = −1", "0", "L  w = +1"])
+
+
+def _move(
+    rec: rr.RecordingStream,
+    path: str,
+    indexes: list[rr.TimeColumn],
+    x: np.ndarray,
+    y: np.ndarray | float = 0.0,
+    *,
+    scale: np.ndarray | None = None,
+) -> None:
+    """Move what is drawn at a path; ``scale`` stretches it in x."""
+    zero = np.zeros_like(x)
+    at = np.column_stack([x, zero + y, zero])
+    if scale is None:
+        columns = rr.Transform3D.columns(translation=at)
+    else:
+        columns = rr.Transform3D.columns(translation=at, scale=np.column_stack([scale, zero + 1.0, zero + 1.0]))
+    rec.send_columns(path, indexes=indexes, columns=columns)
+
+
+def _write(rec: rr.RecordingStream, path: str, places: list[tuple[float, float]], texts: list[str]) -> None:
+    """Write labels without marks."""
+    rec.log(
+        path,
+        rr.Points2D(places, radii=0.0, labels=texts, show_labels=True, colors=MASS, draw_order=50.0),
+        static=True,
+    )
+
+
+def _step(reach: float) -> float:
+    """Return a round step that divides ``reach`` into two to five.
+
+    Examples
+    --------
+    >>> _step(1.3), _step(0.04)
+    (0.5, 0.01)
+    """
+    base = 10.0 ** np.floor(np.log10(reach))
+    return float(next(base * k for k in (0.1, 0.2, 0.5, 1.0, 2.0, 5.0) if reach / (base * k) <= 5.0))

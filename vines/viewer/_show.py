@@ -1,0 +1,185 @@
+"""What the room offers: a recording, a picture, a window. Rerun is loaded only when one is asked for."""
+
+from __future__ import annotations
+
+import os
+import secrets
+import tempfile
+import time
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from vines.errors import FileMissingError, ViewerError
+from vines.logs import Log, read
+
+if TYPE_CHECKING:
+    from rerun.experimental import ViewerClient
+
+__all__ = ["save_rrd", "screenshot", "view"]
+
+_SETTLE_SECONDS = 30.0
+_PAUSE_SECONDS = 0.4
+
+
+def save_rrd(logs: Sequence[str | os.PathLike[str] | Log], out: str | os.PathLike[str]) -> Path:
+    """Write runs as one Rerun recording with its layout.
+
+    A recording is made for one minor version of Rerun and can be made again: keep the logs.
+
+    Parameters
+    ----------
+    logs : sequence of path-like or Log
+        One run, or several to be shown side by side.
+    out : path-like
+        The .rrd file; an existing one is replaced.
+
+    Returns
+    -------
+    Path
+        The file.
+
+    Raises
+    ------
+    FileMissingError
+        If a log or the folder of `out` does not exist.
+    LogError
+        If a log is damaged or incomplete.
+    ViewerError
+        If there is nothing to show.
+    """
+    with _replacing(Path(out)) as partial:
+        _record(logs, partial)
+    return Path(out)
+
+
+def screenshot(
+    logs: Sequence[str | os.PathLike[str] | Log],
+    out: str | os.PathLike[str],
+    *,
+    at: float | None = None,
+    size: tuple[int, int] = (1600, 900),
+) -> Path:
+    """Draw runs as the viewer shows them, without a window, and keep the picture.
+
+    Parameters
+    ----------
+    logs : sequence of path-like or Log
+        One run, or several side by side.
+    out : path-like
+        The PNG file; an existing one is replaced.
+    at : float, optional
+        Time of the cursor, 1/omega0; shortly after an impact past the middle of the first run if left out.
+    size : tuple of int
+        Width and height in pixels.
+
+    Returns
+    -------
+    Path
+        The file.
+
+    Raises
+    ------
+    FileMissingError
+        If a log or the folder of `out` does not exist.
+    LogError
+        If a log is damaged or incomplete.
+    ViewerError
+        If the viewer cannot start (it needs Vulkan; Mesa's software one will do), a view reports an error, or the
+        picture does not come to rest.
+    """
+    from vines.viewer._program import headless
+
+    runs = _logs(logs)
+    with _replacing(Path(out)) as partial, tempfile.TemporaryDirectory() as folder:
+        recording = Path(folder) / "still.rrd"
+        _record(runs, recording, still=True)
+        with headless(recording, size) as viewer:
+            from vines.viewer._clock import SIM_TIME
+
+            viewer.set_time(SIM_TIME, duration=_moment(runs[0]) if at is None else at, play_state="paused")
+            picture = _at_rest(viewer)
+            reports = [
+                f"{view.name}: {report.summary}"
+                for view in viewer.get_state().views
+                for report in view.reports
+                if report.severity == "error"
+            ]
+        if reports:
+            raise ViewerError(f"the viewer could not draw {'; '.join(reports)}")
+        partial.write_bytes(picture)
+    return Path(out)
+
+
+def view(logs: Sequence[str | os.PathLike[str] | Log]) -> None:
+    """Show runs in the viewer and wait until its window is closed.
+
+    Parameters
+    ----------
+    logs : sequence of path-like or Log
+        One run, or several side by side.
+
+    Raises
+    ------
+    FileMissingError
+        If a log does not exist.
+    LogError
+        If a log is damaged or incomplete.
+    ViewerError
+        If there is no display, or the viewer cannot start.
+    """
+    from vines.viewer._program import native
+
+    with tempfile.TemporaryDirectory() as folder:
+        recording = Path(folder) / "vines.rrd"
+        _record(logs, recording)
+        native(recording)
+
+
+def _logs(logs: Sequence[str | os.PathLike[str] | Log]) -> list[Log]:
+    return [log if isinstance(log, Log) else read(log) for log in logs]
+
+
+def _record(logs: Sequence[str | os.PathLike[str] | Log], out: Path, *, still: bool = False) -> None:
+    runs = _logs(logs)
+    os.environ.setdefault("RERUN_ANALYTICS", "0")
+    from vines.viewer._recording import write_recording
+
+    write_recording(runs, out, still=still)
+
+
+@contextmanager
+def _replacing(target: Path) -> Iterator[Path]:
+    """Give a file to write beside the target, which takes its place when all went well."""
+    if not target.parent.is_dir():
+        raise FileMissingError(f"the folder {target.parent} of {target.name} does not exist; create it first")
+    partial = target.with_name(f".{target.name}.{os.getpid()}.{secrets.token_hex(4)}.part")
+    try:
+        yield partial
+        partial.replace(target)
+    finally:
+        partial.unlink(missing_ok=True)
+
+
+def _moment(log: Log) -> float:
+    """Return a time at which a picture shows something: a tenth of a cycle after an impact past the middle."""
+    times = log.states["t"].to_numpy()
+    middle = float(times[0] + 0.55 * (times[-1] - times[0]))
+    later = [t for t in log.impacts["t"].to_pylist() if t > middle]
+    if not later:
+        return middle
+    return min(later[0] + 0.1 * 6.2832 / log.parameters.get("Omega", 1.0), float(times[-1]))
+
+
+def _at_rest(viewer: ViewerClient) -> bytes:
+    """Return a picture once two in a row are equal: views have settled and notices have gone."""
+    deadline = time.monotonic() + _SETTLE_SECONDS
+    before = b""
+    while time.monotonic() < deadline:
+        time.sleep(_PAUSE_SECONDS)
+        picture = viewer.take_screenshot()
+        if picture == before:
+            return picture
+        before = picture
+    raise ViewerError(f"the picture did not come to rest within {_SETTLE_SECONDS:g} s; try again on an idle machine")

@@ -1,0 +1,79 @@
+"""What the viewer says in words: the impacts as a log, and a run's parameters and origin."""
+
+from __future__ import annotations
+
+import numpy as np
+import rerun as rr
+
+from vines.logs import Log
+from vines.viewer._clock import Clock
+from vines.viewer._style import LEFT, RIGHT
+
+__all__ = ["about", "impact_lines", "send_impact_log"]
+
+_MEANINGS = {
+    "mu": "mass ratio",
+    "A": "forcing amplitude",
+    "Omega": "forcing frequency",
+    "r": "restitution",
+    "lam": "damping",
+}
+
+
+def impact_lines(impacts: dict[str, np.ndarray]) -> list[str]:
+    """Return one line an impact: its time, the rate of the gap before and after, the phase of the forcing.
+
+    Parameters
+    ----------
+    impacts : dict of str to numpy.ndarray, shape (n,)
+        Columns of ``vines.v1.Impact``.
+    """
+    after = impacts["v1_after"] - impacts["v2_after"]
+    return [
+        f"t {t:.4f}   w' {before:+.4f} → {left:+.4f}   phase {phase / np.pi:.3f}π"
+        for t, before, left, phase in zip(impacts["t"], impacts["w_dot"], after, impacts["phase"], strict=True)
+    ]
+
+
+def send_impact_log(rec: rr.RecordingStream, path: str, impacts: dict[str, np.ndarray], clock: Clock) -> None:
+    """Send the impacts as a text log, L in red and R in blue; nothing is sent where there is none."""
+    if not len(impacts["t"]):
+        return
+    left = impacts["side"] == 1
+    columns = rr.TextLog.columns(
+        text=impact_lines(impacts),
+        level=np.where(left, "L", "R").tolist(),
+        color=np.where(left[:, None], LEFT, RIGHT).astype(np.uint8),
+    )
+    rec.send_columns(path, indexes=clock.columns(impacts["t"]), columns=columns)
+
+
+def about(log: Log) -> str:
+    """Return a run's parameters, counts and provenance as Markdown."""
+    sides = log.impacts["side"].to_numpy()
+    times = log.states["t"].to_numpy()
+    rows = [(_named(name), f"{value:.10g}") for name, value in log.parameters.items()]
+    rows.append(("time t", f"{times[0]:.6g} to {times[-1]:.6g}"))
+    if "Omega" in log.parameters:
+        rows.append(("forcing cycles", f"{(times[-1] - times[0]) * log.parameters['Omega'] / (2 * np.pi):.4g}"))
+    rows.append(("impacts on L and R", f"{(sides == 1).sum()} and {(sides == -1).sum()}"))
+    rows.append(("sticks", str(log.sticks.num_rows)))
+    rows += [(name, _short(text)) for name, text in log.provenance.items()]
+    return "\n".join([f"### {log.name}", "", "| | |", "|---|---|", *(f"| {name} | {text} |" for name, text in rows)])
+
+
+def _named(symbol: str) -> str:
+    """Return a parameter's symbol with what it means.
+
+    Examples
+    --------
+    >>> _named("mu")
+    'mu, mass ratio'
+    """
+    return f"{symbol}, {_MEANINGS[symbol]}" if symbol in _MEANINGS else symbol
+
+
+def _short(text: str, most: int = 36) -> str:
+    """Return text that fits a cell of the table."""
+    flat = " ".join(text.split()).replace("|", "\\|")
+    return flat if len(flat) <= most else flat[: most - 1] + "…"
