@@ -14,6 +14,8 @@ from vines.store import Store
 BODY = '''
 """Bodies of the toy kinds."""
 
+import multiprocessing
+import os
 import time
 from pathlib import Path
 
@@ -29,6 +31,7 @@ class ToyOptions(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     wait: float = 0.0
     bad: tuple[float, ...] = ()
     tally: str = ""
+    die: str = ""
 
 
 class SumOptions(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -41,6 +44,9 @@ def points(job):
     rows, impacts, logs = [], [], {}
     for point in job.points:
         time.sleep(options.wait)
+        if options.die and multiprocessing.parent_process() and not Path(options.die).exists():
+            Path(options.die).touch()
+            os._exit(1)
         if point.params["A"] in options.bad:
             raise ValueError(f"A = {point.params['A']} is bad")
         if options.tally:

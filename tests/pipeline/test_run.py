@@ -146,6 +146,24 @@ def test_one_and_two_processes_make_the_same_bytes(lab, monkeypatch, form):
     assert lab.bytes_of("up") == alone
 
 
+@pytest.mark.parametrize("form", [TOYS, CARRIED.replace("vary.A", "vary.mu = [0.1, 0.2, 0.3]\n    vary.A")])
+def test_a_worker_that_dies_loses_nothing(lab, monkeypatch, form):
+    monkeypatch.setattr("vines.pipeline._engine.compute_all.__defaults__", (0.0,))
+    lab.run(lab.declare(form), jobs=1)
+    undisturbed = lab.rows("up")
+    declared = lab.declare(form.replace('"toy"', f'"toy"\n    die = "{lab.folder / "died"}"'))
+    assert lab.run(declared, jobs=2).ok
+    assert (lab.folder / "died").exists()
+    values = [[(row["A"], row["mu"], row["end_x1"]) for row in rows] for rows in (undisturbed, lab.rows("up"))]
+    assert values[0] == values[1]
+
+
+def test_a_stage_without_axes_is_one_point(lab):
+    summary = lab.run(lab.declare('[stages.one]\nkind = "toy"\nparams.A = 0.3\n'), jobs=1)
+    assert (summary.stages[0].wanted, summary.stages[0].new) == (1, 1)
+    assert len(lab.rows("one")) == 1
+
+
 def test_failed_points_are_rows_with_a_reason_and_can_be_tried_again(lab, tally):
     path, read = tally
     declared = lab.declare(TOYS.replace('"toy"', f'"toy"\n    tally = "{path}"\n    bad = [0.2, 0.33]'))

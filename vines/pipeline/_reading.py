@@ -179,7 +179,9 @@ def _stage(name: str, table: dict[str, Any], spec: Kind, common: dict[str, Any],
     _known(table, [*general, *(field.encode_name for field in fields)], where)
     axes = _axes(table.get("vary", {}), spec, where)
     params = _params(table.get("params", {}), spec, common, axes, path, where)
-    plain = _plain({key: value for key, value in table.items() if key not in _GENERAL})
+    own = {key: value for key, value in table.items() if key not in _GENERAL}
+    _known_inside(own, spec.options, where)
+    plain = {key: _plain(value, f"{where}.{key}") for key, value in own.items()}
     try:
         options = msgspec.convert(plain, spec.options)
     except msgspec.ValidationError as error:
@@ -319,14 +321,24 @@ def _shown(form: object) -> str:
     return str(form) if isinstance(form, Decimal) else repr(form)
 
 
-def _plain(form: Any) -> Any:
-    if isinstance(form, Decimal):
-        return float(form)
+def _plain(form: Any, where: str) -> Any:
+    if isinstance(form, Decimal | float):
+        return float(exact(form, where))
     if isinstance(form, dict):
-        return {key: _plain(value) for key, value in form.items()}
+        return {key: _plain(value, f"{where}.{key}") for key, value in form.items()}
     if isinstance(form, list):
-        return [_plain(value) for value in form]
+        return [_plain(value, f"{where}[{i}]") for i, value in enumerate(form)]
     return form
+
+
+def _known_inside(table: dict[str, Any], struct: type[msgspec.Struct], where: str) -> None:
+    """See that tables inside a stage, such as its start state, have no unknown key either."""
+    for field in msgspec.structs.fields(struct):
+        inner = table.get(field.encode_name)
+        if isinstance(inner, dict) and isinstance(field.type, type) and issubclass(field.type, msgspec.Struct):
+            place = f"{where}.{field.encode_name}"
+            _known(inner, [each.encode_name for each in msgspec.structs.fields(field.type)], place)
+            _known_inside(inner, field.type, place)
 
 
 def _say(error: msgspec.ValidationError, where: str) -> str:

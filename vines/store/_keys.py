@@ -28,6 +28,6 @@ def key_of(form: Any) -> str:
     Examples
     --------
     >>> key_of({"A": 0.02})[:12]
-    'd9ff94e23aa3'
+    '5c2154459499'
     """
     return hashlib.sha256(canonical(form).encode()).hexdigest()

@@ -7,7 +7,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from vines import schema
-from vines.store._atomic import sync_file
 from vines.store._keys import canonical
 
 if TYPE_CHECKING:
@@ -75,5 +74,4 @@ def write_parquet(
         )
     except pa.ArrowException as error:
         raise OSError(f"{path}: {error}") from error
-    sync_file(path)
     return table.num_rows

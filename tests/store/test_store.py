@@ -1,0 +1,195 @@
+"""The store: atomic, deterministic, with provenance and units in the files."""
+
+import json
+import multiprocessing
+import os
+import signal
+import subprocess
+import sys
+import time
+
+import pyarrow.parquet as pq
+import pytest
+
+from vines import schema
+from vines.errors import SchemaError, StoreError, UnknownNameError
+from vines.store import Store, canonical, commit_part, key_of, revision, versions, write_parquet
+
+ROWS = [{"point_id": f"p{i}", "A": 0.1 * i, "status": "ok"} for i in range(5)]
+
+
+def commit(store, key, text="hello", **options):
+    with store.staging() as place:
+        folder = place / "result"
+        folder.mkdir()
+        (folder / "note.txt").write_text(text)
+        about = {"kind": "toy", "tables": {}, "logs": []}
+        return store.commit(key, folder, about, **options)
+
+
+def test_keys_do_not_depend_on_the_order_of_names():
+    assert key_of({"a": 1.0, "b": 2}) == key_of({"b": 2, "a": 1.0})
+    assert key_of({"a": 0.1 + 0.2}) != key_of({"a": 0.3})
+    assert canonical({"ä": True}) == '{"\\u00e4":true}'
+    with pytest.raises(ValueError, match="JSON"):
+        canonical({"a": float("nan")})
+
+
+def test_nothing_is_made_by_reading(tmp_path):
+    store = Store(tmp_path / "data")
+    assert store.pins("any") == {}
+    assert store.pinned() == {}
+    assert not store.has("x")
+    assert store.pool("x").computed() == {}
+    assert not store.data.exists()
+
+
+def test_a_result_is_there_with_its_manifest_and_stays_as_it_is(tmp_path):
+    store = Store(tmp_path)
+    result = commit(store, "k" * 64)
+    assert result.files["note.txt"].read_text() == "hello"
+    assert result.manifest["files"]["note.txt"]["bytes"] == 5
+    assert result.manifest["host"]
+    assert result.damage() == []
+    assert commit(store, "k" * 64, "other").files["note.txt"].read_text() == "hello"
+    assert commit(store, "k" * 64, "other", replace=True).files["note.txt"].read_text() == "other"
+    assert list(store.staging_folder.iterdir()) == []
+
+
+def test_damage_is_found(tmp_path):
+    result = commit(Store(tmp_path), "k" * 64)
+    (result.folder / "note.txt").write_text("hellO")
+    assert result.damage() == ["note.txt is damaged: its checksum differs from the manifest's"]
+    (result.folder / "note.txt").unlink()
+    assert result.damage() == ["note.txt is missing"]
+
+
+def test_what_is_not_there_is_said_in_one_line(tmp_path):
+    store = Store(tmp_path)
+    with pytest.raises(StoreError, match="no result kkkkkkkkkkkk"):
+        store.result("k" * 64)
+    result = commit(store, "k" * 64)
+    with pytest.raises(UnknownNameError, match="no table 'points'"):
+        result.table("points")
+    (result.folder / "manifest.json").write_text("{")
+    with pytest.raises(StoreError, match="--force"):
+        store.result("k" * 64)
+    store.pin("one", "up", {"result": "k"})
+    (store.pipelines / "one.pins.json").write_text("nonsense")
+    with pytest.raises(StoreError, match=r"one\.pins\.json cannot be read"):
+        store.pins("one")
+
+
+def test_pins_are_kept_by_pipeline_and_stage(tmp_path):
+    store = Store(tmp_path)
+    store.pin("one", "up", {"result": "a"})
+    store.pin("one", "down", {"result": "b"})
+    store.pin("two", "up", {"result": "c"})
+    store.unpin("one", ["up"])
+    assert store.pinned() == {"one": {"down": {"result": "b"}}, "two": {"up": {"result": "c"}}}
+
+
+def test_parquet_has_units_and_provenance_and_the_same_bytes_each_time(tmp_path):
+    about = {"key": "k", "kind": "toy"}
+    for name in ("one", "two"):
+        write_parquet(tmp_path / name, "points", ROWS, provenance=about, sorted_by=["A"])
+    assert (tmp_path / "one").read_bytes() == (tmp_path / "two").read_bytes()
+    read = pq.ParquetFile(tmp_path / "one")
+    said = json.loads(read.schema_arrow.metadata[b"vines"])
+    assert said["provenance"] == about
+    assert said["units"]["phase"] == "rad"
+    assert read.schema_arrow.field("phase").metadata[b"unit"] == b"rad"
+    group = read.metadata.row_group(0)
+    assert group.sorting_columns[0].column_index == schema.table("points").names.index("A")
+    column = group.column(schema.table("points").names.index("A"))
+    assert "BYTE_STREAM_SPLIT" in column.encodings
+    assert column.compression == "ZSTD"
+
+
+def test_lists_of_floats_are_stored_and_come_back(tmp_path):
+    write_parquet(tmp_path / "o", "orbits", [{"point_id": "a", "t": [0.0, 1.5], "side": [1, -1]}], provenance={})
+    assert pq.read_table(tmp_path / "o").to_pylist()[0]["t"] == [0.0, 1.5]
+
+
+def test_rows_that_do_not_fit_are_refused(tmp_path):
+    with pytest.raises(SchemaError, match="no column 'B'"):
+        write_parquet(tmp_path / "x", "points", [{"point_id": "a", "B": 1}], provenance={})
+    assert not (tmp_path / "x").exists()
+
+
+def part(store, number, rows, failed=(), logs=None):
+    with store.staging() as place:
+        folder = place / "part"
+        folder.mkdir()
+        for name in (logs or {}).values():
+            (folder / name).write_text(name)
+        ids = [row["point_id"] for row in rows]
+        tables = {"points": schema.cast("points", rows)}
+        commit_part(store.pool("k").folder, folder, number, tables, ids=ids, failed=failed, logs=logs or {})
+
+
+def test_a_pool_gathers_points_in_the_wanted_order_from_all_parts(tmp_path):
+    store = Store(tmp_path)
+    part(store, 1, ROWS[:2], logs={"p1": "p1.txt"})
+    part(store, 2, ROWS[2:])
+    pool = store.pool("k")
+    assert pool.next_number() == 3
+    assert [row["point_id"] for row in pool.gather("points", ["p4", "p0", "p3"]).to_pylist()] == ["p4", "p0", "p3"]
+    assert pool.row("points", "p3")["A"] == ROWS[3]["A"]
+    assert pool.computed()["p1"].logs == {"p1": "p1.txt"}
+    with pytest.raises(StoreError, match="not in the pool"):
+        pool.row("points", "p9")
+
+
+def test_a_point_that_failed_counts_until_it_was_computed(tmp_path):
+    store = Store(tmp_path)
+    part(store, 1, [{"point_id": "p0", "status": "failed"}, ROWS[1]], failed=["p0"])
+    assert list(store.pool("k").failed()) == ["p0"]
+    part(store, 2, ROWS[:1])
+    pool = store.pool("k")
+    assert (pool.failed(), set(pool.computed())) == ({}, {"p0", "p1"})
+    assert [row["status"] for row in pool.gather("points", ["p0", "p1"]).to_pylist()] == ["ok", "ok"]
+
+
+def test_a_part_that_comes_twice_is_kept_once(tmp_path):
+    store = Store(tmp_path)
+    part(store, 1, ROWS[:2])
+    part(store, 1, ROWS[:2])
+    assert len(store.pool("k").parts()) == 1
+
+
+def test_a_writer_waits_for_another_and_clears_what_a_killed_one_left(tmp_path):
+    code = "import sys, time; from pathlib import Path; from vines.store import Store; s = Store(Path(sys.argv[1]))\n"
+    code += (
+        "with s.writing(), s.staging() as f:\n    (f / 'half').write_text('x'); print('in', flush=True); time.sleep(60)"
+    )
+    other = subprocess.Popen([sys.executable, "-c", code, str(tmp_path)], stdout=subprocess.PIPE)
+    assert other.stdout is not None
+    other.stdout.readline()
+    store = Store(tmp_path)
+    waited = []
+
+    def kill():
+        waited.append(True)
+        os.kill(other.pid, signal.SIGKILL)
+
+    began = time.monotonic()
+    with store.writing(kill):
+        assert not store.staging_folder.exists()
+    other.communicate()
+    assert waited == [True]
+    assert time.monotonic() - began < 5
+    assert not multiprocessing.active_children()
+
+
+def test_provenance_names_versions_and_revision():
+    assert set(versions()) == {"numba", "numpy", "python", "vines"}
+    assert revision() == "" or len(revision().rstrip("+")) == 40
+
+
+def test_pins_and_manifests_need_no_heavy_package(tmp_path):
+    commit(Store(tmp_path), "k" * 64)
+    code = "import sys; from pathlib import Path; from vines.store import Store; s = Store(Path(sys.argv[1]))\n"
+    code += "s.pinned(); s.result('k' * 64); print({'pyarrow', 'numpy', 'filelock'} & set(sys.modules))"
+    out = subprocess.run([sys.executable, "-c", code, str(tmp_path)], capture_output=True, text=True, check=True)
+    assert out.stdout.strip() == "set()"
