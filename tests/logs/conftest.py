@@ -13,9 +13,7 @@ def made_up(name: str, count: int, time: str, seed: int) -> np.ndarray:
     dtype = numpy_dtype(name)
     rows = np.zeros(count, dtype)
     for field in dtype.names:
-        rows[field] = (
-            random.standard_normal(count) if dtype[field].kind == "f" else random.integers(-1, 2, count)
-        )
+        rows[field] = random.standard_normal(count) if dtype[field].kind == "f" else random.integers(-1, 2, count)
     rows[time] = np.sort(random.uniform(0.0, 60.0, count))
     return rows
 

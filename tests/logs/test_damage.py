@@ -75,9 +75,7 @@ def test_log_of_somebody_else(tmp_path):
 
 
 def test_no_mcap_at_all(tmp_path):
-    assert "is not an MCAP file" in refused(
-        tmp_path / "table.mcap", b"PAR1 and so on, long enough to have an end"
-    )
+    assert "is not an MCAP file" in refused(tmp_path / "table.mcap", b"PAR1 and so on, long enough to have an end")
 
 
 def test_unfinished(tmp_path):
@@ -93,9 +91,7 @@ def test_channel_is_missing(tmp_path):
 def test_schema_of_another_version(tmp_path):
     other = schema.schema_bytes("vines.v1.State").replace(b"w_dot", b"w_dut")
     data = foreign(metadata=COMPLETE, schema=("vines.v1.State", other, "protobuf"), encoding="protobuf")
-    assert "another version of vines.v1.State (it lacks or changes w_dot)" in refused(
-        tmp_path / "v.mcap", data
-    )
+    assert "another version of vines.v1.State (it lacks or changes w_dot)" in refused(tmp_path / "v.mcap", data)
 
 
 def test_message_that_is_no_protobuf(tmp_path):

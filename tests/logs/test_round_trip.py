@@ -154,9 +154,7 @@ def test_mcap_reads_every_message_through_protobuf(run, log_file):
         for number, ((message, decoded), row) in enumerate(zip(seen[topic], run[key], strict=True)):
             assert message.sequence == number
             assert message.log_time == message.publish_time == round(float(row[time]) * 1e9)
-            np.testing.assert_array_equal(
-                [getattr(decoded, name) for name in row.dtype.names], list(row.tolist())
-            )
+            np.testing.assert_array_equal([getattr(decoded, name) for name in row.dtype.names], list(row.tolist()))
 
 
 def test_index_and_statistics_fit_what_is_there(log_file):
@@ -189,13 +187,9 @@ def test_same_messages_from_another_writer_are_read(run, tmp_path, compression):
         writer = Writer(stream, compression=compression, enable_data_crcs=True)
         writer.start()
         writer.add_metadata("vines.provenance", {"by": "another"})
-        for number, (name, key) in enumerate(
-            (("State", "states"), ("Impact", "impacts"), ("Stick", "sticks"))
-        ):
+        for number, (name, key) in enumerate((("State", "states"), ("Impact", "impacts"), ("Stick", "sticks"))):
             data = schema.schema_bytes(f"vines.v1.{name}")
-            writer.register_channel(
-                f"/{key}", "protobuf", writer.register_schema(f"vines.v1.{name}", "protobuf", data)
-            )
+            writer.register_channel(f"/{key}", "protobuf", writer.register_schema(f"vines.v1.{name}", "protobuf", data))
             kind = schema.message_class(f"vines.v1.{name}")
             for row in run[key]:
                 message = kind(**{field: row[field].item() for field in row.dtype.names})
@@ -211,9 +205,7 @@ def test_same_messages_from_another_writer_are_read(run, tmp_path, compression):
 
 def test_a_failure_leaves_nothing_and_keeps_what_was(run, log_file, monkeypatch):
     before = log_file.read_bytes()
-    monkeypatch.setattr(
-        "vines.logs._file.LogFile.finish", lambda self: (_ for _ in ()).throw(OSError("disk full"))
-    )
+    monkeypatch.setattr("vines.logs._file.LogFile.finish", lambda self: (_ for _ in ()).throw(OSError("disk full")))
     with pytest.raises(OSError, match="disk full"):
         logs.write_run(log_file, **run)
     assert log_file.read_bytes() == before
@@ -224,9 +216,7 @@ def test_further_fields_are_left_out(run, tmp_path):
     from numpy.lib import recfunctions
 
     more = recfunctions.append_fields(run["impacts"], "extra", np.arange(40), usemask=False)
-    same(
-        logs.read(logs.write_run(tmp_path / "more.mcap", **{**run, "impacts": more})).impacts, run["impacts"]
-    )
+    same(logs.read(logs.write_run(tmp_path / "more.mcap", **{**run, "impacts": more})).impacts, run["impacts"])
 
 
 def change(rows, field, value, place=0):

@@ -52,15 +52,11 @@ def test_layout_is_what_protobuf_writes(name):
     row = np.frombuffer(bytearray(layout.blank), layout.dtype)
     for number, field in enumerate(layout.dtype.names):
         row[field] = number + 1.0
-    message = schema.message_class(name)(
-        **{field: number + 1 for number, field in enumerate(layout.dtype.names)}
-    )
+    message = schema.message_class(name)(**{field: number + 1 for number, field in enumerate(layout.dtype.names)})
     assert row.tobytes() == message.SerializeToString(deterministic=True)
 
 
-@pytest.mark.parametrize(
-    "ask", [schema.numpy_dtype, schema.wire_format, schema.schema_bytes, schema.field_notes]
-)
+@pytest.mark.parametrize("ask", [schema.numpy_dtype, schema.wire_format, schema.schema_bytes, schema.field_notes])
 def test_unknown_message_names_the_nearest(ask):
     with pytest.raises(UnknownNameError, match=r"did you mean 'vines\.v1\.State'"):
         ask("vines.v1.Sate")

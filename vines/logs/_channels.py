@@ -105,8 +105,7 @@ def as_messages(array: np.ndarray, channel: Channel) -> np.ndarray:
     missing = [name for name in dtype.names or () if name not in names]
     if missing:
         raise SchemaError(
-            f"{channel.key} lack {', '.join(missing)}; "
-            f"a {channel.message} needs {', '.join(dtype.names or ())}"
+            f"{channel.key} lack {', '.join(missing)}; a {channel.message} needs {', '.join(dtype.names or ())}"
         )
     if array.ndim != 1:
         raise SchemaError(f"{channel.key} have shape {array.shape}; allowed is one row a message, shape (n,)")
@@ -124,8 +123,7 @@ def as_messages(array: np.ndarray, channel: Channel) -> np.ndarray:
     times = fitting[channel.time]
     if len(times) and not (np.isfinite(times).all() and times[0] >= 0.0 and times[-1] < _LATEST):
         raise SchemaError(
-            f"times of {channel.key} run from {times[0]} to {times[-1]}; "
-            f"allowed are finite ones from 0 to {_LATEST:g}"
+            f"times of {channel.key} run from {times[0]} to {times[-1]}; allowed are finite ones from 0 to {_LATEST:g}"
         )
     if (np.diff(times) < 0).any():
         place = int(np.argmax(np.diff(times) < 0)) + 1

@@ -36,8 +36,7 @@ def table(parts: list[np.ndarray], channel: Channel) -> pa.Table:
 
     dtype, notes = numpy_dtype(channel.message), field_notes(channel.message)
     columns = [
-        np.concatenate([np.empty(0, dtype[name]), *(part[name] for part in parts)])
-        for name in dtype.names or ()
+        np.concatenate([np.empty(0, dtype[name]), *(part[name] for part in parts)]) for name in dtype.names or ()
     ]
     schema = pa.schema(
         [

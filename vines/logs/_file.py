@@ -61,9 +61,7 @@ class LogFile:
 
     def metadata(self, name: str, values: dict[str, str]) -> None:
         offset, length = self._record(records.Metadata(name=name, metadata=values))
-        self._repeated[Opcode.METADATA_INDEX].append(
-            records.MetadataIndex(offset=offset, length=length, name=name)
-        )
+        self._repeated[Opcode.METADATA_INDEX].append(records.MetadataIndex(offset=offset, length=length, name=name))
 
     def attachment(self, name: str, media_type: str, data: bytes) -> None:
         record = records.Attachment(create_time=0, log_time=0, name=name, media_type=media_type, data=data)
@@ -108,9 +106,7 @@ class LogFile:
             entries = np.empty((len(part), 2), "<u8")
             entries[:, 0] = times
             entries[:, 1] = size + len(packed) // len(part) * np.arange(len(part))
-            head = struct.pack(
-                "<BQHI", Opcode.MESSAGE_INDEX, 6 + entries.nbytes, channel.number, entries.nbytes
-            )
+            head = struct.pack("<BQHI", Opcode.MESSAGE_INDEX, 6 + entries.nbytes, channel.number, entries.nbytes)
             indexes[channel.number] = head + entries.tobytes()
             body.append(packed)
             size += len(packed)
@@ -118,9 +114,7 @@ class LogFile:
             self._counts[channel.number] += len(part)
         data = b"".join(body)
         first, last = min(span[0] for span in spans), max(span[1] for span in spans)
-        self._span = (
-            (first, last) if self._span is None else (min(first, self._span[0]), max(last, self._span[1]))
-        )
+        self._span = (first, last) if self._span is None else (min(first, self._span[0]), max(last, self._span[1]))
         compressed = self._zstd.compress(data)
         offset, length = self._record(
             records.Chunk(
@@ -171,9 +165,7 @@ class LogFile:
             data = b"".join(map(_bytes, group))
             if data:
                 offsets += _bytes(
-                    records.SummaryOffset(
-                        group_opcode=opcode, group_start=start + len(summary), group_length=len(data)
-                    )
+                    records.SummaryOffset(group_opcode=opcode, group_start=start + len(summary), group_length=len(data))
                 )
             summary += data
         offset_start = start + len(summary)

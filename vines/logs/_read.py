@@ -89,9 +89,7 @@ class _Found:
     schemas: dict[int, records.Schema] = field(default_factory=dict)
     topics: dict[int, records.Channel] = field(default_factory=dict)
     known: dict[int, Channel] = field(default_factory=dict)
-    rows: dict[str, list[np.ndarray]] = field(
-        default_factory=lambda: {channel.key: [] for channel in CHANNELS}
-    )
+    rows: dict[str, list[np.ndarray]] = field(default_factory=lambda: {channel.key: [] for channel in CHANNELS})
 
 
 def read(path: str | os.PathLike[str]) -> Log:
@@ -111,9 +109,7 @@ def read(path: str | os.PathLike[str]) -> Log:
     """
     file = Path(path)
     if not file.is_file():
-        raise FileMissingError(
-            f'there is no log {file}; `vines query "select path from logs"` lists the known ones'
-        )
+        raise FileMissingError(f'there is no log {file}; `vines query "select path from logs"` lists the known ones')
     data = file.read_bytes()
     try:
         found = _walk(file, data)
@@ -134,9 +130,7 @@ def _line(error: Exception) -> str:
 def _walk(file: Path, data: bytes) -> _Found:
     """Check the frame of the file and go through the records of its data section."""
     if not data.startswith(MCAP0_MAGIC):
-        raise LogError(
-            f"{file} is not an MCAP file (it begins with {data[:8]!r}); a log of vines ends in .mcap"
-        )
+        raise LogError(f"{file} is not an MCAP file (it begins with {data[:8]!r}); a log of vines ends in .mcap")
     tail = len(data) - len(MCAP0_MAGIC)
     footer = tail - _FOOTER.size
     if footer < len(MCAP0_MAGIC) or data[tail:] != MCAP0_MAGIC:
@@ -254,26 +248,20 @@ def _messages(file: Path, found: _Found, data: bytes) -> None:
 def _assemble(file: Path, found: _Found) -> Log:
     """Return the log, once everything that makes a log of vines has been found."""
     if PROVENANCE not in found.metadata:
-        topics = ", ".join(
-            sorted(f"{topic.topic} ({topic.message_encoding})" for topic in found.topics.values())
-        )
+        topics = ", ".join(sorted(f"{topic.topic} ({topic.message_encoding})" for topic in found.topics.values()))
         raise LogError(
             f"{file} is an MCAP file but no log of vines: it has no metadata record {PROVENANCE!r}; "
             f"its channels: {topics or 'none'}"
         )
     status = found.metadata.get(STATUS)
     if status is None or status.get("status") != "complete":
-        raise LogError(
-            f"{file} is incomplete: its writer did not finish it (no {STATUS} = complete); {_AGAIN}"
-        )
+        raise LogError(f"{file} is incomplete: its writer did not finish it (no {STATUS} = complete); {_AGAIN}")
     for channel in CHANNELS:
         if channel not in found.known.values():
             raise LogError(f"{file} has no channel of {channel.message}; {_AGAIN}")
         read_rows, written = sum(map(len, found.rows[channel.key])), status.get(channel.topic)
         if written is not None and written != str(read_rows):
-            raise LogError(
-                f"{file} is damaged: {read_rows} of {written} messages on {channel.topic}; {_AGAIN}"
-            )
+            raise LogError(f"{file} is damaged: {read_rows} of {written} messages on {channel.topic}; {_AGAIN}")
     try:
         parameters = {key: float(text) for key, text in found.metadata.get(PARAMETERS, {}).items()}
     except ValueError as unfit:

@@ -61,9 +61,7 @@ def write_run(
     """
     target = Path(path)
     if not target.parent.is_dir():
-        raise FileMissingError(
-            f"the folder {target.parent} of the log {target.name} does not exist; create it first"
-        )
+        raise FileMissingError(f"the folder {target.parent} of the log {target.name} does not exist; create it first")
     given = {"states": states, "impacts": impacts, "sticks": sticks}
     messages = {channel: as_messages(given[channel.key], channel) for channel in CHANNELS}
     about = _texts(provenance)
@@ -99,9 +97,7 @@ def _texts(provenance: Mapping[str, object]) -> dict[str, str]:
     for key in sorted(provenance):
         value = provenance[key]
         try:
-            texts[key] = (
-                value if isinstance(value, str) else json.dumps(value, sort_keys=True, ensure_ascii=False)
-            )
+            texts[key] = value if isinstance(value, str) else json.dumps(value, sort_keys=True, ensure_ascii=False)
         except (TypeError, ValueError) as unfit:
             raise SchemaError(
                 f"provenance {key!r} cannot be stored ({unfit}); text, numbers, lists and dicts are allowed"

@@ -38,9 +38,7 @@ def compile_descriptor_set(schemas: Path) -> bytes:
         from grpc_tools import protoc
     except ImportError as missing:
         raise SchemaError("compiling the schemas needs grpcio-tools; pip install '.[dev]'") from missing
-    sources = sorted(
-        path.relative_to(schemas).as_posix() for path in (schemas / "vines" / "v1").glob("*.proto")
-    )
+    sources = sorted(path.relative_to(schemas).as_posix() for path in (schemas / "vines" / "v1").glob("*.proto"))
     well_known = resources.files("grpc_tools") / "_proto"
     with tempfile.TemporaryDirectory() as folder:
         out = Path(folder) / DESCRIPTOR_SET
@@ -56,9 +54,7 @@ def compile_descriptor_set(schemas: Path) -> bytes:
             ]
         )
         if status != 0:
-            raise SchemaError(
-                f"protoc exited {status} on {', '.join(sources)}; correct what it printed above"
-            )
+            raise SchemaError(f"protoc exited {status} on {', '.join(sources)}; correct what it printed above")
         return out.read_bytes()
 
 

@@ -84,9 +84,7 @@ def file_descriptor_set() -> descriptor_pb2.FileDescriptorSet:
     try:
         found.ParseFromString(path.read_bytes())
     except Exception as broken:
-        raise SchemaError(
-            f"{path} cannot be read as protobuf descriptors ({broken}); install vines again"
-        ) from broken
+        raise SchemaError(f"{path} cannot be read as protobuf descriptors ({broken}); install vines again") from broken
     return found
 
 
@@ -166,9 +164,7 @@ def wire_format(name: str) -> WireFormat:
     blank = bytearray()
     for field in sorted(file.message_type[place].field, key=lambda field: field.number):
         if field.type not in _FIXED or field.label == _Field.LABEL_REPEATED:
-            raise SchemaError(
-                f"field {field.name!r} of {name} has no fixed width; use double, sfixed32 or sfixed64"
-            )
+            raise SchemaError(f"field {field.name!r} of {name} has no fixed width; use double, sfixed32 or sfixed64")
         form, wire_type = _FIXED[field.type]
         tag = _varint(field.number << 3 | wire_type)
         tags.extend(range(len(blank), len(blank) + len(tag)))

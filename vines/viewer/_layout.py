@@ -17,6 +17,8 @@ _WINDOW = 20
 """Forcing cycles up to which curves show a whole run; longer runs scroll with the time cursor."""
 _TRAIL = 0.25
 """Length of the trail in the phase plane, in forcing cycles."""
+_LEGEND = 0.4
+"""Room that a still picture leaves for a legend, as a part of the run."""
 _DARK = [13, 17, 23]
 
 
@@ -123,7 +125,7 @@ def _series(run: Shown, part: str, name: str, still: bool, legend: bool = True) 
         end = boundary.cursor_relative(seconds=0.4 * reach)
     elif still:
         start = boundary.absolute(seconds=run.start)
-        end = boundary.absolute(seconds=run.end + 0.3 * span)
+        end = boundary.absolute(seconds=run.end + _LEGEND * span)
     else:
         # Without numbers, since they would be those of one timeline only.
         start, end = boundary.infinite(), boundary.infinite()

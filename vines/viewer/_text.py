@@ -11,6 +11,8 @@ from vines.viewer._style import LEFT, RIGHT
 
 __all__ = ["about", "impact_lines", "send_impact_log"]
 
+_EMPTY = ("", "null", "{}", "[]")
+"""Provenance that says nothing, as text and as JSON."""
 _MEANINGS = {
     "mu": "mass ratio",
     "A": "forcing amplitude",
@@ -58,7 +60,7 @@ def about(log: Log) -> str:
         rows.append(("forcing cycles", f"{(times[-1] - times[0]) * log.parameters['Omega'] / (2 * np.pi):.4g}"))
     rows.append(("impacts on L and R", f"{(sides == 1).sum()} and {(sides == -1).sum()}"))
     rows.append(("sticks", str(log.sticks.num_rows)))
-    rows += [(name, _short(text)) for name, text in log.provenance.items()]
+    rows += [(name, _short(text)) for name, text in log.provenance.items() if text not in _EMPTY]
     return "\n".join([f"### {log.name}", "", "| | |", "|---|---|", *(f"| {name} | {text} |" for name, text in rows)])
 
 
@@ -73,7 +75,7 @@ def _named(symbol: str) -> str:
     return f"{symbol}, {_MEANINGS[symbol]}" if symbol in _MEANINGS else symbol
 
 
-def _short(text: str, most: int = 36) -> str:
+def _short(text: str, most: int = 24) -> str:
     """Return text that fits a cell of the table."""
     flat = " ".join(text.split()).replace("|", "\\|")
     return flat if len(flat) <= most else flat[: most - 1] + "…"
