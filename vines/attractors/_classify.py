@@ -23,8 +23,14 @@ __all__ = ["MAX_P", "Recording", "Verdict", "classify"]
 MAX_P = 32
 """Largest number of forcing periods over which a repetition is looked for."""
 
-LONGER = 512
-"""Forcing periods run on, after the recording, to measure exponents and decay where nothing repeats."""
+LONGER = (512, 1536, 6144)
+"""Forcing periods run on, after the recording, where nothing repeats: each stage only if those before left it open."""
+
+BLOCK = 32
+"""Forcing periods in each of the blocks from whose scatter the error of an exponent is taken."""
+
+FLAT = 1.5e-3
+"""Largest standard error of an exponent that is called zero."""
 
 UNSTABLE = 1e-5
 """How far the largest multiplier must lie outside the unit circle for a repeating orbit to be called unstable."""
@@ -126,6 +132,11 @@ def _periodic(
     product = tangent_product(recording.c, rows, kept[-1 - match.lag], kept[-1])
     multipliers = np.linalg.eigvals(product).astype(np.complex128)
     sizes = np.abs(multipliers)
+    span = rows[kept[-1 - match.lag] + 1 : kept[-1] + 1]
+    if np.any(span[:, col.KIND] == col.STICK):
+        # After a merge only the common motion is left, two directions of four; what else shows is rounding.
+        dead = np.argsort(sizes, kind="stable")[:2]
+        multipliers[dead] = sizes[dead] = 0.0
     order = np.argsort(-sizes, kind="stable")
     multipliers, sizes = multipliers[order], sizes[order]
     with np.errstate(divide="ignore"):
@@ -180,44 +191,70 @@ def _without_impact(recording: Recording, tolerance: float) -> Verdict:
 
 
 def _not_repeating(recording: Recording, best: _Match | None, scale: float, tolerance: float) -> Verdict:
-    """Tell a slow approach, a torus and chaos apart, by running on."""
-    p, period = recording.params, recording.params.period
-    state = recording.state.copy()
-    col.shift_time(state, recording.length)
-    length = LONGER * period
-    rows, status = run_on(recording.c, state, length, recording.cap, 4 * LONGER)
+    """Tell a slow approach, a torus and chaos apart, by running on for as long as it takes, within LONGER."""
+    period = recording.params.period
+    state, Y = recording.state.copy(), np.eye(4)
     found = Verdict("unsettled", False, remaining=math.nan)
-    if status != "complete":
-        found.reason = "more events in a forcing period than allowed while running on"
-        return found
-    growth = lyapunov_blocks(recording.c, rows, len(rows), 0.25 * length, length, 12, np.eye(4))
-    found.exponents, errors = exponents_of(growth)
-    found.lyapunov = float(found.exponents[0])
-    # A finite run cannot tell rates apart that differ by less than about one over its length.
-    found.lyapunov_error = math.hypot(float(errors[0]), 1.0 / (0.75 * length))
+    blocks: list[npt.NDArray[np.float64]] = []
+    elapsed = recording.length
+    for stage, periods in enumerate(LONGER):
+        col.shift_time(state, elapsed)
+        elapsed = length = periods * period
+        rows, status = run_on(recording.c, state, length, recording.cap, 4 * periods)
+        if status != "complete":
+            found.reason = "more events in a forcing period than allowed while running on"
+            return found
+        # The first quarter of the first stage is left to the directions to align.
+        skip = 0.25 * length if stage == 0 else 0.0
+        count = round((length - skip) / (BLOCK * period))
+        blocks.append(lyapunov_blocks(recording.c, rows, len(rows), skip, length, count, Y))
+        grown = np.concatenate(blocks)
+        found.exponents, errors = exponents_of(grown)
+        found.lyapunov = float(found.exponents[0])
+        # A finite run cannot tell rates apart that differ by less than about one over its length.
+        found.lyapunov_error = math.hypot(float(errors[0]), 1.0 / float(grown[:, 4].sum()))
+        if stage == 0 and best and _coming_or_leaving(recording, rows, length, best, scale, tolerance, found):
+            return found
+        if found.lyapunov > 3.0 * found.lyapunov_error:
+            found.regime, found.settled, found.remaining = "chaotic", True, 0.0
+            return found
+        if found.lyapunov < -3.0 * found.lyapunov_error:
+            found.remaining = math.log(1.0 / tolerance) / -found.lyapunov / period
+            found.reason = "disturbances decay, but no repetition shows yet"
+            return found
+    if found.lyapunov_error < FLAT:
+        found.regime, found.settled, found.remaining = "quasiperiodic", True, 0.0
+    else:
+        found.reason = f"its exponent {found.lyapunov:.2g} +- {found.lyapunov_error:.2g} is not told from 0"
+    return found
 
-    before = float(np.max(best.blocks)) if best else math.inf
-    after = math.inf
-    if best:
-        kept = contacts(rows, len(rows), length - recording.length)
-        later = _match(rows, kept, best.p, best.p * period, scale) if len(kept) > 1 else None
-        after = float(np.max(later.blocks)) if later else math.inf
-    if best and after < 0.5 * before:
-        rate = math.log(before / max(after, 1e-15)) / LONGER
-        now = float(best.blocks[-1])
-        left = now / -math.expm1(-rate * best.p)
+
+def _coming_or_leaving(
+    recording: Recording,
+    rows: npt.NDArray[np.float64],
+    length: float,
+    best: _Match,
+    scale: float,
+    tolerance: float,
+    found: Verdict,
+) -> bool:
+    """Say whether the run comes to, or leaves, a periodic orbit, and if so note how long that will take."""
+    periods = LONGER[0]
+    kept = contacts(rows, len(rows), length - recording.length)
+    later = _match(rows, kept, best.p, best.p * recording.params.period, scale) if len(kept) > 1 else None
+    before = float(np.max(best.blocks))
+    after = float(np.max(later.blocks)) if later else math.inf
+    chaotic = found.lyapunov > 3.0 * found.lyapunov_error
+    if min(before, after) >= NEAR and (chaotic or after >= 0.5 * before):
+        return False
+    if after < 0.5 * before:
+        rate = math.log(before / max(after, 1e-15)) / periods
+        left = float(best.blocks[-1]) / -math.expm1(-rate * best.p)
         found.remaining = max(math.log(left / tolerance) / rate, 0.0)
         found.reason = f"still comes to a periodic orbit: {math.exp(-rate):.6g} of the distance is left each period"
-    elif best and min(before, after) < NEAR:
-        found.reason = "near a periodic orbit, neither settled on it nor clearly leaving it"
-        if after > before and math.isfinite(after):
-            found.remaining = math.log(1.0 / after) / (math.log(after / before) / LONGER)
-            found.reason = "leaves an unstable periodic orbit"
-    elif found.lyapunov > 3.0 * found.lyapunov_error:
-        found.regime, found.settled, found.remaining = "chaotic", True, 0.0
-    elif found.lyapunov < -3.0 * found.lyapunov_error:
-        found.remaining = math.log(1.0 / tolerance) / -found.lyapunov / p.period
-        found.reason = "disturbances decay, but no repetition shows yet"
-    else:
-        found.regime, found.settled, found.remaining = "quasiperiodic", True, 0.0
-    return found
+        return True
+    found.reason = "near a periodic orbit, neither settled on it nor clearly leaving it"
+    if before < after < math.inf:
+        found.remaining = math.log(1.0 / after) / (math.log(after / before) / periods) if after < 1.0 else 0.0
+        found.reason = "leaves an unstable periodic orbit"
+    return True

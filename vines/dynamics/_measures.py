@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -68,6 +69,9 @@ class Measures:
         """Length of the window in forcing periods."""
         return self.duration / self.period
 
+    def _each_period(self, total: float) -> float:
+        return total / self.periods if self.duration > 0 else math.nan
+
     @property
     def impact_loss(self) -> float:
         """Energy lost in impacts and merges on both walls."""
@@ -81,27 +85,27 @@ class Measures:
     @property
     def impacts_per_period(self) -> float:
         """Impacts on both walls per forcing period."""
-        return (self.impacts_left + self.impacts_right) / self.periods
+        return self._each_period(self.impacts_left + self.impacts_right)
 
     @property
     def sticks_per_period(self) -> float:
         """Spells of sticking per forcing period."""
-        return (self.sticks_left + self.sticks_right) / self.periods
+        return self._each_period(self.sticks_left + self.sticks_right)
 
     @property
     def base_work_per_period(self) -> float:
         """Base work per forcing period."""
-        return self.base_work / self.periods
+        return self._each_period(self.base_work)
 
     @property
     def damper_loss_per_period(self) -> float:
         """Energy lost in the damper per forcing period."""
-        return self.damper_loss / self.periods
+        return self._each_period(self.damper_loss)
 
     @property
     def impact_loss_per_period(self) -> float:
         """Energy lost in impacts and merges per forcing period."""
-        return self.impact_loss / self.periods
+        return self._each_period(self.impact_loss)
 
 
 def measures_from(p: Params, totals: npt.NDArray[np.float64]) -> Measures:
@@ -109,13 +113,13 @@ def measures_from(p: Params, totals: npt.NDArray[np.float64]) -> Measures:
     t = totals.tolist()
     duration = t[entry.DURATION]
     v1_square, v2_square = t[entry.V1_SQUARE], t[entry.V2_SQUARE]
-    per = 1.0 / duration if duration > 0 else float("nan")
+    per = 1.0 / duration if duration > 0 else math.nan
     return Measures(
         duration=duration,
         period=p.period,
         kinetic_1=0.5 * v1_square * per,
         kinetic_2=0.5 * p.mu * v2_square * per,
-        kinetic_ratio=p.mu * v2_square / v1_square if v1_square > 0 else float("nan"),
+        kinetic_ratio=p.mu * v2_square / v1_square if v1_square > 0 else math.nan,
         max_abs_x1=t[entry.MAX_ABS_X1],
         t_max_abs_x1=t[entry.T_MAX_ABS_X1],
         rms_x1=max(t[entry.X1_SQUARE] * per, 0.0) ** 0.5,
