@@ -48,7 +48,7 @@ class Project:
         return self.root / "data"
 
 
-@pytest.fixture()
+@pytest.fixture
 def project(tmp_path):
     """Return a project of its own with the pipelines of vines."""
     shutil.copytree(REPOSITORY / "pipelines", tmp_path / "pipelines")

@@ -38,7 +38,27 @@ _HOME = {
     "table": "vines.stages",
 }
 
-__all__ = [*_HOME, "__version__"]  # noqa: PLE0604 - the names are those of the table above
+__all__ = [
+    "Attractor",
+    "Branch",
+    "Orbit",
+    "OrbitNotFound",
+    "Params",
+    "PhysicalParams",
+    "Trajectory",
+    "VinesError",
+    "Word",
+    "__version__",
+    "ball_locked",
+    "continue_orbit",
+    "find_orbit",
+    "no_ball",
+    "query",
+    "run",
+    "settle",
+    "simulate",
+    "table",
+]
 
 if TYPE_CHECKING:
     from vines.attractors import Attractor as Attractor

@@ -5,8 +5,9 @@ from __future__ import annotations
 import contextlib
 import re
 from collections.abc import Callable, Iterator, Mapping
+from pathlib import Path
 from types import TracebackType
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 from vines import schema
 from vines.catalogue._views import define_views, quote, select
@@ -19,6 +20,7 @@ if TYPE_CHECKING:
 __all__ = ["Catalogue", "connect", "connect_tables"]
 
 _NO_TABLE = re.compile(r"Table with name (\S+) does not exist")
+_NEAR = re.compile(r"syntax error at or near \"(\w+)\"")
 _KIND = re.compile(r"^(Catalog|Parser|Binder|Conversion|Invalid Input|Out of Range) Error: ")
 
 
@@ -69,6 +71,27 @@ class Catalogue:
         """
         return self._run(sql, lambda relation: (list(relation.columns), relation.fetchall()))
 
+    def save(self, sql: str, path: Path, form: Literal["csv", "parquet"]) -> None:
+        """Answer a query into a file; lists stand in one CSV field as DuckDB writes them.
+
+        Raises
+        ------
+        QueryError
+            As :meth:`query`.
+        """
+
+        def take(relation: Any) -> None:
+            if form == "csv":
+                relation.write_csv(str(path))
+            else:
+                relation.write_parquet(str(path), compression="zstd")
+
+        self._run(sql, take)
+
+    def count(self, name: str) -> int:
+        """Return the number of rows of a view."""
+        return self.fetch(f"select count(*) from {quote(name)}")[1][0][0]
+
     def table(self, name: str) -> pa.Table:
         """Return all rows of a view.
 
@@ -103,9 +126,17 @@ class Catalogue:
         if unknown:
             name = unknown.group(1)
             return f"no table {name!r}: {nearest(name, self.names)}"
+        near = _NEAR.search(text)
+        if near and near.group(1).lower() in _column_names():
+            word = near.group(1)
+            return f'{word} is a word of SQL itself; as a column write it with its table or in quotes: "{word}"'
         lines = [line.strip() for line in text.splitlines() if line.strip() and not line.startswith("LINE ")]
         told = [line for line in lines[1:] if line.startswith(("Candidate", "Did you mean"))]
         return "; ".join([_KIND.sub("", lines[0]) if lines else "the query failed", *told])
+
+
+def _column_names() -> set[str]:
+    return {name for spec in schema.tables().values() for name in spec.names}
 
 
 def connect(store: Store) -> Catalogue:

@@ -9,8 +9,16 @@ from collections.abc import Sequence
 import click
 
 
-def print_rows(head: Sequence[str], rows: Sequence[Sequence[object]], *, wrap: int = -2) -> None:
-    """Print rows under a head in aligned columns.
+def print_rows(head: Sequence[str], rows: Sequence[Sequence[object]], *, wrap: int | None = -2) -> None:
+    """Print rows under a head in aligned columns; see `lines`."""
+    first, *rest = lines(head, rows, wrap=wrap)
+    click.secho(first, bold=True)
+    for line in rest:
+        click.echo(line)
+
+
+def lines(head: Sequence[str], rows: Sequence[Sequence[object]], *, wrap: int | None) -> list[str]:
+    """Return rows under a head in aligned columns.
 
     Parameters
     ----------
@@ -18,22 +26,32 @@ def print_rows(head: Sequence[str], rows: Sequence[Sequence[object]], *, wrap: i
         Column names.
     rows : sequence of sequences
         Cells; ``None`` prints as nothing.
-    wrap : int
-        Index of the column that is wrapped when the terminal is too narrow.
+    wrap : int or None
+        Index of the column that is wrapped when the terminal is too narrow; ``None`` lets lines run on.
+
+    Examples
+    --------
+    >>> lines(["A", "name"], [[0.015, "1:1"], [0.023, None]], wrap=None)
+    ['A      name', '0.015  1:1', '0.023']
     """
     cells = [[_text(cell) for cell in row] for row in rows]
     widths = [max([len(h), *(len(row[i]) for row in cells)]) for i, h in enumerate(head)]
-    room = shutil.get_terminal_size((120, 24)).columns
-    excess = sum(widths) + 2 * (len(widths) - 1) - room
-    wrap %= len(widths)
-    if excess > 0:
-        widths[wrap] = max(20, widths[wrap] - excess)
-    click.secho("  ".join(h.ljust(w) for h, w in zip(head, widths, strict=True)).rstrip(), bold=True)
+    if wrap is not None:
+        wrap %= len(widths)
+        excess = sum(widths) + 2 * (len(widths) - 1) - shutil.get_terminal_size((120, 24)).columns
+        if excess > 0:
+            widths[wrap] = max(20, widths[wrap] - excess)
+    written = [_join(head, widths)]
     for row in cells:
-        pieces = textwrap.wrap(row[wrap], widths[wrap]) or [""]
+        pieces = [""] if wrap is None else textwrap.wrap(row[wrap], widths[wrap]) or [""]
         for k, piece in enumerate(pieces):
             shown = [piece if i == wrap else (cell if k == 0 else "") for i, cell in enumerate(row)]
-            click.echo("  ".join(cell.ljust(w) for cell, w in zip(shown, widths, strict=True)).rstrip())
+            written.append(_join(shown, widths))
+    return written
+
+
+def _join(cells: Sequence[str], widths: Sequence[int]) -> str:
+    return "  ".join(cell.ljust(width) for cell, width in zip(cells, widths, strict=True)).rstrip()
 
 
 def _text(value: object) -> str:

@@ -12,7 +12,9 @@ from vines.errors import DeclarationError, RunFailed
 @click.command("run")
 @click.argument("name", metavar="NAME|FILE")
 @click.argument("stages", nargs=-1, metavar="[STAGE]...")
-@click.option("--set", "settings", multiple=True, metavar="K=V", help="Replace a value, e.g. stages.up.vary.A.count=801.")
+@click.option(
+    "--set", "settings", multiple=True, metavar="K=V", help="Replace a value, e.g. stages.up.vary.A.count=801."
+)
 @click.option("--jobs", type=click.IntRange(min=1), help="Processes; all cores if left out, one where more do not pay.")
 @click.option("--dry-run", is_flag=True, help="Say what would be computed, and why; compute nothing.")
 @click.option("--force", is_flag=True, help="Compute everything again.")

@@ -18,6 +18,4 @@ def command(as_json: bool) -> None:
     if as_json:
         click.echo(json.dumps(rows, indent=2))
         return
-    print_rows(
-        ["view", "rows", "a row is"], [[row["view"], row["rows"], row["description"]] for row in rows], wrap=2
-    )
+    print_rows(["view", "rows", "a row is"], [[row["view"], row["rows"], row["description"]] for row in rows], wrap=2)

@@ -9,17 +9,13 @@ import click
 
 @click.command("view")
 @click.argument("logs", nargs=-1, required=True, metavar="LOG...")
-@click.option(
-    "--png", type=click.Path(dir_okay=False, path_type=Path), help="Draw a picture without any screen."
-)
+@click.option("--png", type=click.Path(dir_okay=False, path_type=Path), help="Draw a picture without any screen.")
 @click.option(
     "--save",
     type=click.Path(dir_okay=False, path_type=Path),
     help="Write a recording (.rrd) with its blueprint.",
 )
-@click.option(
-    "--at", type=float, help="Simulation time that the picture shows; a moment near the end if left out."
-)
+@click.option("--at", type=float, help="Simulation time that the picture shows; a moment near the end if left out.")
 def command(logs: tuple[str, ...], png: Path | None, save: Path | None, at: float | None) -> None:
     """Look at logged runs in the Rerun viewer.
 

@@ -133,9 +133,7 @@ def bifurcation_figure(
 
     for panel in panels:
         if panel not in PANELS:
-            raise DeclarationError(
-                f"unknown panel {panel!r} of a bifurcation diagram: {nearest(panel, PANELS)}"
-            )
+            raise DeclarationError(f"unknown panel {panel!r} of a bifurcation diagram: {nearest(panel, PANELS)}")
     with mpl.rc_context(RC):
         figure = new_figure(width, 0.55 + 2.55 * len(panels))
         axes = figure.subplots(len(panels), 1, sharex=True, squeeze=False)[:, 0]
@@ -200,9 +198,7 @@ def _draw(
         )
 
 
-def _legend(
-    figure: Figure, dots: Sequence[ImpactDots], lines: Sequence[BranchLine], markers: Sequence[Marker]
-) -> None:
+def _legend(figure: Figure, dots: Sequence[ImpactDots], lines: Sequence[BranchLine], markers: Sequence[Marker]) -> None:
     from matplotlib.lines import Line2D
 
     entries: list[Line2D] = []
@@ -235,9 +231,7 @@ def _legend(
                    markeredgecolor=COLOURS["ink"], label=f"{word} ({places})")
         )  # fmt: skip
     if entries:
-        figure.legend(
-            handles=entries, loc="outside lower center", ncols=3, columnspacing=1.6, handlelength=2.2
-        )
+        figure.legend(handles=entries, loc="outside lower center", ncols=3, columnspacing=1.6, handlelength=2.2)
 
 
 def runs(flags: npt.NDArray[np.bool_]) -> list[tuple[int, int, bool]]:

@@ -20,7 +20,7 @@ COLOURS = {
 }
 """As in the paper: impacts on the left end red, on the right end blue; light for simulated dots, full for branches."""
 
-RC: dict[str, Any] = {
+RC: Any = {
     "font.family": "DejaVu Sans",
     "font.size": 8.5,
     "axes.labelsize": 9.5,

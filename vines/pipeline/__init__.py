@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from vines.pipeline._axes import Axis
     from vines.pipeline._declaration import Carry, Pipeline, Stage, available, find, load
-    from vines.pipeline._events import Event, RunSummary
+    from vines.pipeline._events import Event, RunSummary, silent
     from vines.pipeline._jobs import Batch, Input, Job, Point, Range, WholeJob
     from vines.pipeline._kinds import Kind, kind, kinds, register
     from vines.pipeline._plan import StagePlan, plan
@@ -35,6 +35,7 @@ __all__ = [
     "plan",
     "register",
     "run_pipeline",
+    "silent",
 ]
 
 _HOME = {
@@ -60,6 +61,7 @@ _HOME = {
     "plan": "vines.pipeline._plan",
     "register": "vines.pipeline._kinds",
     "run_pipeline": "vines.pipeline._run",
+    "silent": "vines.pipeline._events",
 }
 
 

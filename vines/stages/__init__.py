@@ -7,7 +7,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from vines.stages._asking import checks, list_tables, query, table, write_query
+    from vines.stages._asking import checks, list_tables, query, rows_of, save_query, table
     from vines.stages._finding import find_logs
     from vines.stages._found import found
     from vines.stages._kinds import register_kinds
@@ -25,11 +25,12 @@ __all__ = [
     "open_store",
     "query",
     "register_kinds",
+    "rows_of",
     "run",
+    "save_query",
     "status",
     "table",
     "warm_up",
-    "write_query",
 ]
 
 _HOME = {
@@ -43,11 +44,12 @@ _HOME = {
     "open_store": "_running",
     "query": "_asking",
     "register_kinds": "_kinds",
+    "rows_of": "_asking",
     "run": "_running",
+    "save_query": "_asking",
     "status": "_running",
     "table": "_asking",
     "warm_up": "_running",
-    "write_query": "_asking",
 }
 
 

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-import json
+import tempfile
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
-from vines import catalogue
+from vines import schema
+from vines.catalogue import connect
 from vines.errors import QueryError, UnknownNameError, nearest
 from vines.pipeline import available
 from vines.places import find_root
@@ -15,7 +16,7 @@ from vines.stages._running import open_store
 if TYPE_CHECKING:
     import pyarrow as pa
 
-__all__ = ["checks", "list_tables", "query", "table", "write_query"]
+__all__ = ["checks", "list_tables", "query", "rows_of", "save_query", "table"]
 
 
 def query(sql: str) -> pa.Table:
@@ -29,7 +30,8 @@ def query(sql: str) -> pa.Table:
     QueryError
         If DuckDB cannot answer; one line.
     """
-    return catalogue.query(open_store(), sql)
+    with connect(open_store()) as catalogue:
+        return catalogue.query(sql)
 
 
 def table(name: str) -> pa.Table:
@@ -40,29 +42,48 @@ def table(name: str) -> pa.Table:
     UnknownNameError
         If there is no such view.
     """
-    return catalogue.table(open_store(), name)
+    with connect(open_store()) as catalogue:
+        return catalogue.table(name)
 
 
 def list_tables() -> list[dict[str, Any]]:
     """Return name, rows and description of the views: the tables, then the single stages."""
-    return catalogue.list_views(open_store())
+    store = open_store()
+    known = schema.tables()
+    with connect(store) as catalogue:
+        counts = {view: catalogue.count(view) for view in (*known, *sorted(set(catalogue.names) - set(known)))}
+    return [
+        {"view": view, "rows": rows, "description": known[view].description if view in known else "one stage alone"}
+        for view, rows in counts.items()
+    ]
 
 
-def write_query(sql: str, *, form: str | None, out: Path | None) -> None:
-    """Ask and write the answer: to the screen or a file; as table, csv, json or parquet.
+def rows_of(sql: str) -> tuple[list[str], list[tuple[Any, ...]]]:
+    """Ask the catalogue and return the names of the columns and the rows; quicker than Arrow for what is only shown.
 
     Raises
     ------
     QueryError
-        If DuckDB cannot answer, or Parquet is asked for on the screen.
+        If DuckDB cannot answer; one line.
     """
-    suffixes = {".csv": "csv", ".json": "json", ".parquet": "parquet"}
-    form = form or (suffixes.get(out.suffix, "table") if out is not None else "table")
-    if form == "parquet" and out is None:
-        raise QueryError("--format parquet needs --out FILE: a terminal cannot show it")
-    if out is not None and not out.parent.is_dir():
-        raise QueryError(f"--out {out}: the folder {out.parent} does not exist; make it first")
-    catalogue.write(open_store(), sql, form=form, out=out)
+    with connect(open_store()) as catalogue:
+        return catalogue.fetch(sql)
+
+
+def save_query(sql: str, out: Path, form: Literal["csv", "parquet"]) -> None:
+    """Ask the catalogue and write the answer to a file, which is replaced as a whole or not at all.
+
+    Raises
+    ------
+    QueryError
+        If DuckDB cannot answer, or the folder of the file does not exist.
+    """
+    if not out.parent.is_dir():
+        raise QueryError(f"{out}: the folder {out.parent} does not exist; make it first")
+    with connect(open_store()) as catalogue, tempfile.TemporaryDirectory(dir=out.parent, prefix=".vines-") as folder:
+        part = Path(folder) / "part"
+        catalogue.save(sql, part, form)
+        part.replace(out)
 
 
 def checks(name: str | None = None) -> list[dict[str, Any]]:
@@ -80,4 +101,4 @@ def checks(name: str | None = None) -> list[dict[str, Any]]:
     if not rows:
         what = name or "any pipeline"
         raise UnknownNameError(f"nothing has been checked for {what}; run 'vines run {name or 'quickstart'}' first")
-    return json.loads(json.dumps(rows))
+    return rows

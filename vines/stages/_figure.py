@@ -60,7 +60,7 @@ def _lines(stage: Input, axis: str) -> Iterable[BranchLine]:
     """Yield a line for each impact of the orbits of each branch."""
     orbits = stage.table("orbits")
     for branch in stage.table("branches").to_pylist():
-        mine = orbits.filter(pc.equal(orbits["branch_id"], branch["branch_id"]))
+        mine = orbits.filter(pc.field("branch_id") == branch["branch_id"])
         x = _numpy(mine)(axis)
         stable = mine["stable"].to_numpy(zero_copy_only=False).astype(bool)
         values, sides = _per_impact(mine)
@@ -119,6 +119,4 @@ def _periods(name: str) -> int:
 def _caption(stages: Iterable[Input], axis: str) -> str:
     fixed = next(iter(stages)).params
     symbols = {"mu": r"\mu", "A": "A", "Omega": r"\Omega", "r": "r", "lam": r"\lambda"}
-    return ",  ".join(
-        f"${symbols[name]} = {fixed[name]:.4g}$" for name in symbols if name != axis and name in fixed
-    )
+    return ",  ".join(f"${symbols[name]} = {fixed[name]:.4g}$" for name in symbols if name != axis and name in fixed)

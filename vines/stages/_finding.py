@@ -28,7 +28,9 @@ def find_logs(name: str) -> list[Path]:
     if name.endswith(".mcap") or Path(name).is_file():
         path = Path(name)
         if not path.is_file():
-            raise FileMissingError(f"{name}: there is no such file; 'vines query \"select * from logs\"' lists the logs")
+            raise FileMissingError(
+                f"{name}: there is no such file; 'vines query \"select * from logs\"' lists the logs"
+            )
         return [path]
     store = open_store()
     logs = {
@@ -44,7 +46,9 @@ def find_logs(name: str) -> list[Path]:
         found = [path for key, path in logs[stage].items() if key.startswith(point)]
         if len(found) == 1:
             return found
-        raise UnknownNameError(f"stage {stage!r} has {len(found)} logs of point {point!r}: {nearest(point, logs[stage])}")
+        raise UnknownNameError(
+            f"stage {stage!r} has {len(found)} logs of point {point!r}: {nearest(point, logs[stage])}"
+        )
     by_id = {key: path for paths in logs.values() for key, path in paths.items()}
     if name in by_id:
         return [by_id[name]]

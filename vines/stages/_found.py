@@ -76,7 +76,9 @@ def _attractors(rows: list[dict[str, Any]]) -> str:
         (row,) = rows
         side = "" if row["symmetric"] is None else ("symmetric " if row["symmetric"] else "asymmetric ")
         alias = f" (the paper's {row['alias']})" if row["alias"] != row["name"] else ""
-        return f"A = {row['A']:g}: {side}{next(iter(kinds))}{alias}, max|x1| {row['reduction']:.3g} of that with no ball"
+        return (
+            f"A = {row['A']:g}: {side}{next(iter(kinds))}{alias}, max|x1| {row['reduction']:.3g} of that with no ball"
+        )
     listed = ", ".join(f"{count} {kind}" for kind, count in kinds.most_common(6))
     return f"{len(rows)} points: {listed}"
 

@@ -111,9 +111,7 @@ def _claims_file(options: Any, root: Path) -> tuple[Path, ...]:
     for file in (root / "pipelines" / "claims.toml", shipped("pipelines") / "claims.toml"):
         if file.is_file():
             return (file,)
-    raise FileMissingError(
-        "pipelines/claims.toml, the published values, is missing; take it from the vines sources"
-    )
+    raise FileMissingError("pipelines/claims.toml, the published values, is missing; take it from the vines sources")
 
 
 def register_kinds() -> None:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from vines.pipeline import available, find, load, plan
@@ -77,10 +76,16 @@ def run(
         After the run, if points or stages failed; the rest is stored.
     """
     pipeline = load_pipeline(name, overrides)
-    from vines.pipeline import run_pipeline
+    from vines.pipeline import run_pipeline, silent
 
     summary = run_pipeline(
-        pipeline, open_store(), stages=stages, jobs=jobs, force=force, retry_failed=retry_failed, report=report
+        pipeline,
+        open_store(),
+        stages=stages,
+        jobs=jobs,
+        force=force,
+        retry_failed=retry_failed,
+        report=report or silent,
     )
     summary.check()
     return summary
@@ -116,11 +121,9 @@ def status(
     return plan(load_pipeline(name, overrides), open_store(), stages)
 
 
-def warm_up(report: Callable[[str], object] = print) -> Path:
-    """Compile all kernels, or load them from the cache, with one line for each group; return the cache folder."""
-    from vines import attractors, dynamics, orbits
+def warm_up(report: Callable[[str], object] = print) -> None:
+    """Compile all kernels, or load them from the cache, with one line for each group."""
+    from vines import attractors, orbits
 
-    report(f"kernels: {dynamics.CACHE}")
-    for room in (dynamics, orbits, attractors):
+    for room in (attractors, orbits):  # the first compiles the dynamics as well
         room.warm_up(report)
-    return dynamics.CACHE

@@ -34,9 +34,7 @@ def compute(job: Job) -> Batch:
             record=options.record,
         )
         rows.append(
-            point_row(
-                point.id, attractor, start, carry=job.carry, settled_for=options.settle, record=options.record
-            )
+            point_row(point.id, attractor, start, carry=job.carry, settled_for=options.settle, record=options.record)
         )
         impacts.append(impact_rows(point.id, attractor.params, representative(attractor, options.keep)))
         if job.carry is not None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, TypedDict
 
 import numpy as np
 import pyarrow as pa
@@ -38,9 +38,7 @@ def compute(job: Job) -> Batch:
         wait = 0 if options.settle else CLASSIFY_AFTER
         attractor = settle(p, **_initial(run.final), settle=wait, record=CLASSIFY_OVER)
         settled_for = options.settle + options.record + wait
-        rows.append(
-            point_row(point.id, attractor, start, carry=None, settled_for=settled_for, record=CLASSIFY_OVER)
-        )
+        rows.append(point_row(point.id, attractor, start, carry=None, settled_for=settled_for, record=CLASSIFY_OVER))
         impacts.append(impact_rows(point.id, p, representative(attractor, CLASSIFY_OVER)))
         logs[point.id] = f"{point.id}.mcap"
         write_run(
@@ -56,6 +54,15 @@ def compute(job: Job) -> Batch:
     return Batch(tables={"points": rows, "impacts": pa.table(columns)}, logs=logs)
 
 
-def _initial(state: dict[str, float]) -> dict[str, float]:
+class _Initial(TypedDict):
+    x1: float
+    v1: float
+    x2: float
+    v2: float
+    t: float
+    phi: float
+
+
+def _initial(state: dict[str, float]) -> _Initial:
     """Return the arguments with which `simulate` and `settle` go on from a state, at time 0 and in its phase."""
-    return {name: state[name] for name in STATE[:4]} | {"t": 0.0, "phi": state["phase"]}
+    return _Initial(x1=state["x1"], v1=state["v1"], x2=state["x2"], v2=state["v2"], t=0.0, phi=state["phase"])
