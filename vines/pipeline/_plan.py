@@ -47,12 +47,17 @@ class StagePlan:
 
 @dataclass
 class Prepared:
-    """A stage with its ingredients, ready to be planned or computed."""
+    """A stage with its ingredients and points, ready to be planned or computed."""
 
     stage: Stage
     ingredients: Ingredients
-    origin: str
+    grid: Grid
     pin: dict[str, Any]
+
+    @property
+    def origin(self) -> str:
+        """Identity of the point of another stage that starts its chains; empty if there is none."""
+        return self.grid.origin
 
     @cached_property
     def pool_key(self) -> str:
@@ -63,11 +68,6 @@ class Prepared:
     def request(self) -> str:
         """Key of what is asked for."""
         return self.ingredients.request
-
-    @cached_property
-    def grid(self) -> Grid:
-        """Its points."""
-        return Grid(self.stage, self.origin)
 
     def result_key(self, failed: Iterable[str] = ()) -> str:
         """Return the key of the result, given the points that failed."""
@@ -94,6 +94,13 @@ class Planner:
         self.keys: dict[str, str] = {}
         self.code = CodeDigests(store.cache / "code.json" if store.data.is_dir() else None)
         self._prepared: dict[str, Prepared] = {}
+        self._grids: dict[tuple[str, str], Grid] = {}
+
+    def afresh(self) -> Planner:
+        """Return a planner that looks at the store again, and keeps what does not depend on it."""
+        new = Planner(self.pipeline, self.store)
+        new._grids = self._grids
+        return new
 
     def prepare(self, name: str) -> Prepared:
         """Return a stage with its ingredients; the stages before it must have been planned."""
@@ -101,7 +108,8 @@ class Planner:
             stage = self.pipeline.stages[name]
             origin = self._origin(stage)
             ingredients = gather(stage, self.keys, origin, self.code, self.pipeline.root)
-            self._prepared[name] = Prepared(stage, ingredients, origin, self.pins.get(name, {}))
+            grid = self._grids.setdefault((name, origin), Grid(stage, origin))
+            self._prepared[name] = Prepared(stage, ingredients, grid, self.pins.get(name, {}))
         return self._prepared[name]
 
     def plan(self, name: str) -> StagePlan:

@@ -70,7 +70,7 @@ def run_pipeline(
         return RunSummary(pipeline.name, tuple(_kept(each) for each in plans))
     with store.writing(lambda: report(Event("waiting"))):
         # another process may have done some of it meanwhile
-        run = _Run(pipeline, store, jobs, retry_failed, report)
+        run = _Run(planner.afresh(), jobs, retry_failed, report)
         forced = set(order if named is None else named) if force else set()
         for name in order:
             run.stage(name, force=name in forced)
@@ -83,13 +83,13 @@ def run_pipeline(
 class _Run:
     """One run, stage by stage."""
 
-    def __init__(self, pipeline: Pipeline, store: Store, jobs: int | None, retry_failed: bool, report: Report) -> None:
-        self.pipeline = pipeline
-        self.store = store
+    def __init__(self, planner: Planner, jobs: int | None, retry_failed: bool, report: Report) -> None:
+        self.pipeline = planner.pipeline
+        self.store = planner.store
         self.jobs = jobs
         self.retry_failed = retry_failed
         self.report = report
-        self.planner = Planner(pipeline, store)
+        self.planner = planner
         self.outcomes: dict[str, StageOutcome] = {}
 
     def stage(self, name: str, *, force: bool) -> None:
