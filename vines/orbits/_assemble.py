@@ -14,7 +14,7 @@ from vines.orbits._floquet import half_map, monodromy, sorted_multipliers, squar
 from vines.orbits._orbit import Orbit
 from vines.orbits._survey import survey_kernel
 
-__all__ = ["assemble"]
+__all__ = ["assemble", "asymmetry"]
 
 Floats = npt.NDArray[np.float64]
 
@@ -42,7 +42,7 @@ def assemble(word: Word, p: Params, t: Floats, states: Floats, remark: str = "")
     side = np.array(word.sides, dtype=np.int64)
     c = constants(p)
     jacobians, residual, clearance, violation, wall = survey_kernel(c, duration, side, t, states)
-    symmetric = _is_symmetric(word, duration, t, states)
+    symmetric = asymmetry(word, duration, t, states) < _SAME
     half = sorted_multipliers(half_map(jacobians)) if symmetric else None
     for array in (t, states, jacobians):
         array.setflags(write=False)
@@ -75,10 +75,10 @@ def _canonical(word: Word, p: Params, t: Floats, states: Floats) -> tuple[Floats
     return times, np.concatenate([states[k:], states[:k]])
 
 
-def _is_symmetric(word: Word, duration: float, t: Floats, states: Floats) -> bool:
+def asymmetry(word: Word, duration: float, t: Floats, states: Floats) -> float:
+    """Return the largest difference, in any component, of an orbit to its mirror image; inf if its word forbids it."""
     if not word.symmetric:
-        return False
+        return math.inf
     half = len(t) // 2
-    return bool(
-        np.abs(t[half:] - t[:half] - duration / 2).max() < _SAME and np.abs(states[half:] + states[:half]).max() < _SAME
-    )
+    late, other = t[half:] - t[:half] - duration / 2, states[half:] + states[:half]
+    return float(max(np.abs(late).max(), np.abs(other).max()))

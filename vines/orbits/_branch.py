@@ -69,8 +69,9 @@ class Branch:
         What is worth a remark but changes no stability: pair_turns_real, where two multipliers meet on the real
         axis and a complex pair becomes two real ones, or the reverse.
     ends : tuple of str, str
-        Why the branch begins and ends where it does: ``range`` (of the parameter), ``grazing``, ``points`` (as many
-        as were allowed), ``lost`` (the corrector failed at the smallest step).
+        Why the branch begins and ends where it does: ``range`` (of the parameter), ``grazing``, ``symmetry_breaking``
+        or ``period_doubling`` (where it comes out of another family), ``points`` (as many as were allowed), ``lost``
+        (the corrector failed at the smallest step).
     """
 
     word: Word

@@ -49,47 +49,51 @@ def grazing_margin(point: Point) -> float:
     return min(orbit.min_clearance, float(np.min(orbit.side * orbit.w_dot)))
 
 
-def _multipliers(point: Point) -> Multipliers:
+def _whole(point: Point) -> Multipliers:
+    return point.orbit.multipliers
+
+
+def _half(point: Point) -> Multipliers:
+    # Next to a loss of symmetry rounding may hide that an orbit of the family is symmetric.
     half = point.orbit.half_multipliers
-    return point.orbit.multipliers if half is None else half
+    return np.sqrt(point.orbit.multipliers) if half is None else half
 
 
 def _fold(point: Point) -> float:
     return float(point.tangent[-1])
 
 
-def _minus_one(point: Point) -> float:
-    return float(np.prod(1 + _multipliers(point)).real)
+def _minus_one(m: Multipliers) -> float:
+    return float(np.prod(1 + m).real)
 
 
-def _product_one(point: Point) -> float:
-    m = _multipliers(point)
+def _product_one(m: Multipliers) -> float:
     return float(np.prod([1 - m[i] * m[j] for i, j in _PAIRS]).real)
 
 
-def _discriminant(point: Point) -> float:
-    m = _multipliers(point)
+def _discriminant(m: Multipliers) -> float:
     return float(np.prod([(m[i] - m[j]) ** 2 for i, j in _PAIRS]).real)
 
 
 def conditions(symmetric: bool) -> tuple[Condition, ...]:
     """Return the defining equations for a family of symmetric or of other orbits."""
+    of = _half if symmetric else _whole
     return (
         Condition("fold", _fold),
-        Condition("symmetry_breaking" if symmetric else "period_doubling", _minus_one),
-        Condition("neimark_sacker", _product_one),
-        Condition("pair_turns_real", _discriminant),
+        Condition("symmetry_breaking" if symmetric else "period_doubling", lambda point: _minus_one(of(point))),
+        Condition("neimark_sacker", lambda point: _product_one(of(point))),
+        Condition("pair_turns_real", lambda point: _discriminant(of(point))),
         Condition(GRAZING, grazing_margin),
     )
 
 
-def critical_multiplier(kind: str, point: Point) -> tuple[complex, complex] | None:
+def critical_multiplier(kind: str, point: Point, symmetric: bool) -> tuple[complex, complex] | None:
     """Return the multiplier that makes the bifurcation, of the map it is defined by and over the whole period.
 
     None, if the zero of the defining equation is no bifurcation: a product of two real multipliers that passes through
     one is no Neimark-Sacker point. Nan for grazing, where the Jacobian jumps.
     """
-    m = _multipliers(point)
+    m = _half(point) if symmetric else _whole(point)
     if kind == GRAZING or not np.isfinite(m).all():
         found = complex(np.nan, np.nan)
     elif kind == "fold":
@@ -105,4 +109,4 @@ def critical_multiplier(kind: str, point: Point) -> tuple[complex, complex] | No
         i, j = min(_PAIRS, key=lambda pair: abs(m[pair[0]] - m[pair[1]]))
         # Two multipliers that differ by rounding are one, whose real part is the mean.
         found = complex((m[i] + m[j]).real / 2)
-    return complex(found), complex(found**2 if point.orbit.half_multipliers is not None else found)
+    return complex(found), complex(found**2 if symmetric else found)

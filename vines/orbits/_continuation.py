@@ -20,6 +20,7 @@ from vines.orbits._conditions import (
     critical_multiplier,
     grazing_margin,
 )
+from vines.orbits._general import GeneralProblem, origin
 from vines.orbits._orbit import Orbit
 from vines.orbits._problem import Curve, Point, Problem
 from vines.orbits._symmetric import SymmetricProblem
@@ -70,8 +71,7 @@ def continue_orbit(
     Raises
     ------
     ParameterError
-        If the parameter does not exist, `stop` is out of its range or its present value, or the orbit is of a kind that
-        cannot be followed.
+        If the parameter does not exist, or `stop` is out of its range or its present value.
     OrbitNotFound
         If the branch is lost while a bifurcation is being located.
 
@@ -103,7 +103,7 @@ def continue_orbit(
 def _problem(orbit: Orbit, parameter: str) -> Problem:
     if orbit.symmetric and len(orbit.word) == 2:
         return SymmetricProblem(orbit, parameter)
-    raise ParameterError(f"{orbit.word} is asymmetric or not 1:1/pT; only symmetric 1:1/pT orbits can be followed")
+    return GeneralProblem(orbit, parameter)
 
 
 @dataclass
@@ -149,8 +149,9 @@ class _Walk:
                 if length < _SMALLEST_STEP:
                     return "lost"
                 there, iterations, last = self._advance(here, length)
-            if self._record(here, there):
-                return GRAZING
+            end = self._record(here, there)
+            if end is not None:
+                return end
             if last:
                 return "range"
             if iterations <= 5 and here.tangent @ there.tangent > math.sqrt(_SHARPEST_TURN):
@@ -160,7 +161,15 @@ class _Walk:
 
     def _advance(self, here: Point, length: float) -> tuple[Point | None, int, bool]:
         """Return the next point, how many Newton steps it took, and whether it is at the end of the range."""
-        found = self.curve.correct(here.y + length * self.curve.scale * here.tangent, here.tangent)
+        ahead = here.y + length * self.curve.scale * here.tangent
+        if not self.low < ahead[-1] < self.high:
+            # The model may not exist beyond the range, so the corrector is not to look there.
+            bound = self.low if ahead[-1] <= self.low else self.high
+            ahead = here.y + (bound - here.value) / (ahead[-1] - here.value) * (ahead - here.y)
+            y = self.curve.at_value(ahead, bound)
+            found = None if y is None else (y, 1)
+        else:
+            found = self.curve.correct(ahead, here.tangent)
         if found is None:
             return None, 0, False
         y, iterations = found
@@ -176,15 +185,17 @@ class _Walk:
         turned = here.tangent @ there.tangent < _SHARPEST_TURN
         return (None, 0, False) if turned else (there, iterations, last)
 
-    def _record(self, here: Point, there: Point) -> bool:
-        """Add what lies between two points, and the second one; say whether the branch ends at a grazing there."""
+    def _record(self, here: Point, there: Point) -> str | None:
+        """Add what lies between two points, and the second one; return why the branch ends there, if it does."""
         met = sorted(
             (hit for condition in self.conditions if (hit := self._locate(condition, here, there)) is not None),
             key=lambda hit: hit[0],
         )
         before = here
-        for _, kind, point in met:
-            critical = critical_multiplier(kind, point)
+        for _, found, point in met:
+            joined = origin(point.orbit) if found == "fold" and not self.orbit.symmetric else None
+            kind = joined or found
+            critical = critical_multiplier(found, point, self.orbit.symmetric)
             if critical is None:
                 continue
             half, whole = critical
@@ -197,10 +208,12 @@ class _Walk:
             self.orbits.append(point.orbit)
             before = point
             if kind == GRAZING and not self.beyond_grazing and grazing_margin(here) > 0:
-                return True
+                return GRAZING
+            if joined:
+                return kind
         self._add_values(before, there)
         self.orbits.append(there.orbit)
-        return False
+        return None
 
     def _locate(self, condition: Condition, here: Point, there: Point) -> tuple[float, str, Point] | None:
         first, second = condition.function(here), condition.function(there)
@@ -213,8 +226,16 @@ class _Walk:
                 seen[fraction] = self._between(here, there, fraction)
             return condition.function(seen[fraction])
 
-        root = float(root_scalar(function, bracket=(0.0, 1.0), method="brentq", xtol=1e-15, rtol=1e-14).root)
-        function(root)
+        try:
+            root = float(root_scalar(function, bracket=(0.0, 1.0), method="brentq", xtol=1e-15, rtol=1e-14).root)
+            function(root)
+        except OrbitNotFound:
+            # Where families join the equations degenerate. The parameter has an extremum there, so that next to it
+            # its value is right to the square of the distance.
+            last = list(seen)[-1]
+            if condition.type != "fold" or origin(seen[last].orbit) is None:
+                raise
+            root = last
         if condition.type == GRAZING:
             # Of the points that the search has seen next to the root take one that is still admissible.
             inside = [fraction for fraction, point in seen.items() if grazing_margin(point) > 0]

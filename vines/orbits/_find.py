@@ -5,26 +5,34 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
+import numpy.typing as npt
+
 from vines.errors import OrbitNotFound
 from vines.model import Params, Word
+from vines.orbits._general import refine, search
 from vines.orbits._orbit import Orbit
 from vines.orbits._symmetric import no_symmetric_orbit, symmetric_orbits
 
 __all__ = ["find_orbit"]
 
 
-def find_orbit(word: str | Word, p: Params) -> Orbit:
+def find_orbit(word: str | Word, p: Params, guess: Orbit | npt.ArrayLike | None = None) -> Orbit:
     """Return the periodic orbit of a word.
 
     Of several the symmetric admissible one is returned, else a stable one, else the one with the smallest largest
-    multiplier; its remark counts the others. If none is admissible the best of them comes with
+    multiplier; its remark counts the others that the search has seen. If none is admissible the best of them comes with
     ``admissible = False`` and the time and side of the violation.
 
     Parameters
     ----------
     word : str or Word
-        Such as ``LR`` or ``LR/3T``.
+        Such as ``LR``, ``LLR`` or ``LRLR/2T``.
     p : Params
+    guess : Orbit or (N,) array, optional
+        An orbit of the word at nearby parameters, or times of the impacts in the canonical order of the word, for a
+        forcing of phase zero at t = 0. The solution that Newton's method finds from there is returned. Without it
+        symmetric 1:1/pT orbits are explicit, and others searched for from many starts, which finds the most attracting
+        solutions but is no proof that there are no more.
 
     Returns
     -------
@@ -35,31 +43,47 @@ def find_orbit(word: str | Word, p: Params) -> Orbit:
     OrbitNotFound
         If there is none; the message says how near the search came.
     ParameterError
-        If `word` is not a word.
+        If `word` is not a word, or the guess does not fit it.
 
     Examples
     --------
     >>> from vines.model import Params
     >>> orbit = find_orbit("LR", Params(mu=0.01, A=0.017))
-    >>> print(orbit.name, orbit.symmetric, orbit.stable, f"{orbit.max_multiplier:.4f}")
-    1:1 True True ...
+    >>> print(orbit.name, orbit.symmetric, orbit.stable, f"{orbit.max_multiplier:.6f}")
+    1:1 True True 0.955539
+    >>> print(find_orbit("LLR", Params(mu=0.01, A=0.023)).stable)
+    True
     """
     word = Word(word)
-    if not (word.symmetric and len(word) == 2):
-        raise OrbitNotFound(
-            f"no search for {word} yet without the symmetry of 1:1/pT, p odd; try LR, or simulate and settle"
-        )
-    found = symmetric_orbits(p, word.p)
-    if not found:
+    if guess is not None:
+        return refine(word, p, guess)
+    explicit = symmetric_orbits(p, word.p) if word.symmetric and len(word) == 2 else []
+    if any(orbit.admissible for orbit in explicit):
+        return choose(explicit)
+    found, nearest = search(word, p)
+    known = explicit + [orbit for orbit in found if not (orbit.symmetric and explicit)]
+    if known:
+        return choose(known)
+    if word.symmetric and len(word) == 2:
         raise no_symmetric_orbit(p, word)
-    return choose(found)
+    raise OrbitNotFound(
+        f"no {word} orbit at {p}: the nearest of all starts that failed left a defect of {nearest:.2g} in v2; "
+        "try other parameters, or simulate there and give the impact times of the attractor as guess"
+    )
 
 
 def choose(found: Sequence[Orbit]) -> Orbit:
     """Return the orbit to show of several, with a remark that counts the others."""
     best = min(
         found,
-        key=lambda orbit: (not orbit.admissible, not orbit.symmetric, not orbit.stable, orbit.max_multiplier),
+        # Mirror images have the same multipliers up to rounding; of them the one that begins first.
+        key=lambda orbit: (
+            not orbit.admissible,
+            not orbit.symmetric,
+            not orbit.stable,
+            round(orbit.max_multiplier, 9),
+            orbit.t[0],
+        ),
     )
     others = [orbit for orbit in found if orbit is not best]
     if not others:

@@ -6,7 +6,8 @@ import time
 from collections.abc import Callable
 
 from vines.model import Params
-from vines.orbits._symmetric import symmetric_orbits
+from vines.orbits._find import find_orbit
+from vines.orbits._general import refine
 
 __all__ = ["warm_up"]
 
@@ -27,5 +28,6 @@ def warm_up(report: Callable[[str], object] = print) -> None:
     1
     """
     began = time.perf_counter()
-    symmetric_orbits(Params(mu=0.01, A=0.017))
+    orbit = find_orbit("LR", Params(mu=0.01, A=0.017))
+    refine(orbit.word, orbit.params, orbit)
     report(f"  periodic orbits, admissibility: {time.perf_counter() - began:.1f} s")

@@ -1,0 +1,207 @@
+"""The closing equations of an orbit of any word, with the unknown state eliminated linearly (docs/orbits.md).
+
+Given the times of the impacts everything else is linear in the kicks d_j that the oscillator gets from the ball: the
+impact law determines them, and that the ball's momentum jumps by the opposite of each kick is what remains: N
+equations in the N times.
+"""
+
+from __future__ import annotations
+
+import cmath
+import math
+
+import numpy as np
+
+from vines.dynamics._jit import njit
+
+__all__ = ["closing_kernel", "eliminate", "newton_kernel"]
+
+
+@njit
+def eliminate(matrix, right):
+    """Solve matrix x = right in place, right of shape (N, M), by Gaussian elimination; say whether it was regular."""
+    N = matrix.shape[0]
+    for k in range(N):
+        pivot = k
+        for i in range(k + 1, N):
+            if abs(matrix[i, k]) > abs(matrix[pivot, k]):
+                pivot = i
+        if not abs(matrix[pivot, k]) > 0.0:
+            return False
+        if pivot != k:
+            for j in range(N):
+                matrix[k, j], matrix[pivot, j] = matrix[pivot, j], matrix[k, j]
+            for j in range(right.shape[1]):
+                right[k, j], right[pivot, j] = right[pivot, j], right[k, j]
+        for i in range(k + 1, N):
+            factor = matrix[i, k] / matrix[k, k]
+            for j in range(k + 1, N):
+                matrix[i, j] -= factor * matrix[k, j]
+            for j in range(right.shape[1]):
+                right[i, j] -= factor * right[k, j]
+    for k in range(N - 1, -1, -1):
+        for j in range(right.shape[1]):
+            total = right[k, j]
+            for i in range(k + 1, N):
+                total -= matrix[k, i] * right[i, j]
+            right[k, j] = total / matrix[k, k]
+    return True
+
+
+@njit
+def closing_kernel(c, duration, side, t):
+    """Return the closing equations at given impact times, and what was eliminated on the way.
+
+    Parameters
+    ----------
+    c : vines.dynamics._constants.Constants
+    duration : float
+        Period pT.
+    side : (N,) int array
+    t : (N,) float array
+        Impact times, increasing within one period.
+
+    Returns
+    -------
+    regular : bool
+        Whether the elimination went through.
+    defect : (N,) float array
+        mu (v2⁺_j - v2_j) + d_j, zero on an orbit.
+    slope : (N, N) float array
+        Its derivatives in the times.
+    states : (N, 4) float array
+        x1, v1, x2, v2 just before each impact.
+    """
+    N = t.size
+    gamma = c.free.gamma
+    s = complex(-c.free.half, gamma)
+    weight = 1.0 / (1.0 - cmath.exp(s * duration))
+    q = complex(c.free.qr, c.free.qi)
+
+    # g, g', g'' of t_j - t_k modulo the period; on the diagonal g(0), and g' just before the kick.
+    g = np.empty((3, N, N))
+    forced = np.empty((3, N))
+    for j in range(N):
+        turned = q * cmath.exp(complex(0.0, c.Omega * t[j]))
+        forced[0, j] = turned.real
+        forced[1, j] = -c.Omega * turned.imag
+        forced[2, j] = -c.Omega * c.Omega * turned.real
+        for k in range(N):
+            tau = t[j] - t[k] if j > k else t[j] - t[k] + duration
+            kernel = weight * cmath.exp(s * tau)
+            g[0, j, k] = kernel.imag / gamma
+            g[1, j, k] = (s * kernel).imag / gamma
+            g[2, j, k] = (s * s * kernel).imag / gamma
+
+    # Ball: v2⁺_j = (x1_{j+1} - side_{j+1} - x1_j + side_j)/dt_j as rows over the kicks, plus a constant.
+    dt = np.empty(N)
+    ball = np.empty((N, N))
+    ball_0 = np.empty(N)
+    for j in range(N):
+        n = (j + 1) % N
+        dt[j] = t[n] - t[j] if n > j else t[n] - t[j] + duration
+        ball_0[j] = (forced[0, n] - side[n] - forced[0, j] + side[j]) / dt[j]
+        for k in range(N):
+            ball[j, k] = (g[0, n, k] - g[0, j, k]) / dt[j]
+
+    # Impact law d_j + e (v1_j - v2_j) = 0 with v2_j = v2⁺_{j-1}, solved for the kicks.
+    e = c.mu * c.pass2
+    law = np.empty((N, N))
+    kicks = np.empty((N, 1))
+    for j in range(N):
+        b = j - 1 if j > 0 else N - 1
+        kicks[j, 0] = -e * (forced[1, j] - ball_0[b])
+        for k in range(N):
+            law[j, k] = e * (g[1, j, k] - ball[b, k])
+        law[j, j] += 1.0
+    defect = np.empty(N)
+    slope = np.empty((N, N))
+    states = np.empty((N, 4))
+    if not eliminate(law.copy(), kicks):
+        return False, defect, slope, states
+    d = kicks[:, 0].copy()
+
+    x = forced[0] + np.ascontiguousarray(g[0]) @ d
+    v = forced[1] + np.ascontiguousarray(g[1]) @ d
+    w = ball_0 + ball @ d
+
+    # Derivatives in the times with the kicks held, then the kicks' own.
+    dx = np.zeros((N, N))
+    dv = np.zeros((N, N))
+    for j in range(N):
+        dx[j, j] = forced[1, j]
+        dv[j, j] = forced[2, j]
+        for k in range(N):
+            if k != j:
+                dx[j, j] += d[k] * g[1, j, k]
+                dv[j, j] += d[k] * g[2, j, k]
+                dx[j, k] = -d[k] * g[1, j, k]
+                dv[j, k] = -d[k] * g[2, j, k]
+    dw = np.empty((N, N))
+    for j in range(N):
+        n = (j + 1) % N
+        for k in range(N):
+            dw[j, k] = (dx[n, k] - dx[j, k]) / dt[j]
+        dw[j, n] -= w[j] / dt[j]
+        dw[j, j] += w[j] / dt[j]
+    moved = np.empty((N, N))
+    momentum = np.empty((N, N))
+    for j in range(N):
+        b = j - 1 if j > 0 else N - 1
+        for k in range(N):
+            moved[j, k] = -e * (dv[j, k] - dw[b, k])
+            momentum[j, k] = c.mu * (ball[j, k] - ball[b, k])
+            slope[j, k] = c.mu * (dw[j, k] - dw[b, k])
+        momentum[j, j] += 1.0
+        defect[j] = c.mu * (w[j] - w[b]) + d[j]
+        states[j, 0] = x[j]
+        states[j, 1] = v[j]
+        states[j, 2] = x[j] - side[j]
+        states[j, 3] = w[b]
+    eliminate(law.copy(), moved)
+    slope += momentum @ moved
+    return True, defect, slope, states
+
+
+@njit
+def newton_kernel(c, duration, side, t, iterations):
+    """Solve the closing equations by damped Newton steps.
+
+    Returns
+    -------
+    converged : bool
+    t : (N,) float array
+        The times at the end, whether converged or not.
+    defect : float
+        Largest defect there.
+    states : (N, 4) float array
+    """
+    N = t.size
+    t = t.copy()
+    regular, defect, slope, states = closing_kernel(c, duration, side, t)
+    size = np.max(np.abs(defect)) if regular else math.inf
+    for _ in range(iterations):
+        step = defect.copy().reshape((N, 1))
+        if not regular or not np.isfinite(size) or not eliminate(slope, step):
+            return False, t, size, states
+        # No flight time may shrink to less than a fifth of itself in one step.
+        share = 1.0
+        for j in range(N):
+            n = (j + 1) % N
+            dt = t[n] - t[j] if n > j else t[n] - t[j] + duration
+            change = step[j, 0] - step[n, 0]
+            if change < -0.8 * dt / share:
+                share = -0.8 * dt / change
+        largest = np.max(np.abs(step))
+        while True:
+            trial = t - share * step[:, 0]
+            regular, defect, slope, states = closing_kernel(c, duration, side, trial)
+            better = np.max(np.abs(defect)) if regular else math.inf
+            if better < size or share * largest < 1e-12 * duration or share < 1e-3:
+                break
+            share *= 0.5
+        t = trial
+        size = better
+        if share * largest < 1e-13 * duration:
+            return np.isfinite(size) and size < 1e-9 * c.mu, t, size, states
+    return False, t, size, states

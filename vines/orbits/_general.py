@@ -1,0 +1,201 @@
+"""Orbits of any word: Newton's method from a guess, a search from many starts, and the family for continuation."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import numpy.typing as npt
+
+from vines.dynamics._constants import constants
+from vines.errors import OrbitNotFound, ParameterError
+from vines.model import Params, Word
+from vines.orbits._assemble import assemble, asymmetry
+from vines.orbits._equations import closing_kernel, newton_kernel
+from vines.orbits._orbit import Orbit
+
+__all__ = ["GeneralProblem", "origin", "refine", "search"]
+
+Floats = npt.NDArray[np.float64]
+
+_ITERATIONS = 60
+_STARTS_PER_IMPACT = 60
+_SAME = 1e-6
+"""Largest difference of times and states of two orbits that are one, or of an orbit to its own repetition."""
+
+_NEAR = 1e-3
+"""The same at a point where families join, which the degenerate equations there give to half the digits only."""
+
+_DIFFERENCE = 1e-6
+"""Relative step of the differences in the parameter: they steer Newton's method and do not move its fixed point."""
+
+
+def _sides(word: Word) -> npt.NDArray[np.int64]:
+    return np.array(word.sides, dtype=np.int64)
+
+
+def refine(word: Word, p: Params, guess: Orbit | npt.ArrayLike) -> Orbit:
+    """Return the orbit that Newton's method finds from a guess.
+
+    Raises
+    ------
+    OrbitNotFound
+        If it does not converge to an orbit of this word that meets the walls from inside.
+    ParameterError
+        If the guess does not fit the word.
+    """
+    if isinstance(guess, Orbit):
+        if guess.word != word:
+            raise ParameterError(f"the guess is an orbit of {guess.word}, not of {word}; give one of the same word")
+        times = guess.t * guess.params.Omega / p.Omega
+    else:
+        times = np.asarray(guess, dtype=np.float64)
+    duration = word.p * p.period
+    if times.shape != (len(word),) or not np.all(np.diff(times) > 0) or not times[-1] - times[0] < duration:
+        raise ParameterError(
+            f"the guess for {word} has to be {len(word)} increasing times within {word.p} forcing periods, "
+            f"{duration:.6g}; it is {np.array2string(times, precision=4, threshold=8)}"
+        )
+    converged, t, defect, states = newton_kernel(constants(p), duration, _sides(word), times, _ITERATIONS)
+    if not converged:
+        raise OrbitNotFound(
+            f"no {word} orbit from this guess at {p}: Newton's method stopped at a defect of {defect / p.mu:.2g}; "
+            "give a nearer guess, such as an orbit at nearby parameters"
+        )
+    if not _proper(word, duration, t, states):
+        raise OrbitNotFound(
+            f"no {word} orbit from this guess at {p}: it leads to a solution that passes through a wall or has a "
+            "shorter period; give another guess"
+        )
+    return assemble(word, p, t, states)
+
+
+def search(word: Word, p: Params) -> tuple[list[Orbit], float]:
+    """Return the different orbits of a word that are found from many starts, and the least defect of a failed one.
+
+    The starts are drawn from a fixed seed, uniformly over the flight times and the phase.
+    """
+    c, duration, side = constants(p), word.p * p.period, _sides(word)
+    rng = np.random.default_rng(len(word))
+    found: list[Orbit] = []
+    nearest = math.inf
+    for _ in range(_STARTS_PER_IMPACT * len(word)):
+        flights = rng.dirichlet(np.ones(len(word))) * duration
+        start = rng.uniform(0, p.period) + np.concatenate([[0.0], np.cumsum(flights[:-1])])
+        converged, t, defect, states = newton_kernel(c, duration, side, start, _ITERATIONS)
+        if not converged:
+            nearest = min(nearest, defect / p.mu)
+        elif _proper(word, duration, t, states):
+            orbit = assemble(word, p, t, states)
+            if not any(_same(orbit, other) for other in found):
+                found.append(orbit)
+    return found, nearest
+
+
+def _proper(word: Word, duration: float, t: Floats, states: Floats) -> bool:
+    """Say whether a solution is an orbit of least period pT whose impacts are in order and come from inside."""
+    if not np.all(np.diff(t, append=t[0] + duration) > 0):
+        return False
+    if not np.all(np.array(word.sides) * (states[:, 1] - states[:, 3]) > 0):
+        return False
+    return _repetition(word, duration, t, states) >= _SAME
+
+
+def _repetition(word: Word, duration: float, t: Floats, states: Floats) -> float:
+    """Return how far, in any component, an orbit is from the repetition of one with a shorter period."""
+    least = math.inf
+    for times in range(2, word.p + 1):
+        if word.p % times or len(word) % times:
+            continue
+        shift = len(word) // times
+        later = np.append(t[shift:], t[:shift] + duration) - duration / times
+        difference = max(np.abs(later - t).max(), np.abs(np.roll(states, -shift, axis=0) - states).max())
+        least = min(least, float(difference))
+    return least
+
+
+def origin(orbit: Orbit) -> str | None:
+    """Return the bifurcation by which an orbit at a fold of its family comes out of another family, None if it is none.
+
+    A family that broke the symmetry meets its mirror image there, a doubled one its own repetition; both look like
+    folds from within.
+    """
+    if orbit.word.symmetric and asymmetry(orbit.word, orbit.period, orbit.t, orbit.states) < _NEAR:
+        return "symmetry_breaking"
+    if _repetition(orbit.word, orbit.period, orbit.t, orbit.states) < _NEAR:
+        return "period_doubling"
+    return None
+
+
+def _same(one: Orbit, other: Orbit) -> bool:
+    """Say whether two orbits at the same parameters are one, whichever of its repeated letters comes first."""
+    T, N = one.params.period, len(one.t)
+    for k in one.word.rotations():
+        times = np.append(other.t[k:], other.t[:k] + other.period)
+        shift = times - one.t
+        shift -= T * np.round(shift[0] / T)
+        if max(np.abs(shift).max(), np.abs(other.states[np.arange(k, k + N) % N] - one.states).max()) < _SAME:
+            return True
+    return False
+
+
+class GeneralProblem:
+    """Orbits of any word as the zero set of n equations in (n phases of the impacts, parameter); see `Problem`.
+
+    n is N, or N/2 for a symmetric orbit: the family is then kept symmetric, so that its equations stay regular where
+    it loses stability by symmetry breaking.
+
+    Parameters
+    ----------
+    orbit : Orbit
+        Gives the word and the parameters that stay fixed.
+    parameter : str
+        Name of the parameter that varies.
+    """
+
+    def __init__(self, orbit: Orbit, parameter: str) -> None:
+        self.word = orbit.word
+        self.parameter = parameter
+        self._fixed = orbit.params.as_dict()
+        self._side = _sides(orbit.word)
+        N = len(orbit.word)
+        n = N // 2 if orbit.symmetric else N
+        self._free = n
+        self._copies = np.tile(np.eye(n), (N // n, 1))
+        self._later = np.pi * orbit.word.p * (np.arange(N) // n)
+        self.start = np.append(orbit.t[:n] * orbit.params.Omega, self._fixed[parameter])
+
+    def _at(self, y: Floats) -> tuple[Params, Floats, Floats, Floats, Floats]:
+        """Return parameters, impact times, defects, their derivatives in the free phases, and the states."""
+        p = Params(**{**self._fixed, self.parameter: float(y[-1])})
+        duration = self.word.p * p.period
+        t = (self._copies @ y[:-1] + self._later) / p.Omega
+        regular, defect, slope, states = closing_kernel(constants(p), duration, self._side, t)
+        if not regular:
+            defect = np.full(len(self._side), np.nan)
+        n = self._free
+        return p, t, defect[:n] / p.mu, slope[:n] @ self._copies / (p.mu * p.Omega), states
+
+    def residual(self, y: Floats) -> Floats:
+        """Return the defects of the ball's velocity, shape (n,)."""
+        return self._at(y)[2]
+
+    def jacobian(self, y: Floats) -> Floats:
+        """Return their derivatives in the phases (analytic) and in the parameter (differences), shape (n, n + 1)."""
+        step = np.zeros(len(y))
+        step[-1] = _DIFFERENCE * max(abs(y[-1]), 0.01)
+        low, high = y - step, y + step
+        try:
+            below = self._at(low)[2]
+        except ParameterError:
+            low, below = y, self._at(y)[2]
+        try:
+            above = self._at(high)[2]
+        except ParameterError:
+            high, above = y, self._at(y)[2]
+        return np.column_stack([self._at(y)[3], (above - below) / (high[-1] - low[-1])])
+
+    def orbit(self, y: Floats) -> Orbit:
+        """Return the orbit of a solution."""
+        p, t, _, _, states = self._at(y)
+        return assemble(self.word, p, t, states)
