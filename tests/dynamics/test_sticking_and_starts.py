@@ -69,6 +69,13 @@ def test_rest_in_contact_without_any_push_stays() -> None:
     assert run.measures().base_work == 0.0
 
 
+def test_a_merge_into_vanishing_force_and_jerk_goes_on() -> None:
+    # After the merge at the start v = 1/2 and F - x1 = F' - v = F'' = 0: no sign tells whether the ball stays.
+    run = simulate(Params(mu=1.0, A=1.0, Omega=0.5, r=0.0, lam=0.0), x2=1.0, v2=1.0, periods=6)
+    assert run.status == "complete"
+    assert abs(run.measures().balance) < 1e-12
+
+
 def test_a_ball_at_rest_that_is_never_touched_stays() -> None:
     p = Params(mu=0.1, A=0.001)
     run = simulate(p, v2=0.0, periods=3000)

@@ -14,6 +14,9 @@ __all__ = ["leaving_step", "quartic_root", "safe_step"]
 HALVINGS = 60
 """How often a first step from a level may be halved: 2**-60 of a window is below what double precision resolves."""
 
+UNRESOLVED = 1e-17
+"""Height that is lost in the rounding of a gap near 1."""
+
 
 @njit
 def safe_step(gap, slope, curvature, window):
@@ -49,7 +52,23 @@ def leaving_step(speed, second, third, bound, window):
         if best >= 0.5 * window:
             return best
         window *= 0.5
-    return best
+    return max(best, _unresolved_step(second, rising, bound))
+
+
+@njit
+def _unresolved_step(second, third, bound):
+    """Return a step over which the height cannot rise by more than double precision resolves.
+
+    It is needed only where speed, second and third derivative all vanish, so that no sign tells where the motion goes.
+    """
+    h = 1e-3
+    if second > 0.0:
+        h = min(h, math.sqrt(2.0 * UNRESOLVED / second))
+    if third > 0.0:
+        h = min(h, (6.0 * UNRESOLVED / third) ** (1.0 / 3.0))
+    if bound > 0.0:
+        h = min(h, (24.0 * UNRESOLVED / bound) ** 0.25)
+    return h
 
 
 @njit
