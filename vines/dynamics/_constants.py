@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
+from vines.errors import ParameterError
 from vines.model import Params
 
 __all__ = ["Constants", "Oscillator", "constants"]
@@ -53,6 +54,11 @@ class Constants(NamedTuple):
 def constants(p: Params) -> Constants:
     """Return the constants of the kernels.
 
+    Raises
+    ------
+    ParameterError
+        If damping vanishes at the resonance of oscillator and stuck ball together, (1 + mu) Omega² = 1.
+
     Examples
     --------
     >>> c = constants(Params(mu=0.01, A=0.02))
@@ -87,6 +93,12 @@ def _oscillator(mass: float, p: Params) -> Oscillator:
     half = 0.5 * p.lam / mass
     gamma = math.sqrt(1.0 / mass - half * half)
     s = complex(-half, gamma)
-    q = p.A * complex(p.lam * p.Omega, -1.0) / complex(1.0 - mass * p.Omega**2, p.lam * p.Omega)
+    detuning = complex(1.0 - mass * p.Omega**2, p.lam * p.Omega)
+    if abs(detuning) < 1e-9:
+        raise ParameterError(
+            f"lam is {p.lam:g} at the resonance of mass {mass:g}; allowed is lam > 0 there: "
+            "without damping the response grows without bound"
+        )
+    q = p.A * complex(p.lam * p.Omega, -1.0) / detuning
     s2, s3, s4 = s * s, s * s * s, s * s * s * s
     return Oscillator(half, gamma, q.real, q.imag, s2.real, s2.imag, s3.real, s3.imag, s4.real, s4.imag, abs(s))
