@@ -158,6 +158,39 @@ def test_a_worker_that_dies_loses_nothing(lab, monkeypatch, form):
     assert values[0] == values[1]
 
 
+@pytest.mark.parametrize(
+    ("old", "new", "words"),
+    [
+        (
+            'return Batch(tables={"points": rows,',
+            'return Batch(tables={"points": rows[1:],',
+            "exactly one row for each",
+        ),
+        ('"index": i,', '"indx": i,', "did you mean 'index'"),
+        ("from toylab.law import law", "from toylab.gone import law", "No module named 'toylab.gone'"),
+    ],
+)
+def test_a_mistake_in_a_kind_fails_its_stage_and_marks_no_point(lab, monkeypatch, old, new, words):
+    source = (lab.package / "bodies.py").read_text()
+    assert old in source
+    lab.source("wrong", source.replace(old, new))
+    from vines.pipeline import Kind, kind, register
+
+    fields = {name: getattr(kind("toy"), name) for name in Kind.__dataclass_fields__}
+    register(Kind(**{**fields, "body": "toylab.wrong:points"}))
+    declared = lab.declare(TOYS + '    [stages.alone]\n    kind = "total"\n')
+    summary = lab.run(declared, jobs=1)
+    assert {each.name: each.state for each in summary.stages} == {
+        "up": "failed",
+        "total": "skipped",
+        "alone": "computed",
+    }
+    with pytest.raises(RunFailed, match=words):
+        summary.check()
+    assert list(lab.store.pins("toys")) == ["alone"]
+    assert plan(load(declared, root=lab.folder), lab.store)[0].failed == 0
+
+
 def test_a_stage_without_axes_is_one_point(lab):
     summary = lab.run(lab.declare('[stages.one]\nkind = "toy"\nparams.A = 0.3\n'), jobs=1)
     assert (summary.stages[0].wanted, summary.stages[0].new) == (1, 1)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import Any
 
+from vines.errors import SchemaError
 from vines.pipeline._declaration import Pipeline
 from vines.pipeline._events import Event, Report, RunSummary, StageOutcome, silent
 from vines.pipeline._plan import Planner, Prepared, StagePlan
@@ -132,9 +133,13 @@ class _Run:
     def _points(self, prepared: Prepared, each: StagePlan, *, force: bool) -> StageOutcome:
         from vines.pipeline._sweep import compute_points, put_together
 
-        new = compute_points(
-            prepared, self.store, jobs=self.jobs, force=force, retry_failed=self.retry_failed, report=self.report
-        )
+        try:
+            new = compute_points(
+                prepared, self.store, jobs=self.jobs, force=force, retry_failed=self.retry_failed, report=self.report
+            )
+        except (SchemaError, ImportError) as error:  # a mistake in the kind, not in a point: the other stages go on
+            reason = f"{type(error).__name__}: {error}"
+            return StageOutcome(each.name, "failed", each.wanted, reason=reason)
         key, failed = put_together(prepared, self.store, replace=force)
         return StageOutcome(each.name, "computed", each.wanted, new, failed, key, each.reason)
 

@@ -15,7 +15,7 @@ from vines.pipeline._events import Event, Report
 from vines.pipeline._plan import Prepared
 from vines.pipeline._work import Chunk, Work
 from vines.pipeline._worker import Done, Task
-from vines.store import Store, write_parquet
+from vines.store import Store, describe_table, write_parquet
 
 if TYPE_CHECKING:
     from vines.store import Pool
@@ -114,7 +114,7 @@ def put_together(prepared: Prepared, store: Store, *, replace: bool) -> tuple[st
             rows = pool.gather(name, grid.ids)
             sorted_by = _sorted_by(prepared, name)
             count = write_parquet(folder / f"{name}.parquet", name, rows, provenance=provenance, sorted_by=sorted_by)
-            about[name] = {"rows": count, "columns": list(schema.table(name).names)}
+            about[name] = describe_table(name, count)
             if stage.kind.logs and not names and "name" in rows.column_names:
                 ids = rows.column("point_id").to_pylist()
                 names = dict(zip(ids, rows.column("name").to_pylist(), strict=True))

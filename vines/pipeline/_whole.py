@@ -5,11 +5,10 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from vines import schema
 from vines.errors import SchemaError
 from vines.pipeline._jobs import Batch, Input, Range, WholeJob
 from vines.pipeline._worker import body_of
-from vines.store import Result, Store, write_parquet
+from vines.store import Result, Store, describe_table, write_parquet
 
 if TYPE_CHECKING:
     from vines.pipeline._plan import Planner, Prepared
@@ -50,10 +49,10 @@ def compute_whole(prepared: Prepared, store: Store, planner: Planner, *, replace
         )
         try:
             batch = body_of(stage.kind.body)(job)
+            about = _write(prepared, batch, folder, provenance)
         except Exception as error:  # whatever it is, the other stages go on
             text = (str(error).splitlines() or [""])[0]
             return f"{type(error).__name__}: {text}"
-        about = _write(prepared, batch, folder, provenance)
         manifest = {
             "kind": stage.kind.name,
             "ingredients": prepared.ingredients.form,
@@ -96,7 +95,7 @@ def _write(prepared: Prepared, batch: Batch, folder: Path, provenance: dict[str,
     for name in spec.tables:
         rows = _numbered(batch.tables.get(name, ()))
         count = write_parquet(folder / f"{name}.parquet", name, rows, provenance=provenance)
-        about[name] = {"rows": count, "columns": list(schema.table(name).names)}
+        about[name] = describe_table(name, count)
     return about
 
 

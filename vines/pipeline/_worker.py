@@ -148,8 +148,9 @@ def _attempt(
     folder = part.parent / f"work-{points[0].id}-{len(points)}"
     folder.mkdir()
     job = Job(task.options, tuple(points), task.carry, start, folder, task.provenance)
+    compute = body_of(task.body)  # that it cannot be imported is no property of a point
     try:
-        batch = body_of(task.body)(job)
+        batch = compute(job)
     except Exception as error:  # whatever a body raises is a property of a point, and the others go on
         if len(points) == 1:
             _fail(task, points, _say(error), gathered)

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from vines.store._parquet import write_parquet
     from vines.store._pools import Pool, commit_part
     from vines.store._provenance import revision, versions
-    from vines.store._results import Result
+    from vines.store._results import Result, describe_table
     from vines.store._store import Store
 
 __all__ = [
@@ -21,6 +21,7 @@ __all__ = [
     "Store",
     "canonical",
     "commit_part",
+    "describe_table",
     "key_of",
     "revision",
     "versions",
@@ -34,6 +35,7 @@ _HOMES = {
     "Store": "vines.store._store",
     "canonical": "vines.store._keys",
     "commit_part": "vines.store._pools",
+    "describe_table": "vines.store._results",
     "key_of": "vines.store._keys",
     "revision": "vines.store._provenance",
     "versions": "vines.store._provenance",

@@ -8,12 +8,13 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from vines import schema
 from vines.errors import StoreError, UnknownNameError, nearest
 
 if TYPE_CHECKING:
     import pyarrow as pa
 
-__all__ = ["Result", "describe_files", "read_result"]
+__all__ = ["Result", "describe_files", "describe_table", "read_result"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -27,7 +28,7 @@ class Result:
     folder : Path
         Where it lies.
     manifest : dict
-        ``kind``, ``ingredients``, ``tables`` (rows and columns of each, the primary one first), ``files``
+        ``kind``, ``ingredients``, ``tables`` (rows, columns and units of each, the primary one first), ``files``
         (sha256 and bytes of each), ``logs``, ``points``, ``failed``, ``provenance``, and, only here,
         ``written`` and ``host``.
     """
@@ -92,6 +93,13 @@ def read_result(folder: Path) -> Result:
     except (OSError, ValueError) as error:
         raise StoreError(f"{path} cannot be read: {error}: compute it again with --force") from None
     return Result(folder.name, folder, manifest)
+
+
+def describe_table(name: str, rows: int) -> dict[str, Any]:
+    """Return what a manifest says of a table: rows, columns, and units of those that have one."""
+    columns = schema.table(name).columns
+    units = {column.name: column.unit for column in columns if column.unit}
+    return {"rows": rows, "columns": [column.name for column in columns], "units": units}
 
 
 def describe_files(folder: Path) -> dict[str, dict[str, Any]]:
