@@ -201,9 +201,7 @@ def _array(name: str, field: pa.Field, values: Any, length: int) -> Any:
         text = str(error).splitlines()[0]
         raise SchemaError(f"table {name!r}, column {field.name!r}: not {field.type}: {text}") from None
     if len(made) != length:
-        raise SchemaError(
-            f"table {name!r}, column {field.name!r}: {len(made)} values where {length} are needed"
-        )
+        raise SchemaError(f"table {name!r}, column {field.name!r}: {len(made)} values where {length} are needed")
     if not field.nullable and made.null_count:
         raise SchemaError(f"table {name!r}, column {field.name!r}: may not be empty; give every row its id")
     return made
@@ -220,9 +218,7 @@ def _from_python(values: Any, kind: pa.DataType) -> Any:
 @functools.cache
 def _tables() -> dict[str, Table]:
     folder = shipped("schemas")
-    read = [
-        _read(path.name, tomllib.loads(path.read_text("utf-8"))) for path in sorted(folder.glob("*.toml"))
-    ]
+    read = [_read(path.name, tomllib.loads(path.read_text("utf-8"))) for path in sorted(folder.glob("*.toml"))]
     return {spec.name: spec for spec in read}
 
 
