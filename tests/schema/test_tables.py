@@ -28,9 +28,7 @@ def test_units_are_field_metadata():
 
 
 def test_cast_orders_fills_and_converts():
-    made = schema.cast(
-        "impacts", [{"side": 1, "point_id": "a", "t": 2}, {"point_id": "b", "t": np.float64(3.5)}]
-    )
+    made = schema.cast("impacts", [{"side": 1, "point_id": "a", "t": 2}, {"point_id": "b", "t": np.float64(3.5)}])
     assert made.schema.equals(schema.arrow_schema("impacts"), check_metadata=True)
     assert made.column("t").to_pylist() == [2.0, 3.5]
     assert made.column("side").to_pylist() == [1, None]
@@ -42,9 +40,7 @@ def test_cast_takes_columns_and_arrow_tables_alike():
 
 
 def test_cast_keeps_lists_of_floats():
-    made = schema.cast(
-        "orbits", [{"point_id": "a", "t": np.array([0.0, 1.5]), "side": [1, -1], "stable": True}]
-    )
+    made = schema.cast("orbits", [{"point_id": "a", "t": np.array([0.0, 1.5]), "side": [1, -1], "stable": True}])
     assert made.column("t").to_pylist() == [[0.0, 1.5]]
     assert made.column("stable").to_pylist() == [True]
 
