@@ -64,7 +64,7 @@ def test_a_declaration_that_needs_itself(project):
         (["run", "quickstart", "--set", "params.mue=1"], "'mu'"),
         (["run", "quickstart", "--set", "params.r=2"], "0 <= r <= 1"),
         (["run", "quickstart", "--set", "nonsense"], "nonsense"),
-        (["schema", "piont"], "allowed"),
+        (["schema", "piont"], "'points'"),
         (["query", "select * from nosuch"], "nosuch"),
         (["query", "selec 1"], "selec"),
         (["view", "quickstart.symmetric_run"], "run"),

@@ -72,6 +72,9 @@ def _findings(results: dict[str, Result]) -> Iterable[str]:
 def _attractors(rows: list[dict[str, Any]]) -> str:
     """Return what the points of a stage settled to, the most frequent first."""
     kinds = Counter(row["name"] if row["settled"] and row["name"] else row["regime"] or row["status"] for row in rows)
+    failed = [row for row in rows if row["status"] == "failed"]
+    if failed:
+        return f"{len(failed)} of {len(rows)} points failed, the first because: {failed[0]['reason']}"
     if len(rows) == 1:
         (row,) = rows
         side = "" if row["symmetric"] is None else ("symmetric " if row["symmetric"] else "asymmetric ")

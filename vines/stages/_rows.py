@@ -24,7 +24,7 @@ def point_row(
     start: dict[str, float],
     *,
     carry: str | None,
-    settled_for: float,
+    before: float,
     record: float,
 ) -> dict[str, Any]:
     """Return the row of ``points`` for one simulated point.
@@ -39,20 +39,21 @@ def point_row(
         Start state of the whole run: x1, v1, x2, v2 and forcing phase [rad].
     carry : str or None
         The carried axis, if the start was the end of another point.
-    settled_for, record : float
-        Forcing periods before, and during, the recording.
+    before : float
+        Forcing periods that were run before the attractor was settled for.
+    record : float
+        Forcing periods of the recording.
     """
     p = attractor.params
     m = attractor.measures
     yardstick = no_ball(p)
-    periods = m.duration / p.period
     return {
         "point_id": point_id,
         **p.as_dict(),
         "carry": carry,
         **{name: start[name] for name in STATE},
         **{f"end_{name}": attractor.final[name] for name in STATE},
-        "settle_periods": settled_for,
+        "settle_periods": before + attractor.transient,
         "record_periods": record,
         "regime": attractor.regime,
         "settled": attractor.settled,
@@ -75,10 +76,10 @@ def point_row(
         "x1_no_ball": yardstick,
         "x1_locked": ball_locked(p),
         "reduction": m.max_abs_x1 / yardstick if yardstick > 0 else None,
-        "impacts_per_period": (m.impacts_left + m.impacts_right) / periods,
+        "impacts_per_period": m.impacts_per_period,
         "impacts_left": m.impacts_left,
         "impacts_right": m.impacts_right,
-        "sticks_per_period": (m.sticks_left + m.sticks_right) / periods,
+        "sticks_per_period": m.sticks_per_period,
         "lyapunov": attractor.lyapunov,
         "lyapunov_error": attractor.lyapunov_error,
         "duration": m.duration,

@@ -33,9 +33,7 @@ def compute(job: Job) -> Batch:
             settle=options.settle,
             record=options.record,
         )
-        rows.append(
-            point_row(point.id, attractor, start, carry=job.carry, settled_for=options.settle, record=options.record)
-        )
+        rows.append(point_row(point.id, attractor, start, carry=job.carry, before=0, record=options.record))
         impacts.append(impact_rows(point.id, attractor.params, representative(attractor, options.keep)))
         if job.carry is not None:
             start = {name: attractor.final[name] for name in STATE}

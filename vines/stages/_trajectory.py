@@ -37,8 +37,8 @@ def compute(job: Job) -> Batch:
         run = simulate(p, **_initial(state), periods=options.record)
         wait = 0 if options.settle else CLASSIFY_AFTER
         attractor = settle(p, **_initial(run.final), settle=wait, record=CLASSIFY_OVER)
-        settled_for = options.settle + options.record + wait
-        rows.append(point_row(point.id, attractor, start, carry=None, settled_for=settled_for, record=CLASSIFY_OVER))
+        before = options.settle + options.record
+        rows.append(point_row(point.id, attractor, start, carry=None, before=before, record=CLASSIFY_OVER))
         impacts.append(impact_rows(point.id, p, representative(attractor, CLASSIFY_OVER)))
         logs[point.id] = f"{point.id}.mcap"
         write_run(
