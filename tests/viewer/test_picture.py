@@ -97,6 +97,17 @@ def test_no_vulkan_is_one_line_with_a_remedy(recording, tmp_path, monkeypatch):
     assert "\n" not in str(caught.value)
 
 
+def test_viewer_that_stops_answering_is_told(recording):
+    def kill_and_ask(client):
+        (process,) = psutil.Process().children()
+        process.kill()
+        process.wait()
+        client.get_state()
+
+    with pytest.raises(ViewerError, match="stopped answering"), headless(recording, (400, 300)) as client:
+        kill_and_ask(client)
+
+
 @pytest.mark.skipif(not sys.platform.startswith("linux"), reason="other systems always have a display")
 def test_no_display_is_one_line_with_a_remedy(settled, monkeypatch):
     monkeypatch.delenv("DISPLAY", raising=False)

@@ -10,6 +10,7 @@ from rerun.blueprint.encodings import TimelineColumn
 
 from vines.viewer._clock import CYCLE, SIM_TIME
 from vines.viewer._scene import CAVITY_BOUNDS, PHASE_BOUNDS
+from vines.viewer._style import CAVITY
 
 __all__ = ["Shown", "blueprint"]
 
@@ -91,7 +92,7 @@ def _cavity(run: Shown) -> rrb.Spatial2DView:
     (left, right), (top, bottom) = CAVITY_BOUNDS
     return rrb.Spatial2DView(
         origin=f"{run.root}/cavity",
-        name=f"Cavity and ball, to scale: {run.name}",
+        name=f"{CAVITY}: {run.name}",
         background=_DARK,
         visual_bounds=rrb.VisualBounds2D(x_range=(left, right), y_range=(top, bottom)),
     )

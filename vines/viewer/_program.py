@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import IO, TYPE_CHECKING
 
 from vines.errors import ViewerError
+from vines.viewer._style import CAVITY
 
 if TYPE_CHECKING:
     from rerun.experimental import ViewerClient
@@ -86,7 +87,7 @@ def headless(file: Path, size: tuple[int, int]) -> Iterator[ViewerClient]:
     Raises
     ------
     ViewerError
-        If the viewer cannot start (no Vulkan) or does not load the recording within a minute.
+        If the viewer cannot start (no Vulkan), does not load the recording within a minute, or stops answering.
     """
     from rerun.experimental import ViewerClient
 
@@ -109,6 +110,11 @@ def headless(file: Path, size: tuple[int, int]) -> Iterator[ViewerClient]:
                 time.sleep(0.2)
                 client = _loaded(ViewerClient, port)
             yield client
+        except (RuntimeError, ConnectionError) as lost:
+            if isinstance(lost, ViewerError):
+                raise
+            said_so = " ".join(str(lost).split())
+            raise ViewerError(f"the viewer stopped answering ({said_so}); try again on an idle machine") from lost
         finally:
             process.terminate()
             try:
@@ -129,8 +135,9 @@ def _loaded(kind: type[ViewerClient], port: int) -> ViewerClient | None:
         state = client.get_state()
     except (RuntimeError, ConnectionError, ValueError):
         return None
-    ready = state.recordings and state.recordings[0].timelines and state.views and not state.loading
-    return client if ready else None
+    # Until the layout of the recording is in force, the viewer shows views that it made up.
+    laid_out = any(view.name.startswith(CAVITY) for view in state.views)
+    return client if laid_out and state.recordings[0].timelines and not state.loading else None
 
 
 def _why(said: IO[bytes], status: int) -> str:

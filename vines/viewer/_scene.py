@@ -116,7 +116,7 @@ def phase_plane(
     )
 
     pieces = np.stack([np.concatenate([path[:1], path[:-1]]), path], axis=1)
-    trail = rr.LineStrips2D.columns(strips=list(pieces))
+    trail = rr.LineStrips2D.columns(strips=pieces.astype(np.float32))
     rec.log(
         f"{root}/trail",
         rr.LineStrips2D.from_fields(radii=rr.Radius.ui_points(2.2), colors=TRAIL, draw_order=20.0),

@@ -1,8 +1,22 @@
-"""Colours and sizes of the viewer's pictures: red is the LEFT end of the cavity, blue the RIGHT one, everywhere."""
+"""Colours of the viewer's pictures: red is the LEFT end of the cavity, blue the RIGHT one, everywhere."""
 
 from __future__ import annotations
 
-__all__ = ["BALL", "BASE", "DAMPER", "GRID", "IMPACTS", "LEFT", "LINE", "MASS", "RIGHT", "SPRING", "STORED", "TRAIL"]
+__all__ = [
+    "BALL",
+    "BASE",
+    "CAVITY",
+    "DAMPER",
+    "GRID",
+    "IMPACTS",
+    "LEFT",
+    "LINE",
+    "MASS",
+    "RIGHT",
+    "SPRING",
+    "STORED",
+    "TRAIL",
+]
 
 LEFT = (240, 82, 79)
 RIGHT = (77, 148, 255)
@@ -16,3 +30,6 @@ STORED = (214, 220, 228)
 LINE = (120, 190, 200)
 TRAIL = (255, 200, 60)
 GRID = (72, 78, 88)
+
+CAVITY = "Cavity and ball, to scale"
+"""Name of the first view; a viewer that has it has our layout."""
