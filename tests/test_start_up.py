@@ -29,9 +29,7 @@ def test_import_vines_and_params_load_nothing_heavy(tmp_path):
     assert loaded("import vines; vines.Params(mu=0.01, A=0.02); vines.PhysicalParams()", tmp_path) == []
 
 
-@pytest.mark.parametrize(
-    "arguments", [["--help"], ["list"], ["status"], ["status", "quickstart"], ["run", "--help"]]
-)
+@pytest.mark.parametrize("arguments", [["--help"], ["list"], ["status"], ["status", "quickstart"], ["run", "--help"]])
 def test_quick_commands_load_nothing_heavy(arguments, tmp_path):
     code = f"""
 import sys

@@ -22,8 +22,8 @@ __all__ = [
     "StateError",
     "StoreError",
     "UnknownNameError",
-    "VinesError",
     "ViewerError",
+    "VinesError",
     "nearest",
 ]
 

@@ -33,9 +33,7 @@ def find_root(start: Path | None = None) -> Path:
     if named:
         root = Path(named).expanduser()
         if not root.is_dir():
-            raise FileMissingError(
-                f"VINES_ROOT is {named!r}, which is not a folder; unset it or name an existing one"
-            )
+            raise FileMissingError(f"VINES_ROOT is {named!r}, which is not a folder; unset it or name an existing one")
         return root.resolve()
     here = (start or Path.cwd()).resolve()
     for folder in (here, *here.parents):
@@ -55,8 +53,8 @@ def data_folder(root: Path | None = None) -> Path:
 def cache_folder() -> Path:
     """Return the folder for what can be made again: ``data/cache`` of a project, else the user's cache folder.
 
-    A project is recognised by ``VINES_DATA``, ``VINES_ROOT`` or a folder ``pipelines/`` above the current one. Elsewhere
-    (a notebook in any folder) nothing is written beside the user's files.
+    A project is recognised by ``VINES_DATA``, ``VINES_ROOT`` or a folder ``pipelines/`` above the current one.
+    Elsewhere (a notebook in any folder) nothing is written beside the user's files.
     """
     if os.environ.get("VINES_DATA") or os.environ.get("VINES_ROOT") or (find_root() / "pipelines").is_dir():
         return data_folder() / "cache"

@@ -75,9 +75,7 @@ def test_names(text, canonical, name, alias):
     assert (str(word), word.name, word.alias) == (canonical, name, alias)
 
 
-@pytest.mark.parametrize(
-    "text", ["", "lr", "LXR", "LR/", "LR/0T", "LR/2", "LR/-1T", "LR\n", " LR", "2:1", 3, None]
-)
+@pytest.mark.parametrize("text", ["", "lr", "LXR", "LR/", "LR/0T", "LR/2", "LR/-1T", "LR\n", " LR", "2:1", 3, None])
 def test_bad_words_are_refused_in_one_line(text):
     with pytest.raises(ParameterError, match="is not a word") as caught:
         Word(text)

@@ -57,9 +57,7 @@ class Params:
             object.__setattr__(self, name, _number(name, getattr(self, name)))
         _require("mu", self.mu, self.mu > 0, "mu > 0", "mu is the mass ratio m/M")
         _require("A", self.A, self.A >= 0, "A >= 0", "a negative amplitude is a phase shift of half a period")
-        _require(
-            "Omega", self.Omega, self.Omega > 0, "Omega > 0", "Omega is the frequency ratio omega/omega0"
-        )
+        _require("Omega", self.Omega, self.Omega > 0, "Omega > 0", "Omega is the frequency ratio omega/omega0")
         _require("r", self.r, 0 <= self.r <= 1, "0 <= r <= 1", "r is the coefficient of restitution")
         _require("lam", self.lam, 0 <= self.lam < 2, "0 <= lam < 2", "the oscillator must be underdamped")
         _require(

@@ -57,21 +57,15 @@ class PhysicalParams:
         for field in fields(self):
             value = getattr(self, field.name)
             if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
-                raise ParameterError(
-                    f"{field.name} is {value!r}; give a finite number in {UNITS[field.name]}"
-                )
+                raise ParameterError(f"{field.name} is {value!r}; give a finite number in {UNITS[field.name]}")
             object.__setattr__(self, field.name, float(value))
         for name in ("M", "k", "b"):
             if getattr(self, name) <= 0:
-                raise ParameterError(
-                    f"{name} is {getattr(self, name):g} {UNITS[name]}, allowed is {name} > 0"
-                )
+                raise ParameterError(f"{name} is {getattr(self, name):g} {UNITS[name]}, allowed is {name} > 0")
         if self.c < 0:
             raise ParameterError(f"c is {self.c:g} N s/m, allowed is c >= 0")
         if not 0 <= self.r <= 1:
-            raise ParameterError(
-                f"r is {self.r:g}, allowed is 0 <= r <= 1: r is the coefficient of restitution"
-            )
+            raise ParameterError(f"r is {self.r:g}, allowed is 0 <= r <= 1: r is the coefficient of restitution")
 
     @property
     def omega0(self) -> float:
@@ -118,9 +112,7 @@ class PhysicalParams:
         for name in ("r", "lam"):
             ours, theirs = getattr(self, name), getattr(p, name)
             if abs(ours - theirs) > 1e-9:
-                raise ParameterError(
-                    f"{name} of the parameters is {theirs:g}, of this rig {ours:g}; they must agree"
-                )
+                raise ParameterError(f"{name} of the parameters is {theirs:g}, of this rig {ours:g}; they must agree")
         return {"E": p.A * self.b, "omega": p.Omega * self.omega0, "m": p.mu * self.M}
 
     def displacement(self, x: float) -> float:
