@@ -20,9 +20,10 @@ from vines.orbits._conditions import (
     critical_multiplier,
     grazing_margin,
 )
-from vines.orbits._general import GeneralProblem, origin
+from vines.orbits._family import GeneralProblem
+from vines.orbits._general import origin
 from vines.orbits._orbit import Orbit
-from vines.orbits._problem import Curve, Point, Problem
+from vines.orbits._problem import Point, Problem, ZeroSet
 from vines.orbits._symmetric import SymmetricProblem
 
 __all__ = ["continue_orbit"]
@@ -37,6 +38,7 @@ def continue_orbit(
     parameter: str,
     stop: float,
     *,
+    within: tuple[float, float] | None = None,
     at: Sequence[float] = (),
     step: float = 0.02,
     beyond_grazing: bool = False,
@@ -44,8 +46,7 @@ def continue_orbit(
 ) -> Branch:
     """Follow an orbit in one parameter, through folds, and locate the bifurcations on the way.
 
-    The branch ends where the parameter leaves the range from its present value to `stop`, on either side, or at the
-    grazing that ends admissibility.
+    The branch ends where the parameter leaves its range on either side, or at the grazing that ends admissibility.
 
     Parameters
     ----------
@@ -55,6 +56,9 @@ def continue_orbit(
         mu, A, Omega, r or lam.
     stop : float
         The other end of the range; the branch sets out towards it.
+    within : tuple of float, float, optional
+        The range, if it is to be wider than from the present value to `stop`: a branch that folds then passes the
+        value at which it began.
     at : sequence of float
         Values of the parameter that are to be among the orbits, on every sheet of the branch.
     step : float
@@ -71,7 +75,8 @@ def continue_orbit(
     Raises
     ------
     ParameterError
-        If the parameter does not exist, or `stop` is out of its range or its present value.
+        If the parameter does not exist, `stop` is out of its range or its present value, or `within` leaves out one of
+        both.
     OrbitNotFound
         If the branch is lost while a bifurcation is being located.
 
@@ -94,9 +99,14 @@ def continue_orbit(
     stop = getattr(orbit.params.replace(**{parameter: stop}), parameter)
     if start == stop:
         raise ParameterError(f"stop is {stop:g}, which is where {parameter} is already; give another value")
+    low, high = sorted((start, stop) if within is None else within)
+    if not (low <= min(start, stop) and max(start, stop) <= high):
+        raise ParameterError(
+            f"within is {low:g} … {high:g}; it has to hold {parameter} = {start:g} and stop = {stop:g}"
+        )
     if not 0 < step <= 1:
         raise ParameterError(f"step is {step!r}, allowed is 0 < step <= 1")
-    walk = _Walk(_problem(orbit, parameter), orbit, stop, tuple(at), step, beyond_grazing, max_points)
+    walk = _Walk(_problem(orbit, parameter), orbit, stop, low, high, tuple(at), step, beyond_grazing, max_points)
     return walk.run()
 
 
@@ -113,6 +123,8 @@ class _Walk:
     problem: Problem
     orbit: Orbit
     stop: float
+    low: float
+    high: float
     at: tuple[float, ...]
     step: float
     beyond_grazing: bool
@@ -123,8 +135,7 @@ class _Walk:
 
     def run(self) -> Branch:
         start = float(self.problem.start[-1])
-        self.low, self.high = sorted((start, self.stop))
-        self.curve = Curve(self.problem, self.high - self.low)
+        self.curve = ZeroSet(self.problem, self.high - self.low)
         self.conditions = conditions(self.orbit.symmetric)
         towards = np.zeros(len(self.problem.start))
         towards[-1] = np.sign(self.stop - start)

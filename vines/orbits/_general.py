@@ -1,4 +1,4 @@
-"""Orbits of any word: Newton's method from a guess, a search from many starts, and the family for continuation."""
+"""Orbits of any word: Newton's method from a guess, and a search from many starts."""
 
 from __future__ import annotations
 
@@ -11,10 +11,10 @@ from vines.dynamics._constants import constants
 from vines.errors import OrbitNotFound, ParameterError
 from vines.model import Params, Word
 from vines.orbits._assemble import assemble, asymmetry
-from vines.orbits._equations import closing_kernel, newton_kernel
+from vines.orbits._equations import newton_kernel
 from vines.orbits._orbit import Orbit
 
-__all__ = ["GeneralProblem", "origin", "refine", "search"]
+__all__ = ["origin", "refine", "search"]
 
 Floats = npt.NDArray[np.float64]
 
@@ -25,9 +25,6 @@ _SAME = 1e-6
 
 _NEAR = 1e-3
 """The same at a point where families join, which the degenerate equations there give to half the digits only."""
-
-_DIFFERENCE = 1e-6
-"""Relative step of the differences in the parameter: they steer Newton's method and do not move its fixed point."""
 
 
 def _sides(word: Word) -> npt.NDArray[np.int64]:
@@ -137,65 +134,3 @@ def _same(one: Orbit, other: Orbit) -> bool:
         if max(np.abs(shift).max(), np.abs(other.states[np.arange(k, k + N) % N] - one.states).max()) < _SAME:
             return True
     return False
-
-
-class GeneralProblem:
-    """Orbits of any word as the zero set of n equations in (n phases of the impacts, parameter); see `Problem`.
-
-    n is N, or N/2 for a symmetric orbit: the family is then kept symmetric, so that its equations stay regular where
-    it loses stability by symmetry breaking.
-
-    Parameters
-    ----------
-    orbit : Orbit
-        Gives the word and the parameters that stay fixed.
-    parameter : str
-        Name of the parameter that varies.
-    """
-
-    def __init__(self, orbit: Orbit, parameter: str) -> None:
-        self.word = orbit.word
-        self.parameter = parameter
-        self._fixed = orbit.params.as_dict()
-        self._side = _sides(orbit.word)
-        N = len(orbit.word)
-        n = N // 2 if orbit.symmetric else N
-        self._free = n
-        self._copies = np.tile(np.eye(n), (N // n, 1))
-        self._later = np.pi * orbit.word.p * (np.arange(N) // n)
-        self.start = np.append(orbit.t[:n] * orbit.params.Omega, self._fixed[parameter])
-
-    def _at(self, y: Floats) -> tuple[Params, Floats, Floats, Floats, Floats]:
-        """Return parameters, impact times, defects, their derivatives in the free phases, and the states."""
-        p = Params(**{**self._fixed, self.parameter: float(y[-1])})
-        duration = self.word.p * p.period
-        t = (self._copies @ y[:-1] + self._later) / p.Omega
-        regular, defect, slope, states = closing_kernel(constants(p), duration, self._side, t)
-        if not regular:
-            defect = np.full(len(self._side), np.nan)
-        n = self._free
-        return p, t, defect[:n] / p.mu, slope[:n] @ self._copies / (p.mu * p.Omega), states
-
-    def residual(self, y: Floats) -> Floats:
-        """Return the defects of the ball's velocity, shape (n,)."""
-        return self._at(y)[2]
-
-    def jacobian(self, y: Floats) -> Floats:
-        """Return their derivatives in the phases (analytic) and in the parameter (differences), shape (n, n + 1)."""
-        step = np.zeros(len(y))
-        step[-1] = _DIFFERENCE * max(abs(y[-1]), 0.01)
-        low, high = y - step, y + step
-        try:
-            below = self._at(low)[2]
-        except ParameterError:
-            low, below = y, self._at(y)[2]
-        try:
-            above = self._at(high)[2]
-        except ParameterError:
-            high, above = y, self._at(y)[2]
-        return np.column_stack([self._at(y)[3], (above - below) / (high[-1] - low[-1])])
-
-    def orbit(self, y: Floats) -> Orbit:
-        """Return the orbit of a solution."""
-        p, t, _, _, states = self._at(y)
-        return assemble(self.word, p, t, states)

@@ -11,7 +11,7 @@ import numpy.typing as npt
 from vines.model import Word
 from vines.orbits._orbit import Orbit
 
-__all__ = ["Curve", "Point", "Problem"]
+__all__ = ["Point", "Problem", "ZeroSet"]
 
 Floats = npt.NDArray[np.float64]
 
@@ -27,12 +27,8 @@ class Problem(Protocol):
     parameter: str
     start: Floats
 
-    def residual(self, y: Floats) -> Floats:
-        """Return the n equations at y."""
-        ...
-
-    def jacobian(self, y: Floats) -> Floats:
-        """Return their derivatives, shape (n, n + 1)."""
+    def equations(self, y: Floats) -> tuple[Floats, Floats]:
+        """Return the n equations at y, and their derivatives, shape (n, n + 1)."""
         ...
 
     def orbit(self, y: Floats) -> Orbit:
@@ -54,7 +50,7 @@ class Point:
         return float(self.y[-1])
 
 
-class Curve:
+class ZeroSet:
     """The zero set of a problem in scaled coordinates, in which steps of about one cross the whole range.
 
     Parameters
@@ -71,7 +67,7 @@ class Curve:
 
     def tangent(self, y: Floats, towards: Floats) -> Floats:
         """Return the unit tangent at y on the side of `towards`."""
-        null = np.linalg.svd(self.problem.jacobian(y) * self.scale)[2][-1]
+        null = np.linalg.svd(self.problem.equations(y)[1] * self.scale)[2][-1]
         return null if null @ towards >= 0 else -null
 
     def correct(self, guess: Floats, normal: Floats) -> tuple[Floats, int] | None:
@@ -82,8 +78,9 @@ class Curve:
         y = guess.copy()
         close = False
         for iteration in range(1, _ITERATIONS + 1):
-            matrix = np.vstack([self.problem.jacobian(y) * self.scale, normal])
-            right = np.append(self.problem.residual(y), normal @ ((y - guess) / self.scale))
+            right, matrix = self.problem.equations(y)
+            matrix = np.vstack([matrix * self.scale, normal])
+            right = np.append(right, normal @ ((y - guess) / self.scale))
             if not (np.isfinite(matrix).all() and np.isfinite(right).all()):
                 return None
             try:

@@ -110,18 +110,14 @@ class SymmetricProblem:
         now = {**self._fixed, self.parameter: value}
         return family_of(now["mu"], now["Omega"], now["r"], now["lam"], self.word.p), now["A"]
 
-    def residual(self, y: Floats) -> Floats:
-        """Return the defect of the quadratic for V, shape (1,)."""
-        family, A = self._at(float(y[1]))
-        return np.array([family.defect(float(y[0]), A)])
-
-    def jacobian(self, y: Floats) -> Floats:
-        """Return its derivatives in V and in the parameter, shape (1, 2)."""
+    def equations(self, y: Floats) -> tuple[Floats, Floats]:
+        """Return the defect of the quadratic for V, shape (1,), and its derivatives, shape (1, 2)."""
         V, value = float(y[0]), float(y[1])
         step = _DIFFERENCE * max(abs(value), 0.01)
         above, below = self._at(value + step), self._at(value - step)
         across = (above[0].defect(V, above[1]) - below[0].defect(V, below[1])) / (2 * step)
-        return np.array([[self._at(value)[0].slope(V), across]])
+        family, A = self._at(value)
+        return np.array([family.defect(V, A)]), np.array([[family.slope(V), across]])
 
     def orbit(self, y: Floats) -> Orbit:
         """Return the orbit of a solution."""

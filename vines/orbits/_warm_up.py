@@ -6,6 +6,7 @@ import time
 from collections.abc import Callable
 
 from vines.model import Params
+from vines.orbits._continuation import continue_orbit
 from vines.orbits._find import find_orbit
 from vines.orbits._general import refine
 
@@ -30,4 +31,5 @@ def warm_up(report: Callable[[str], object] = print) -> None:
     began = time.perf_counter()
     orbit = find_orbit("LR", Params(mu=0.01, A=0.017))
     refine(orbit.word, orbit.params, orbit)
+    continue_orbit(find_orbit("LLR", Params(mu=0.01, A=0.023)), "A", 0.0231)
     report(f"  periodic orbits, admissibility: {time.perf_counter() - began:.1f} s")
