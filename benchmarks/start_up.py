@@ -1,7 +1,7 @@
 """How long a user waits for the command line: medians of seven cold processes.
 
-Run as ``python -m benchmarks.start_up`` after ``make run``. The peer is the interpreter itself importing numpy, which no
-command of a numerical tool can start faster than if it needs an array.
+Run as ``python -m benchmarks.start_up`` after ``make run``. The peer is the interpreter itself importing numpy:
+no command that needs an array can start faster.
 """
 
 from __future__ import annotations

@@ -48,9 +48,7 @@ class Lines(Quiet):
                 self._started[event.stage] = (now, event.done)
                 self._said = now
                 if event.wanted > 1:
-                    click.echo(
-                        f"{event.stage}: {event.wanted - event.done} of {event.wanted} points to compute ({event.text})"
-                    )
+                    click.echo(f"{event.stage}: {event.text}")
             case "progress" if now - self._said >= PAUSE:
                 self._said = now
                 click.echo(f"{event.stage}: {event.done} of {event.wanted}{self._pace(event, now)}")

@@ -35,7 +35,7 @@ def command(
     What is computed is kept by point: a second run computes nothing, a finer grid only what is new, and after an
     interruption the same command goes on.
     """
-    from vines.stages import run, status
+    from vines.stages import compile_if_cold, run, status
 
     overrides = dict(_setting(text) for text in settings)
     chosen = stages or None
@@ -52,6 +52,7 @@ def command(
         return
     from vines.cli._progress import progress
 
+    compile_if_cold(plans, (lambda line: None) if quiet else click.echo)
     failure: RunFailed | None = None
     with progress(quiet) as report:
         try:

@@ -163,7 +163,7 @@ def _draw(
                 group.values[panel][mine],
                 linestyle="none",
                 marker=".",
-                markersize=4.8,
+                markersize=4.2,
                 markeredgewidth=0,
                 color=COLOURS[f"{name} light"],
                 rasterized=bool(np.count_nonzero(mine) > 20_000),

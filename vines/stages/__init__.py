@@ -11,11 +11,12 @@ if TYPE_CHECKING:
     from vines.stages._finding import find_logs
     from vines.stages._found import found
     from vines.stages._kinds import register_kinds
-    from vines.stages._running import list_pipelines, load_pipeline, open_store, run, status, warm_up
+    from vines.stages._running import compile_if_cold, list_pipelines, load_pipeline, open_store, run, status, warm_up
     from vines.stages._study import init_study
 
 __all__ = [
     "checks",
+    "compile_if_cold",
     "find_logs",
     "found",
     "init_study",
@@ -35,6 +36,7 @@ __all__ = [
 
 _HOME = {
     "checks": "_asking",
+    "compile_if_cold": "_running",
     "find_logs": "_finding",
     "found": "_found",
     "init_study": "_study",

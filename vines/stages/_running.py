@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping
 from typing import TYPE_CHECKING, Any
 
-from vines.pipeline import available, find, load, plan
+from vines.pipeline import available, find, kind, load, plan
 from vines.places import data_folder, find_root
 from vines.stages._kinds import register_kinds
 from vines.store import Store
@@ -13,7 +13,7 @@ from vines.store import Store
 if TYPE_CHECKING:
     from vines.pipeline import Event, Pipeline, RunSummary, StagePlan
 
-__all__ = ["list_pipelines", "load_pipeline", "open_store", "run", "status", "warm_up"]
+__all__ = ["compile_if_cold", "list_pipelines", "load_pipeline", "open_store", "run", "status", "warm_up"]
 
 
 def open_store() -> Store:
@@ -127,3 +127,14 @@ def warm_up(report: Callable[[str], object] = print) -> None:
 
     for room in (attractors, orbits):  # the first compiles the dynamics as well
         room.warm_up(report)
+
+
+def compile_if_cold(plans: Iterable[StagePlan], report: Callable[[str], object]) -> None:
+    """Compile the kernels visibly if these plans will need them and no cache of theirs exists yet."""
+    if not any(p.state != "up_to_date" and kind(p.kind).parameters for p in plans):
+        return
+    from vines.dynamics import CACHE
+
+    if not CACHE.is_dir():
+        report("compiling the kernels, once for this version of their sources:")
+        warm_up(report)

@@ -48,7 +48,7 @@ def compute(job: Job) -> Batch:
             sticks=run.sticks,
             provenance=job.provenance,
             parameters=p.as_dict(),
-            name=attractor.name or attractor.regime,
+            name=f"{attractor.name or attractor.regime}, A = {p.A:g}",
         )
     columns = {name: np.concatenate([part[name] for part in impacts]) for name in impacts[0]}
     return Batch(tables={"points": rows, "impacts": pa.table(columns)}, logs=logs)
