@@ -4,6 +4,8 @@ Flight, impact and sticking in closed form, events found for certain, and what f
 tangent maps. Importing this room loads numba but compiles nothing.
 """
 
+from vines.dynamics._jit import CACHE
+from vines.dynamics._maps import P1, P2, P3, P4, Mapped, impact_map
 from vines.dynamics._measures import Measures
 from vines.dynamics._saltation import jacobian
 from vines.dynamics._simulate import simulate
@@ -13,9 +15,16 @@ from vines.dynamics._warm_up import warm_up
 from vines.dynamics._yardsticks import ball_locked, no_ball
 
 __all__ = [
+    "CACHE",
+    "P1",
+    "P2",
+    "P3",
+    "P4",
+    "Mapped",
     "Measures",
     "Trajectory",
     "ball_locked",
+    "impact_map",
     "jacobian",
     "lyapunov_spectrum",
     "no_ball",
