@@ -1,0 +1,84 @@
+"""What users call from Python, away from the quickstart."""
+
+import json
+
+import pytest
+
+import vines
+from vines.errors import StateError, StoreError, UnknownNameError
+from vines.stages import checks, find_logs, init_study, list_pipelines, run, status
+
+
+@pytest.fixture
+def root(project, monkeypatch):
+    monkeypatch.setenv("VINES_ROOT", str(project.root))
+    return project.root
+
+
+SMALL = """
+title = "small"
+[params]
+mu = 0.01
+[stages.up]
+kind = "sweep"
+vary.A = { from = 0.015, to = 0.016, count = 5 }
+settle = 60
+record = 8
+"""
+
+
+def test_set_changes_a_value_and_shares_points(root):
+    (root / "pipelines" / "small.toml").write_text(SMALL)
+    assert run("small").stages[0].new == 5
+    again = run("small", overrides={"stages.up.vary.A.count": 9})
+    assert again.stages[0].new == 4
+    (plan,) = status("small")
+    assert plan.state == "stale"
+    assert "9" in plan.reason
+    assert "5" in plan.reason
+
+
+def test_force_computes_again(root):
+    (root / "pipelines" / "small.toml").write_text(SMALL)
+    run("small")
+    assert run("small").new == 0
+    assert run("small", force=True).stages[0].new == 5
+
+
+def test_a_file_anywhere_is_a_pipeline(root, tmp_path):
+    (tmp_path / "elsewhere.toml").write_text(SMALL)
+    run(str(tmp_path / "elsewhere.toml"))
+    assert vines.query("select count(*) as n from points where pipeline = 'elsewhere'").to_pylist() == [{"n": 5}]
+
+
+def test_lists_and_their_errors(root):
+    assert "quickstart" in {row["name"] for row in list_pipelines()}
+    with pytest.raises(UnknownNameError, match="nothing has been checked"):
+        checks()
+    with pytest.raises(UnknownNameError, match="no log 'quickstart.up'"):
+        find_logs("quickstart.up")
+    with pytest.raises(UnknownNameError, match="points"):
+        vines.table("piont")
+
+
+def test_a_study_of_ones_own(tmp_path, monkeypatch):
+    init_study(tmp_path / "mine")
+    assert (tmp_path / "mine" / "pipelines" / "quickstart.toml").is_file()
+    assert (tmp_path / "mine" / "data" / ".gitignore").read_text().startswith("*")
+    with pytest.raises(StoreError, match="exists already"):
+        init_study(tmp_path / "mine")
+    monkeypatch.chdir(tmp_path / "mine")
+    monkeypatch.delenv("VINES_ROOT", raising=False)
+    assert status("quickstart")[0].state == "never"
+
+
+def test_start_outside_the_cavity():
+    with pytest.raises(StateError, match=r"\|w\|"):
+        vines.simulate(vines.Params(mu=0.01, A=0.02), x1=1.5)
+
+
+def test_json_output_is_json(project):
+    assert json.loads(project.vines("list", "--json").stdout)[0]["name"]
+    assert json.loads(project.vines("status", "quickstart", "--json").stdout)["quickstart"]
+    assert json.loads(project.vines("schema", "points", "--json").stdout)["table"] == "points"
+    assert json.loads(project.vines("tables", "--json").stdout)
