@@ -46,7 +46,7 @@ def settle(
     settle: float = 400,
     record: float = 64,
     patience: float = 4000,
-    tolerance: float = 1e-9,
+    tolerance: float = 1e-10,
     lyapunov: bool = True,
     max_impacts_per_period: int = EVENTS_PER_PERIOD,
 ) -> Attractor:
@@ -114,7 +114,7 @@ def settle_from(
     settle: float = 400,
     record: float = 64,
     patience: float = 4000,
-    tolerance: float = 1e-9,
+    tolerance: float = 1e-10,
     lyapunov: bool = True,
     max_impacts_per_period: int = EVENTS_PER_PERIOD,
 ) -> Attractor:
