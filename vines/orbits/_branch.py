@@ -72,6 +72,8 @@ class Branch:
         Why the branch begins and ends where it does: ``range`` (of the parameter), ``grazing``, ``symmetry_breaking``
         or ``period_doubling`` (where it comes out of another family), ``points`` (as many as were allowed), ``lost``
         (the corrector failed at the smallest step).
+    parent : str or None
+        Name of the branch that it was switched from, if it was.
     """
 
     word: Word
@@ -80,6 +82,7 @@ class Branch:
     bifurcations: tuple[Bifurcation, ...]
     events: tuple[Bifurcation, ...]
     ends: tuple[str, str]
+    parent: str | None = None
 
     @property
     def values(self) -> npt.NDArray[np.float64]:

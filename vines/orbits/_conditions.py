@@ -6,6 +6,7 @@ They are smooth in the parameter, also where multipliers collide, because each i
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from itertools import combinations
 from typing import NamedTuple
@@ -26,6 +27,13 @@ REMARKS = ("pair_turns_real",)
 _PAIRS = tuple(combinations(range(4), 2))
 _REAL = 1e-7
 """Imaginary part, relative to the modulus, below which a multiplier is taken to be real."""
+
+
+_LARGEST = 1e9
+"""Modulus of a multiplier beyond which double precision leaves less than six digits of those near one."""
+
+_ON_CIRCLE = 1e-6
+"""Distance of the product of a pair from one beyond which a change of sign was rounding, not a bifurcation."""
 
 
 class Condition(NamedTuple):
@@ -59,19 +67,30 @@ def _half(point: Point) -> Multipliers:
     return np.sqrt(point.orbit.multipliers) if half is None else half
 
 
+def _resolved(m: Multipliers) -> bool:
+    """Say whether the multipliers near one are more than rounding: their error is that of the largest."""
+    return bool(np.isfinite(m).all() and np.abs(m).max() < _LARGEST)
+
+
 def _fold(point: Point) -> float:
     return float(point.tangent[-1])
 
 
 def _minus_one(m: Multipliers) -> float:
+    if not _resolved(m):
+        return math.nan
     return float(np.prod(1 + m).real)
 
 
 def _product_one(m: Multipliers) -> float:
+    if not _resolved(m):
+        return math.nan
     return float(np.prod([1 - m[i] * m[j] for i, j in _PAIRS]).real)
 
 
 def _discriminant(m: Multipliers) -> float:
+    if not _resolved(m):
+        return math.nan
     return float(np.prod([(m[i] - m[j]) ** 2 for i, j in _PAIRS]).real)
 
 
@@ -102,7 +121,8 @@ def critical_multiplier(kind: str, point: Point, symmetric: bool) -> tuple[compl
         found = m[np.argmin(abs(m + 1))]
     elif kind == "neimark_sacker":
         i, j = min(_PAIRS, key=lambda pair: abs(1 - m[pair[0]] * m[pair[1]]))
-        if abs(m[i].imag) < _REAL * abs(m[i]) or abs(m[i] - m[j].conjugate()) > _REAL * abs(m[i]):
+        real = abs(m[i].imag) < _REAL * abs(m[i]) or abs(m[i] - m[j].conjugate()) > _REAL * abs(m[i])
+        if real or abs(1 - m[i] * m[j]) > _ON_CIRCLE:
             return None
         found = m[i]
     else:

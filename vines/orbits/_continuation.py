@@ -248,9 +248,12 @@ class _Walk:
                 raise
             root = last
         if condition.type == GRAZING:
-            # Of the points that the search has seen next to the root take one that is still admissible.
-            inside = [fraction for fraction, point in seen.items() if grazing_margin(point) > 0]
-            root = min(inside, key=lambda fraction: abs(fraction - root))
+            # The search may have come from beyond; the orbit to show is the last one that is still admissible.
+            back = math.copysign(1e-15, -1 if first > 0 else 1)
+            while not grazing_margin(seen[root]) > 0:
+                root = min(max(root + back, 0.0), 1.0)
+                function(root)
+                back *= 2
         return root, condition.type, seen[root]
 
     def _between(self, here: Point, there: Point, fraction: float) -> Point:

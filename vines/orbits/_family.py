@@ -87,16 +87,18 @@ class GeneralProblem:
         Gives the word and the parameters that stay fixed.
     parameter : str
         Name of the parameter that varies.
+    symmetric : bool, optional
+        Whether the family is to be kept symmetric; by default if the orbit is.
     """
 
-    def __init__(self, orbit: Orbit, parameter: str) -> None:
+    def __init__(self, orbit: Orbit, parameter: str, symmetric: bool | None = None) -> None:
         self.word = orbit.word
         self.parameter = parameter
         self._fixed = orbit.params
         self._values = values_of(orbit.params)
         self._index = PARAMETER_NAMES.index(parameter)
         self._side = np.array(orbit.word.sides, dtype=np.int64)
-        n = len(orbit.word) // 2 if orbit.symmetric else len(orbit.word)
+        n = len(orbit.word) // 2 if (orbit.symmetric if symmetric is None else symmetric) else len(orbit.word)
         self.start = np.append(orbit.t[:n] * orbit.params.Omega, self._values[self._index])
 
     def equations(self, y: Floats) -> tuple[Floats, Floats]:

@@ -76,7 +76,7 @@ def branch_row(branch: Branch, parent: str | None = None) -> Row:
     ----------
     branch : Branch
     parent : str, optional
-        Name of the branch or bifurcation that it was switched from.
+        Name of the branch that it was switched from; by default what the branch itself knows.
     """
     values = branch.values.tolist()
     return {
@@ -90,7 +90,7 @@ def branch_row(branch: Branch, parent: str | None = None) -> Row:
         "end_from": branch.ends[0],
         "end_to": branch.ends[1],
         "orbits": len(values),
-        "parent": parent,
+        "parent": branch.parent if parent is None else parent,
         **branch.orbits[0].params.as_dict(),
     }
 

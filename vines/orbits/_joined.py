@@ -1,0 +1,77 @@
+"""Where families join: mirror images, and the orbit at a branching point as one of either family."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from vines.errors import OrbitNotFound
+from vines.model import Word
+from vines.orbits._assemble import assemble
+from vines.orbits._branch import Bifurcation
+from vines.orbits._family import GeneralProblem
+from vines.orbits._general import origin, refine
+from vines.orbits._orbit import Orbit
+from vines.orbits._problem import ZeroSet
+
+__all__ = ["BRANCHING", "is_joint", "left_family", "mirror_image", "unfolded"]
+
+BRANCHING = ("symmetry_breaking", "period_doubling")
+"""Types at which another family comes out."""
+
+
+def mirror_image(orbit: Orbit) -> Orbit:
+    """Return the mirror image (x1, x2, t) -> (-x1, -x2, t + T/2) of an orbit, with L and R swapped.
+
+    Examples
+    --------
+    >>> from vines.model import Params
+    >>> from vines.orbits import find_orbit
+    >>> print(mirror_image(find_orbit("LLR", Params(mu=0.01, A=0.023))).word)
+    LRR
+    """
+    return assemble(orbit.word.mirror, orbit.params, orbit.t + orbit.params.period / 2, -orbit.states, orbit.remark)
+
+
+def is_joint(bifurcation: Bifurcation) -> bool:
+    """Say whether it was met from the family that comes out of another one, at its end."""
+    orbit = bifurcation.orbit
+    if bifurcation.type not in BRANCHING or origin(orbit) != bifurcation.type:
+        return False
+    return bifurcation.type == "period_doubling" or not math.isclose(bifurcation.half_multiplier.real, -1, abs_tol=1e-6)
+
+
+def unfolded(bifurcation: Bifurcation) -> Orbit:
+    """Return the orbit at a branching point as one of the family that comes out of it.
+
+    That is the orbit itself where the symmetry breaks, and the orbit gone through twice where the period doubles.
+    """
+    orbit = bifurcation.orbit
+    if bifurcation.type == "symmetry_breaking":
+        return orbit
+    word = Word(f"{orbit.word.letters * 2}/{2 * orbit.word.p}T")
+    return assemble(
+        word, orbit.params, np.concatenate([orbit.t, orbit.t + orbit.period]), np.tile(orbit.states, (2, 1))
+    )
+
+
+def left_family(joint: Bifurcation) -> Orbit:
+    """Return the orbit of the family that is left at a joint, at the parameters of the joint.
+
+    Raises
+    ------
+    OrbitNotFound
+        If it is lost.
+    """
+    orbit = joint.orbit
+    n = len(orbit.word) // 2
+    if joint.type == "period_doubling":
+        word = Word(f"{orbit.word.letters[:n]}/{orbit.word.p // 2}T")
+        return refine(word, orbit.params, (orbit.t[:n] + orbit.t[n:] - orbit.period / 2) / 2)
+    problem = GeneralProblem(orbit, joint.parameter, symmetric=True)
+    phases = (orbit.t[:n] + orbit.t[n:] - orbit.period / 2) / 2 * orbit.params.Omega
+    y = ZeroSet(problem, 1.0).at_value(np.append(phases, joint.value), joint.value)
+    if y is None:
+        raise OrbitNotFound(f"the symmetric orbit at {joint} was lost; follow the symmetric family to it")
+    return problem.orbit(y)

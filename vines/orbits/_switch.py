@@ -1,0 +1,101 @@
+"""From a branching point on to the family that comes out of it; derived in docs/orbits.md, "Branch switching"."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from vines.errors import OrbitNotFound
+from vines.orbits._branch import Bifurcation
+from vines.orbits._family import GeneralProblem
+from vines.orbits._general import origin, refine
+from vines.orbits._joined import BRANCHING, is_joint, left_family, mirror_image, unfolded
+from vines.orbits._orbit import Orbit
+
+__all__ = ["switch_branch"]
+
+_STEPS = (0.02, 0.04, 0.01, 0.08, 0.005, 0.0025)
+"""Lengths of the step off the old family along the null vector, in radians of phase; the first that works is taken."""
+
+_ITERATIONS = 15
+_CLOSE = 1e-6
+"""Newton step relative to the step off the family, after which the closing equations take over."""
+
+_RESIDUAL = 1e-13
+
+
+def switch_branch(bifurcation: Bifurcation) -> list[Orbit]:
+    """Return orbits next to a branching point, of the family that comes out of it.
+
+    Parameters
+    ----------
+    bifurcation : Bifurcation
+        A symmetry breaking or a period doubling.
+
+    Returns
+    -------
+    list of Orbit
+        At a symmetry breaking an asymmetric orbit and its mirror image, at a period doubling the orbit of twice the
+        period; where a family ends that came out of another one, the orbit of that other family.
+
+    Raises
+    ------
+    OrbitNotFound
+        If no family comes out of this bifurcation, or none was reached.
+
+    Examples
+    --------
+    >>> from vines.model import Params
+    >>> from vines.orbits import continue_orbit, find_orbit
+    >>> branch = continue_orbit(find_orbit("LR", Params(mu=0.01, A=0.017)), "A", 0.02)
+    >>> for orbit in switch_branch(branch.bifurcations[0]):
+    ...     print(orbit.name, orbit.symmetric, orbit.stable, f"{orbit.params.A:.3f}")
+    1:1 False True 0.018
+    1:1 False True 0.018
+    """
+    if bifurcation.type not in BRANCHING:
+        raise OrbitNotFound(
+            f"no other family comes out of a {bifurcation.type} of {bifurcation.orbit.name}; "
+            f"give a bifurcation of type {' or '.join(BRANCHING)}"
+        )
+    if is_joint(bifurcation):
+        return [left_family(bifurcation)]
+    problem = GeneralProblem(unfolded(bifurcation), bifurcation.parameter, symmetric=False)
+    for step in _STEPS:
+        orbit = _step_off(problem, step)
+        if orbit is not None:
+            return [orbit, mirror_image(orbit)] if bifurcation.type == "symmetry_breaking" else [orbit]
+    raise OrbitNotFound(
+        f"no {problem.word} orbit was reached from {bifurcation} by steps of {min(_STEPS):g} to {max(_STEPS):g} rad; "
+        "the branching may be degenerate: change another parameter"
+    )
+
+
+def _step_off(problem: GeneralProblem, step: float) -> Orbit | None:
+    """Return the orbit at this distance along the null vector from where the problem starts, or None.
+
+    The old family has no component along the null vector that joins it to the new one, so that a prescribed component
+    keeps Newton's method from returning to it.
+    """
+    y = problem.start.copy()
+    null = np.append(np.linalg.svd(problem.equations(y)[1][:, :-1])[2][-1], 0.0)
+    null *= np.sign(null[np.argmax(np.abs(null))])
+    y += step * null
+    for _ in range(_ITERATIONS):
+        defect, slope = problem.equations(y)
+        right = np.append(defect, null @ (y - problem.start) - step)
+        if not (np.isfinite(right).all() and np.isfinite(slope).all()):
+            return None
+        change = np.linalg.solve(np.vstack([slope, null]), right)
+        y -= change
+        if np.abs(change).max() < _CLOSE * step:
+            break
+    else:
+        return None
+    if np.abs(y - problem.start)[:-1].max() > 3 * step:
+        return None
+    here = problem.orbit(y)
+    try:
+        orbit = refine(here.word, here.params, here)
+    except OrbitNotFound:
+        return None
+    return orbit if orbit.residual <= _RESIDUAL and origin(orbit) is None and not orbit.symmetric else None
