@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy.typing as npt
 
 from vines.errors import OrbitNotFound
 from vines.model import Params, Word
+from vines.orbits._all import Orbits, all_orbits
 from vines.orbits._general import refine, search
 from vines.orbits._orbit import Orbit
-from vines.orbits._symmetric import no_symmetric_orbit, symmetric_orbits
+from vines.orbits._symmetric import no_symmetric_orbit
 
 __all__ = ["find_orbit"]
 
@@ -20,8 +20,8 @@ def find_orbit(word: str | Word, p: Params, guess: Orbit | npt.ArrayLike | None 
     """Return the periodic orbit of a word.
 
     Of several the symmetric admissible one is returned, else a stable one, else the one with the smallest largest
-    multiplier; its remark counts the others that the search has seen. If none is admissible the best of them comes with
-    ``admissible = False`` and the time and side of the violation.
+    multiplier; its remark counts the others and says how they were searched for (`all_orbits`). If none is
+    admissible the best of them comes with ``admissible = False`` and the time and side of the violation.
 
     Parameters
     ----------
@@ -30,9 +30,7 @@ def find_orbit(word: str | Word, p: Params, guess: Orbit | npt.ArrayLike | None 
     p : Params
     guess : Orbit or (N,) array, optional
         An orbit of the word at nearby parameters, or times of the impacts in the canonical order of the word, for a
-        forcing of phase zero at t = 0. The solution that Newton's method finds from there is returned. Without it
-        symmetric 1:1/pT orbits are explicit, and others searched for from many starts, which finds the most attracting
-        solutions but is no proof that there are no more.
+        forcing of phase zero at t = 0. The solution that Newton's method finds from there is returned.
 
     Returns
     -------
@@ -57,22 +55,22 @@ def find_orbit(word: str | Word, p: Params, guess: Orbit | npt.ArrayLike | None 
     word = Word(word)
     if guess is not None:
         return refine(word, p, guess)
-    explicit = symmetric_orbits(p, word.p) if word.symmetric and len(word) == 2 else []
-    if any(orbit.admissible for orbit in explicit):
-        return choose(explicit)
-    found, nearest = search(word, p)
-    known = explicit + [orbit for orbit in found if not (orbit.symmetric and explicit)]
-    if known:
-        return choose(known)
+    found = all_orbits(word, p)
+    if found:
+        return choose(found)
     if word.symmetric and len(word) == 2:
         raise no_symmetric_orbit(p, word)
+    if word.n == 0 or word.m == 0:
+        raise OrbitNotFound(f"no {word} orbit at any parameters: {found.remark}; give a word with both L and R")
+    nearest = search(word, p)[1] if found.complete else found.nearest
+    how = "there is none (all flight times were searched); " if found.complete else ""
     raise OrbitNotFound(
-        f"no {word} orbit at {p}: the nearest of all starts that failed left a defect of {nearest:.2g} in v2; "
+        f"no {word} orbit at {p}: {how}the nearest of all starts that failed left a defect of {nearest:.2g} in v2; "
         "try other parameters, or simulate there and give the impact times of the attractor as guess"
     )
 
 
-def choose(found: Sequence[Orbit]) -> Orbit:
+def choose(found: Orbits) -> Orbit:
     """Return the orbit to show of several, with a remark that counts the others."""
     best = min(
         found,
@@ -87,7 +85,7 @@ def choose(found: Sequence[Orbit]) -> Orbit:
     )
     others = [orbit for orbit in found if orbit is not best]
     if not others:
-        return best
+        return replace(best, remark=f"the only solution found of this word ({found.remark})")
     counts = ", ".join(
         f"{sum(test(orbit) for orbit in others)} {label}"
         for label, test in (
@@ -97,4 +95,6 @@ def choose(found: Sequence[Orbit]) -> Orbit:
         )
     )
     plural = "s" if len(others) > 1 else ""
-    return replace(best, remark=f"{len(others)} other solution{plural} of this word, of which {counts}")
+    return replace(
+        best, remark=f"{len(others)} other solution{plural} of this word, of which {counts} ({found.remark})"
+    )

@@ -14,11 +14,11 @@ from vines.orbits._assemble import assemble, asymmetry
 from vines.orbits._equations import newton_kernel
 from vines.orbits._orbit import Orbit
 
-__all__ = ["origin", "refine", "search"]
+__all__ = ["ITERATIONS", "origin", "proper", "refine", "same", "search"]
 
 Floats = npt.NDArray[np.float64]
 
-_ITERATIONS = 60
+ITERATIONS = 60
 _STARTS_PER_IMPACT = 60
 _SAME = 1e-6
 """Largest difference of times and states of two orbits that are one, or of an orbit to its own repetition."""
@@ -53,13 +53,13 @@ def refine(word: Word, p: Params, guess: Orbit | npt.ArrayLike) -> Orbit:
             f"the guess for {word} has to be {len(word)} increasing times within {word.p} forcing periods, "
             f"{duration:.6g}; it is {np.array2string(times, precision=4, threshold=8)}"
         )
-    converged, t, defect, states = newton_kernel(constants(p), duration, _sides(word), times, _ITERATIONS)
+    converged, t, defect, states = newton_kernel(constants(p), duration, _sides(word), times, ITERATIONS)
     if not converged:
         raise OrbitNotFound(
             f"no {word} orbit from this guess at {p}: Newton's method stopped at a defect of {defect / p.mu:.2g}; "
             "give a nearer guess, such as an orbit at nearby parameters"
         )
-    if not _proper(word, duration, t, states):
+    if not proper(word, duration, t, states):
         raise OrbitNotFound(
             f"no {word} orbit from this guess at {p}: it leads to a solution that passes through a wall or has a "
             "shorter period; give another guess"
@@ -79,17 +79,15 @@ def search(word: Word, p: Params) -> tuple[list[Orbit], float]:
     for _ in range(_STARTS_PER_IMPACT * len(word)):
         flights = rng.dirichlet(np.ones(len(word))) * duration
         start = rng.uniform(0, p.period) + np.concatenate([[0.0], np.cumsum(flights[:-1])])
-        converged, t, defect, states = newton_kernel(c, duration, side, start, _ITERATIONS)
+        converged, t, defect, states = newton_kernel(c, duration, side, start, ITERATIONS)
         if not converged:
             nearest = min(nearest, defect / p.mu)
-        elif _proper(word, duration, t, states):
-            orbit = assemble(word, p, t, states)
-            if not any(_same(orbit, other) for other in found):
-                found.append(orbit)
+        elif proper(word, duration, t, states) and not any(same(orbit, t, states) for orbit in found):
+            found.append(assemble(word, p, t, states))
     return found, nearest
 
 
-def _proper(word: Word, duration: float, t: Floats, states: Floats) -> bool:
+def proper(word: Word, duration: float, t: Floats, states: Floats) -> bool:
     """Say whether a solution is an orbit of least period pT whose impacts are in order and come from inside."""
     if not np.all(np.diff(t, append=t[0] + duration) > 0):
         return False
@@ -124,13 +122,19 @@ def origin(orbit: Orbit) -> str | None:
     return None
 
 
-def _same(one: Orbit, other: Orbit) -> bool:
-    """Say whether two orbits at the same parameters are one, whichever of its repeated letters comes first."""
-    T, N = one.params.period, len(one.t)
-    for k in one.word.rotations():
-        times = np.append(other.t[k:], other.t[:k] + other.period)
-        shift = times - one.t
+def same(orbit: Orbit, t: Floats, states: Floats) -> bool:
+    """Say whether a solution at the parameters of an orbit is that orbit, up to a shift of time.
+
+    Parameters
+    ----------
+    orbit : Orbit
+    t, states : (N,), (N, 4) float array
+        Times of the impacts in canonical order, and the states just before them.
+    """
+    T, N = orbit.params.period, len(orbit.t)
+    for k in orbit.word.rotations():
+        shift = np.append(t[k:], t[:k] + orbit.period) - orbit.t
         shift -= T * np.round(shift[0] / T)
-        if max(np.abs(shift).max(), np.abs(other.states[np.arange(k, k + N) % N] - one.states).max()) < _SAME:
+        if max(np.abs(shift).max(), np.abs(states[np.arange(k, k + N) % N] - orbit.states).max()) < _SAME:
             return True
     return False
