@@ -29,6 +29,7 @@ _HOME = {
     "settle": "vines.attractors",
     "Branch": "vines.orbits",
     "Orbit": "vines.orbits",
+    "all_orbits": "vines.orbits",
     "continue_orbit": "vines.orbits",
     "find_orbit": "vines.orbits",
     "OrbitNotFound": "vines.errors",
@@ -49,6 +50,7 @@ __all__ = [
     "VinesError",
     "Word",
     "__version__",
+    "all_orbits",
     "ball_locked",
     "continue_orbit",
     "find_orbit",
@@ -74,6 +76,7 @@ if TYPE_CHECKING:
     from vines.model import Word as Word
     from vines.orbits import Branch as Branch
     from vines.orbits import Orbit as Orbit
+    from vines.orbits import all_orbits as all_orbits
     from vines.orbits import continue_orbit as continue_orbit
     from vines.orbits import find_orbit as find_orbit
     from vines.stages import query as query

@@ -1,10 +1,15 @@
 """Periodic orbits of words: solution, stability, admissibility, measures, and families of them with bifurcations."""
 
+from vines.orbits._all import Orbits, all_orbits
 from vines.orbits._branch import Bifurcation, Branch
+from vines.orbits._cascade import follow_cascade
 from vines.orbits._continuation import continue_orbit
 from vines.orbits._find import find_orbit
+from vines.orbits._joined import mirror_image
 from vines.orbits._orbit import Orbit
+from vines.orbits._reduced import Reduced, manifold_amplitude, manifold_range, reduced_orbits, reduced_range
 from vines.orbits._rows import bifurcation_row, branch_row, orbit_row
+from vines.orbits._switch import switch_branch
 from vines.orbits._symmetric import symmetric_fold, symmetric_orbits
 from vines.orbits._warm_up import warm_up
 
@@ -12,11 +17,21 @@ __all__ = [
     "Bifurcation",
     "Branch",
     "Orbit",
+    "Orbits",
+    "Reduced",
+    "all_orbits",
     "bifurcation_row",
     "branch_row",
     "continue_orbit",
     "find_orbit",
+    "follow_cascade",
+    "manifold_amplitude",
+    "manifold_range",
+    "mirror_image",
     "orbit_row",
+    "reduced_orbits",
+    "reduced_range",
+    "switch_branch",
     "symmetric_fold",
     "symmetric_orbits",
     "warm_up",

@@ -1,0 +1,95 @@
+"""Impact times from which Newton's method may find an orbit of a long word, gathered in several ways."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+import numpy.typing as npt
+
+from vines.dynamics import simulate
+from vines.dynamics._constants import Constants
+from vines.model import Params, Word
+from vines.orbits._flights import start_kernel
+from vines.orbits._floquet import monodromy
+from vines.orbits._orbit import Orbit
+
+__all__ = ["base_word", "doubled_times", "harvested_times", "simplex_times"]
+
+Floats = npt.NDArray[np.float64]
+
+_STARTS = (
+    (0.0, 0.0, 0.0, 0.1),
+    (0.3, 0.0, 0.3, -1.0),
+    (-0.5, 0.8, 0.1, 0.6),
+    (0.0, -1.0, 0.5, 1.5),
+    (1.0, 0.0, 0.2, 0.0),
+)
+"""x1, v1, x2, v2 from which simulations start."""
+
+_PERIODS = 300
+_BEST = 3
+"""Recurrences kept of each simulation: those that come back nearest."""
+
+_KICKS = (0.01, 0.05, 0.2)
+"""How far a doubled seed is moved along the critical direction, in flight times of its base orbit."""
+
+
+def harvested_times(word: Word, p: Params) -> Iterator[Floats]:
+    """Yield the times of stretches of simulations that read as the word and almost come back."""
+    duration, N = word.p * p.period, len(word)
+    for x1, v1, x2, v2 in _STARTS:
+        hits = simulate(p, x1=x1, v1=v1, x2=x2, v2=v2, periods=_PERIODS, max_impacts_per_period=200).impacts
+        if len(hits) <= N:
+            continue
+        letters = "".join(np.where(hits["side"] > 0, "L", "R"))
+        t = np.asarray(hits["t"])
+        change = np.abs(t[N:] - t[:-N] - duration)
+        for name in ("x1", "v1", "x2", "v2"):
+            change = np.maximum(change, np.abs(hits[name][N:] - hits[name][:-N]))
+        reads = np.array([letters[k : k + N] == word.letters for k in range(len(change))])
+        for k in [k for k in np.argsort(change, kind="stable") if reads[k] and change[k] < 0.5][:_BEST]:
+            flights = np.diff(t[k : k + N + 1])
+            # The stretch is made to close after pT exactly.
+            yield t[k] % p.period + np.concatenate([[0.0], np.cumsum(flights[:-1])]) * duration / flights.sum()
+
+
+def base_word(word: Word) -> Word | None:
+    """Return the word that a word is the repetition of over twice the period, None if it is none.
+
+    Examples
+    --------
+    >>> base_word(Word("LRLR/2T")), base_word(Word("LLRLR/2T"))
+    (Word('LR'), None)
+    """
+    half, odd = divmod(len(word), 2)
+    if odd or word.p % 2 or word.letters[:half] != word.letters[half:]:
+        return None
+    return Word(f"{word.letters[:half]}/{word.p // 2}T")
+
+
+def doubled_times(base: Orbit) -> Iterator[Floats]:
+    """Yield an orbit run twice, moved along the eigenvector of its multiplier nearest to period doubling."""
+    values, vectors = np.linalg.eig(monodromy(base.jacobians).astype(complex))
+    vector = np.real(vectors)[:, int(np.argmin(np.abs(values + 1)))]
+    moved = [vector]
+    for J in base.jacobians[:-1]:
+        moved.append(J @ moved[-1])
+    along = np.array(moved)[:, 3]
+    if not np.abs(along).max() > 0:
+        return
+    along *= base.flight_times.min() / np.abs(along).max()
+    for size in _KICKS:
+        yield np.concatenate([base.t + size * along, base.t + base.period - size * along])
+
+
+def simplex_times(word: Word, p: Params, c: Constants, count: int) -> Iterator[Floats]:
+    """Yield random flight times, each with the phase that fits them best and with a random one; from a fixed seed."""
+    duration, N = word.p * p.period, len(word)
+    side = np.array(word.sides, dtype=np.int64)
+    rng = np.random.default_rng(N)
+    for _ in range(count):
+        tau = rng.dirichlet(np.ones(N)) * duration
+        t = np.concatenate([[0.0], np.cumsum(tau[:-1])])
+        yield start_kernel(c, duration, 1, side, tau) + t
+        yield rng.uniform(0, p.period) + t
