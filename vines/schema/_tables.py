@@ -81,7 +81,7 @@ def tables() -> dict[str, Table]:
     Examples
     --------
     >>> list(tables())
-    ['bifurcations', 'branches', 'checks', 'impacts', 'logs', 'orbits', 'points']
+    ['bifurcations', 'branches', 'checks', 'impacts', 'logs', 'optima', 'orbits', 'points', 'reduced']
     """
     return dict(_tables())
 

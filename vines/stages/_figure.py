@@ -4,22 +4,37 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pyarrow as pa
 import pyarrow.compute as pc
 
 from vines.errors import DeclarationError
-from vines.figures import BranchLine, ImpactDots, Marker, bifurcation_figure, save
+from vines.figures import BranchLine, ImpactDots, Marker, bifurcation_figure, reduced_figure, save
 from vines.pipeline import Batch, Input, WholeJob
+from vines.stages._error_map import error_map
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 __all__ = ["compute"]
 
 
 def compute(job: WholeJob) -> Batch:
-    """Draw the needed stages: those with impacts as dots, those with orbits as lines."""
+    """Draw the needed stages."""
     options: Any = job.options
+    if options.plot == "reduced":
+        maps = [error_map(stage) for stage in job.inputs.values()]
+        figure = reduced_figure(maps, panels=options.panels, title=options.title, width=options.width)
+    else:
+        figure = _bifurcation(job, options)
+    save(figure, job.folder)
+    return Batch()
+
+
+def _bifurcation(job: WholeJob, options: Any) -> Figure:
+    """Draw stages with impacts as dots, those with orbits as lines."""
     axes = dict.fromkeys(axis for stage in job.inputs.values() for axis in stage.axes)
     if len(axes) != 1:
         raise DeclarationError(
@@ -28,17 +43,15 @@ def compute(job: WholeJob) -> Batch:
     (axis,) = axes
     dots = [_dots(stage, axis) for stage in job.inputs.values() if "impacts" in stage.tables]
     branches = [stage for stage in job.inputs.values() if "orbits" in stage.tables]
-    figure = bifurcation_figure(
+    return bifurcation_figure(
         axis,
         dots,
         [line for stage in branches for line in _lines(stage, axis)],
         [marker for stage in branches for marker in _markers(stage, axis)],
-        panels=options.panels,
+        panels=options.panels or ("w_dot", "dt"),
         caption=options.title or _caption(job.inputs.values(), axis),
         width=options.width,
     )
-    save(figure, job.folder)
-    return Batch()
 
 
 def _dots(stage: Input, axis: str) -> ImpactDots:

@@ -19,6 +19,7 @@ __all__ = [
     "BranchOptions",
     "CheckOptions",
     "FigureOptions",
+    "ReducedOptions",
     "Start",
     "SweepOptions",
     "TrajectoryOptions",
@@ -69,11 +70,15 @@ class BranchOptions(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     points: int = 400
 
 
-class FigureOptions(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """A picture of the needed stages."""
+class ReducedOptions(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """The multiple-scales approximation of the symmetric 1:1 response beside the exact orbit; nothing to choose."""
 
-    plot: Literal["bifurcation"]
-    panels: tuple[str, ...] = ("w_dot", "dt")
+
+class FigureOptions(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """A picture of the needed stages; `panels` are the quantities shown, by default those of the plot."""
+
+    plot: Literal["bifurcation", "reduced"]
+    panels: tuple[str, ...] = ()
     title: str = ""
     width: float = 7.0
 
@@ -95,6 +100,11 @@ def _check_simulation(params: dict[str, float], options: Any) -> None:
         raise StateError(
             f"start has the gap w = x1 - x2 = {gap:g}, allowed is |w| <= 1: the ball would be outside the cavity"
         )
+
+
+def _check_model(params: dict[str, float], options: Any) -> None:
+    del options
+    Params(**params)
 
 
 def _check_branch(params: dict[str, float], options: Any) -> None:
@@ -155,6 +165,19 @@ def register_kinds() -> None:
             parameters=PARAMETERS,
             vary="range",
             check=_check_branch,
+        )
+    )
+    register(
+        Kind(
+            name="reduced",
+            summary="the multiple-scales approximation of the symmetric 1:1 response beside the exact orbit",
+            shape="points",
+            options=ReducedOptions,
+            body="vines.stages._reduced:compute",
+            tables=("reduced",),
+            parameters=PARAMETERS,
+            vary="grid",
+            check=_check_model,
         )
     )
     register(
