@@ -4,7 +4,9 @@ from vines.orbits._all import Orbits, all_orbits
 from vines.orbits._branch import Bifurcation, Branch
 from vines.orbits._cascade import follow_cascade
 from vines.orbits._continuation import continue_orbit
+from vines.orbits._curve import Curve, SpecialPoint, curve_rows
 from vines.orbits._find import find_orbit
+from vines.orbits._follow_curve import follow_curve
 from vines.orbits._joined import mirror_image
 from vines.orbits._orbit import Orbit
 from vines.orbits._reduced import Reduced, manifold_amplitude, manifold_range, reduced_orbits, reduced_range
@@ -16,15 +18,19 @@ from vines.orbits._warm_up import warm_up
 __all__ = [
     "Bifurcation",
     "Branch",
+    "Curve",
     "Orbit",
     "Orbits",
     "Reduced",
+    "SpecialPoint",
     "all_orbits",
     "bifurcation_row",
     "branch_row",
     "continue_orbit",
+    "curve_rows",
     "find_orbit",
     "follow_cascade",
+    "follow_curve",
     "manifold_amplitude",
     "manifold_range",
     "mirror_image",

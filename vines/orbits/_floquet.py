@@ -23,8 +23,9 @@ _MIRROR = np.array([-1.0, -1.0, -1.0, 1.0])
 def monodromy(jacobians: Floats) -> Floats:
     """Return the product J_N … J_1 of the Jacobians of consecutive maps, shape (N, 4, 4) to (4, 4)."""
     product = np.eye(4)
-    for J in jacobians:
-        product = J @ product
+    with np.errstate(invalid="ignore"):  # an impact at zero speed has no Jacobian
+        for J in jacobians:
+            product = J @ product
     return product
 
 

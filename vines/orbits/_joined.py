@@ -42,13 +42,12 @@ def is_joint(bifurcation: Bifurcation) -> bool:
     return bifurcation.type == "period_doubling" or not math.isclose(bifurcation.half_multiplier.real, -1, abs_tol=1e-6)
 
 
-def unfolded(bifurcation: Bifurcation) -> Orbit:
+def unfolded(kind: str, orbit: Orbit) -> Orbit:
     """Return the orbit at a branching point as one of the family that comes out of it.
 
     That is the orbit itself where the symmetry breaks, and the orbit gone through twice where the period doubles.
     """
-    orbit = bifurcation.orbit
-    if bifurcation.type == "symmetry_breaking":
+    if kind == "symmetry_breaking":
         return orbit
     word = Word(f"{orbit.word.letters * 2}/{2 * orbit.word.p}T")
     return assemble(

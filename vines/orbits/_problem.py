@@ -56,14 +56,14 @@ class ZeroSet:
     Parameters
     ----------
     problem : Problem
-    span : float
-        Width of the range of the parameter.
+    *spans : float
+        Widths of the ranges of the parameters, the last coordinates.
     """
 
-    def __init__(self, problem: Problem, span: float) -> None:
+    def __init__(self, problem: Problem, *spans: float) -> None:
         self.problem = problem
-        unknowns = np.abs(problem.start[:-1])
-        self.scale = np.append(np.maximum(unknowns, 0.1 * unknowns.max(initial=1e-3)), span)
+        unknowns = np.abs(problem.start[: -len(spans)])
+        self.scale = np.append(np.maximum(unknowns, 0.1 * unknowns.max(initial=1e-3)), spans)
 
     def tangent(self, y: Floats, towards: Floats) -> Floats:
         """Return the unit tangent at y on the side of `towards`."""
@@ -93,13 +93,17 @@ class ZeroSet:
             close = bool(np.abs(step).max() < _CONVERGED)
         return None
 
-    def at_value(self, guess: Floats, value: float) -> Floats | None:
-        """Return the solution near `guess` whose parameter is exactly `value`, or None."""
-        start = np.append(guess[:-1], value)
+    def at_value(self, guess: Floats, value: float, coordinate: int = -1) -> Floats | None:
+        """Return the solution near `guess` whose (last) parameter is exactly `value`, or None."""
+        start = guess.copy()
+        start[coordinate] = value
         normal = np.zeros(len(guess))
-        normal[-1] = 1.0
+        normal[coordinate] = 1.0
         found = self.correct(start, normal)
-        return None if found is None else np.append(found[0][:-1], value)
+        if found is None:
+            return None
+        found[0][coordinate] = value
+        return found[0]
 
     def between(self, first: Point, second: Point, fraction: float) -> Point | None:
         """Return the point over this fraction of the chord from one point to another, or None."""

@@ -59,7 +59,7 @@ def switch_branch(bifurcation: Bifurcation) -> list[Orbit]:
         )
     if is_joint(bifurcation):
         return [left_family(bifurcation)]
-    problem = GeneralProblem(unfolded(bifurcation), bifurcation.parameter, symmetric=False)
+    problem = GeneralProblem(unfolded(bifurcation.type, bifurcation.orbit), bifurcation.parameter, symmetric=False)
     for step in _STEPS:
         orbit = _step_off(problem, step)
         if orbit is not None:

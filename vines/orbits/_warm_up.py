@@ -8,6 +8,7 @@ from collections.abc import Callable
 from vines.model import Params
 from vines.orbits._continuation import continue_orbit
 from vines.orbits._find import find_orbit
+from vines.orbits._follow_curve import follow_curve
 from vines.orbits._general import refine
 
 __all__ = ["warm_up"]
@@ -31,5 +32,6 @@ def warm_up(report: Callable[[str], object] = print) -> None:
     began = time.perf_counter()
     orbit = find_orbit("LR", Params(mu=0.01, A=0.017))
     refine(orbit.word, orbit.params, orbit)
-    continue_orbit(find_orbit("LLR", Params(mu=0.01, A=0.023)), "A", 0.0231)
-    report(f"  periodic orbits, admissibility: {time.perf_counter() - began:.1f} s")
+    branch = continue_orbit(find_orbit("LLR", Params(mu=0.01, A=0.0213)), "A", 0.0212)
+    follow_curve(branch.bifurcations[0], box={"A": (0.02, 0.022), "mu": (0.0099, 0.0101)})
+    report(f"  periodic orbits, families, curves: {time.perf_counter() - began:.1f} s")

@@ -1,0 +1,72 @@
+"""On which side of a branching point the other family lies, and how fast it leaves; derived in docs/orbits.md."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from vines.model import PARAMETER_NAMES
+from vines.orbits._family import closing_at
+from vines.orbits._orbit import Orbit
+from vines.orbits._values import values_of
+
+__all__ = ["branching_curvature"]
+
+Floats = npt.NDArray[np.float64]
+
+_STEP = 1e-3
+"""Step of the differences in the phases [rad]; they are central, with an error of the order of its square."""
+
+_CHANGE = 1e-5
+"""The same in the parameters, relative to the direction given."""
+
+
+def branching_curvature(orbit: Orbit, names: tuple[str, str], direction: Floats) -> float:
+    """Return c of ``parameters = c s² direction``, along the family that branches off, s being its distance.
+
+    Parameters
+    ----------
+    orbit : Orbit
+        The orbit at the branching point, as one of the family that comes out of it (`unfolded`).
+    names : tuple of str, str
+        Parameters that vary.
+    direction : (2,) float array
+        A direction in them, transversal to the curve of branching points.
+
+    Returns
+    -------
+    float
+        Zero where the branching is degenerate, changing from supercritical to subcritical.
+    """
+    values = values_of(orbit.params)
+    where = [PARAMETER_NAMES.index(name) for name in names]
+    side = np.array(orbit.word.sides, dtype=np.int64)
+    phases = orbit.t * orbit.params.Omega
+
+    def at(z: Floats, shift: float = 0.0) -> tuple[Floats, Floats]:
+        moved = values.copy()
+        moved[where] += shift * direction
+        return closing_at(moved, orbit.word.p, side, z)[:2]
+
+    slope = at(phases)[1]
+    u, _, v = np.linalg.svd(slope)
+    left, null = u[:, -1], v[-1]
+
+    def solve(right: npt.NDArray[Any]) -> Floats:
+        # The right-hand sides have no part along `left`, and the solution needs none along `null`.
+        balanced = right - left * (left @ right)
+        return np.linalg.solve(slope + np.outer(left, null), balanced)
+
+    # The critical eigenvalue's change along the old family.
+    tilt = solve(-(at(phases, _CHANGE)[0] - at(phases, -_CHANGE)[0]) / (2 * _CHANGE))
+    ahead, behind = at(phases + _CHANGE * tilt, _CHANGE)[1], at(phases - _CHANGE * tilt, -_CHANGE)[1]
+    linear = left @ (ahead - behind) @ null / (2 * _CHANGE)
+    # Its change along the new one: the cubic term, with the quadratic one eliminated.
+    ahead, behind = at(phases + _STEP * null)[1] @ null, at(phases - _STEP * null)[1] @ null
+    bend = solve(-(ahead - behind) / (2 * _STEP))
+    cubic = (ahead - 2 * slope @ null + behind) / _STEP**2
+    ahead, behind = at(phases + _STEP * bend)[1], at(phases - _STEP * bend)[1]
+    total = left @ (cubic / 6 + (ahead - behind) @ null / (4 * _STEP))
+    return float(-total / linear)

@@ -1,0 +1,127 @@
+"""Defining equations of bifurcations as kernels of bare parameter values: what is appended to the closing equations.
+
+M is the Jacobian over the period, or H of the half period for a symmetric orbit. Determinants of M, and of its second
+compound, whose eigenvalues are the products of pairs, are smooth where multipliers meet (docs/orbits.md, "Curves").
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from vines.dynamics._flight import derivatives, phasors, turn
+from vines.dynamics._jit import njit
+from vines.dynamics._saltation import jacobian_kernel
+from vines.orbits._turning import turning_points_kernel
+from vines.orbits._values import essentials
+
+__all__ = ["FLIP", "FOLD", "GRAZE", "STOP", "TORUS", "condition_kernel", "turnings_kernel"]
+
+FOLD, FLIP, TORUS, GRAZE, STOP = range(5)
+"""Codes of the defining equations: a multiplier +1, -1, a pair of product 1, a turning point on a wall, w' = 0."""
+
+
+@njit
+def _period_map(values, duration, side, t, states, half):
+    """Return M, or H where `half`, of an orbit with these impacts."""
+    mu, A, Omega, r, lam = values[0], values[1], values[2], values[3], values[4]
+    product = np.eye(4)
+    for j in range(t.size // 2 if half else t.size):
+        tau = t[j + 1] - t[j] if j + 1 < t.size else t[0] + duration - t[j]
+        x1, v1, v2 = states[j, 0], states[j, 1], states[j, 3]
+        J = jacobian_kernel(mu, A, Omega, r, lam, x1, v1, v2, Omega * t[j], tau)[0]
+        product = J @ product
+    if half:
+        product[:3] *= -1.0
+    return product
+
+
+@njit
+def _without_pair(M):
+    """Return det(I - C), C the second compound of M: the product of 1 - m_i m_j over all pairs."""
+    rows = ((0, 1), (0, 2), (0, 3), (1, 2), (1, 3), (2, 3))
+    C = np.empty((6, 6))
+    for a in range(6):
+        i, j = rows[a]
+        for b in range(6):
+            k, m = rows[b]
+            C[a, b] = M[i, k] * M[j, m] - M[i, m] * M[j, k]
+    return np.linalg.det(np.eye(6) - C)
+
+
+@njit
+def _gap(values, side, t, states, flight, tau):
+    """Return w and w' at time tau of a flight."""
+    c = essentials(values)
+    x1, v1, x2, v2 = states[flight, 0], states[flight, 1], states[flight, 2], states[flight, 3]
+    mu, r = values[0], values[3]
+    after = ((1.0 - r * mu) * v1 + mu * (1.0 + r) * v2) / (1.0 + mu)
+    ball = ((1.0 + r) * v1 + (mu - r) * v2) / (1.0 + mu)
+    zr, zi, qr, qi = phasors(c.free, c.Omega, x1, after, (c.Omega * t[flight]) % (2.0 * math.pi))
+    zr, zi, qr, qi = turn(c.free, c.Omega, zr, zi, qr, qi, tau)
+    x, v, _, _, _ = derivatives(c.free, c.Omega, zr, zi, qr, qi)
+    return x - x2 - ball * tau, v - ball
+
+
+@njit
+def condition_kernel(kind, values, p, side, t, states, half, place, wall, tau):
+    """Return the two numbers of which the first, and for GRAZE also the second, vanishes at the bifurcation.
+
+    Parameters
+    ----------
+    kind : int
+        FOLD, FLIP, TORUS, GRAZE or STOP.
+    values : (5,) float array
+    p : int
+    side, t, states
+        The impacts of the orbit.
+    half : bool
+        Whether multipliers are those of the half map.
+    place : int
+        The flight that turns at the wall (GRAZE), or the impact of no speed (STOP).
+    wall : int
+        The wall that is touched (GRAZE).
+    tau : float
+        Time since the start of the flight at which it turns (GRAZE).
+    """
+    if kind == GRAZE:
+        w, speed = _gap(values, side, t, states, place, tau)
+        return w - wall, speed
+    if kind == STOP:
+        return states[place, 1] - states[place, 3], 0.0
+    M = _period_map(values, 2.0 * math.pi * p / values[2], side, t, states, half)
+    size = 1.0 + math.sqrt(np.sum(M * M))
+    if kind == TORUS:
+        return _without_pair(M) / (size * size), 0.0
+    return np.linalg.det(np.eye(4) - M if kind == FOLD else np.eye(4) + M) / size, 0.0
+
+
+@njit
+def turnings_kernel(c, duration, t, states):
+    """Return all turning points of the gap, rows of flight, time since its start, wall it points at, clearance, w''.
+
+    Parameters
+    ----------
+    c : vines.dynamics._constants.Constants
+    duration : float
+    t : (N,) float array
+    states : (N, 4) float array
+    """
+    rows = []
+    for j in range(t.size):
+        tau = t[j + 1] - t[j] if j + 1 < t.size else t[0] + duration - t[j]
+        x1, v1, x2, v2 = states[j, 0], states[j, 1], states[j, 2], states[j, 3]
+        ball = c.pass2 * v1 + c.keep2 * v2
+        phase = (c.Omega * t[j]) % (2.0 * math.pi)
+        zr, zi, qr, qi = phasors(c.free, c.Omega, x1, c.keep1 * v1 + c.pass1 * v2, phase)
+        for at in turning_points_kernel(c, zr, zi, qr, qi, ball, tau):
+            a, b, d, e = turn(c.free, c.Omega, zr, zi, qr, qi, at)
+            x, _, bend, _, _ = derivatives(c.free, c.Omega, a, b, d, e)
+            wall = 1.0 if bend < 0.0 else -1.0
+            rows.append((float(j), at, wall, 1.0 - wall * (x - x2 - ball * at), bend))
+    out = np.empty((len(rows), 5))
+    for i in range(len(rows)):
+        for k in range(5):
+            out[i, k] = rows[i][k]
+    return out

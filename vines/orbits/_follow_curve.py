@@ -1,0 +1,240 @@
+"""Curves of bifurcations in two parameters by pseudo-arclength; derived in docs/orbits.md, "Curves"."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+import numpy.typing as npt
+from scipy.optimize import root_scalar
+
+from vines.errors import OrbitNotFound, ParameterError, nearest
+from vines.model import PARAMETER_NAMES
+from vines.orbits._branch import Bifurcation
+from vines.orbits._curve import Curve, SpecialPoint
+from vines.orbits._curve_problem import CurveProblem
+from vines.orbits._joined import is_joint, left_family
+from vines.orbits._problem import Point, ZeroSet
+from vines.orbits._special import END, Special, special_functions
+
+__all__ = ["follow_curve"]
+
+Floats = npt.NDArray[np.float64]
+
+_SMALLEST_STEP = 1e-7
+_SHARPEST_TURN = math.cos(0.2)
+_ENDS = (END, "resonance_1_1", "resonance_1_2", "double_grazing", "degenerate_grazing")
+"""Special points beyond which the equations describe something else."""
+
+
+def follow_curve(
+    bifurcation: Bifurcation,
+    parameters: tuple[str, str] = ("A", "mu"),
+    *,
+    box: Mapping[str, tuple[float, float]],
+    step: float = 0.02,
+    max_points: int = 2000,
+) -> Curve:
+    """Follow a bifurcation in two parameters, both ways from where it was found.
+
+    Parameters
+    ----------
+    bifurcation : Bifurcation
+        A fold, symmetry breaking, period doubling, Neimark-Sacker point or grazing.
+    parameters : tuple of str, str
+        Two of mu, A, Omega, r, lam.
+    box : mapping of str to (float, float)
+        Range of each of the two; the curve ends at its border.
+    step : float
+        Largest step, relative to the sizes of box and unknowns.
+    max_points : int
+        Most points each way.
+
+    Returns
+    -------
+    Curve
+
+    Raises
+    ------
+    ParameterError
+        If the parameters or the box do not fit.
+    OrbitNotFound
+        If the bifurcation is not found again by the equations of the curve.
+
+    Notes
+    -----
+    Every point satisfies closing and defining equations (docs/orbits.md, "Curves").
+
+    Examples
+    --------
+    >>> from vines.model import Params
+    >>> from vines.orbits import continue_orbit, find_orbit
+    >>> branch = continue_orbit(find_orbit("LR", Params(mu=0.01, A=0.017)), "A", 0.02)
+    >>> curve = follow_curve(branch.bifurcations[0], box={"A": (0.015, 0.02), "mu": (0.008, 0.012)})
+    >>> curve.type, curve.ends
+    ('symmetry_breaking', ('box', 'box'))
+    """
+    for name in parameters:
+        if name not in PARAMETER_NAMES:
+            raise ParameterError(f"unknown parameter {name!r}: {nearest(str(name), PARAMETER_NAMES)}")
+    if len(set(parameters)) != 2:
+        raise ParameterError(f"parameters are {parameters}, allowed are two different ones")
+    if set(box) != set(parameters):
+        raise ParameterError(f"box names {sorted(box)}, it has to give the ranges of {' and '.join(parameters)}")
+    low, high = (np.array([sorted(box[name])[k] for name in parameters]) for k in (0, 1))
+    start = np.array([getattr(bifurcation.params, name) for name in parameters])
+    if not np.all((low <= start) & (start <= high) & (low < high)):
+        raise ParameterError(f"box is {dict(box)}; it has to hold the bifurcation at {tuple(start.tolist())}")
+    if not 0 < step <= 1:
+        raise ParameterError(f"step is {step!r}, allowed is 0 < step <= 1")
+    orbit = left_family(bifurcation) if is_joint(bifurcation) else bifurcation.orbit
+    problem = CurveProblem(bifurcation.type, orbit, parameters, tuple((high - low).tolist()))
+    zero = ZeroSet(problem, *problem.spans)
+    normal = np.linalg.svd(zero.problem.equations(problem.start)[1] * zero.scale)[2][-1]
+    found = zero.correct(problem.start, normal)
+    if found is None or np.abs((found[0] - problem.start) / zero.scale).max() > 0.05:
+        raise OrbitNotFound(f"{bifurcation} does not satisfy the equations of a curve; locate it afresh")
+    begin = zero.point(found[0], normal)
+    ways = []
+    for sign in (-1, 1):
+        way = _Way(problem, zero, low, high, step, max_points)
+        way.run(Point(begin.y, sign * begin.tangent, begin.orbit))
+        ways.append(way)
+        if way.end == "closed":
+            ways.append(_Way(problem, zero, low, high, step, max_points, end="closed"))
+            break
+    back, ahead = ways
+    points = [*reversed(back.points), begin, *ahead.points]
+    return Curve(
+        type=bifurcation.type,
+        word=problem.word,
+        symmetric=problem.symmetric,
+        parameters=parameters,
+        orbits=tuple(point.orbit for point in points),
+        residuals=np.array([float(np.abs(problem.residual(point.y)).max()) for point in points]),
+        special=(*reversed(back.special), *ahead.special),
+        ends=(back.end, ahead.end),
+    )
+
+
+@dataclass
+class _Way:
+    """The curve one way from its start."""
+
+    problem: CurveProblem
+    zero: ZeroSet
+    low: Floats
+    high: Floats
+    step: float
+    max_points: int
+    points: list[Point] = field(default_factory=list)
+    special: list[SpecialPoint] = field(default_factory=list)
+    end: str = "points"
+
+    def run(self, begin: Point) -> None:
+        functions = special_functions(self.problem)
+        here, length = begin, self.step / 4
+        values = [special.function(here) for special in functions]
+        for count in range(self.max_points):
+            found = self._advance(here, length)
+            while found is None:
+                length /= 2
+                if length < _SMALLEST_STEP:
+                    self.end = "lost"
+                    return
+                found = self._advance(here, length)
+            there, easy, last = found
+            after = [special.function(there) for special in functions]
+            hits = [self._cusp(here, there)] + [
+                self._locate(special, here, there, a, b) for special, a, b in zip(functions, values, after, strict=True)
+            ]
+            for _, kind, point in sorted((hit for hit in hits if hit is not None), key=lambda hit: hit[0]):
+                self._note(kind, point)
+                if kind in _ENDS and not (kind.startswith("resonance") and self.problem.kind != "neimark_sacker"):
+                    self.points.append(point)
+                    self.end = kind
+                    return
+            self.points.append(there)
+            if last:
+                self.end = "box"
+                return
+            if count > 3 and self._passes(begin, here, there):
+                self.end = "closed"
+                return
+            if easy:
+                length = min(1.5 * length, self.step)
+            here, values = there, after
+
+    def _advance(self, here: Point, length: float) -> tuple[Point, bool, bool] | None:
+        """Return the next point, whether the step may grow, and whether the point is on the border of the box."""
+        found = self.zero.correct(here.y + length * self.zero.scale * here.tangent, here.tangent)
+        if found is None:
+            return None
+        y, iterations = found
+        outside = np.flatnonzero((y[-2:] <= self.low) | (y[-2:] >= self.high))
+        if len(outside):
+            bounds = np.where(y[-2:] <= self.low, self.low, self.high)
+            move = (y - here.y)[-2:]
+            shares = [(bounds[k] - here.y[k - 2]) / move[k] for k in outside]
+            k = int(outside[np.argmin(shares)])
+            border = self.zero.at_value(here.y + min(shares) * (y - here.y), float(bounds[k]), k - 2)
+            if border is None:
+                return None
+            y = border
+        if self._far(here.y, y) > 4 * length:
+            return None
+        there = self.zero.point(y, (y - here.y) / self.zero.scale)
+        turn = float(here.tangent @ there.tangent)
+        if turn < _SHARPEST_TURN:
+            return None
+        return there, iterations <= 5 and turn > math.sqrt(_SHARPEST_TURN), len(outside) > 0
+
+    def _far(self, first: Floats, second: Floats) -> float:
+        return float(np.linalg.norm((second - first) / self.zero.scale))
+
+    def _passes(self, begin: Point, here: Point, there: Point) -> bool:
+        near = self._far(begin.y, there.y) < self._far(here.y, there.y)
+        return near and float(begin.tangent @ there.tangent) > 0.9
+
+    def _note(self, kind: str, point: Point) -> None:
+        first, second = point.y[-2:].tolist()
+        self.special.append(SpecialPoint(kind, (first, second), point.orbit))
+
+    def _locate(
+        self, special: Special, here: Point, there: Point, first: float, second: float
+    ) -> tuple[float, str, Point] | None:
+        if not (math.isfinite(first) and math.isfinite(second)) or (first > 0) == (second > 0):
+            return None
+        found = self._root(special.function, here, there)
+        return (found[0], special.type, found[1]) if found is not None and special.holds(found[1]) else None
+
+    def _cusp(self, here: Point, there: Point) -> tuple[float, str, Point] | None:
+        """Return the cusp between two points: the parameters turn back though the curve goes on."""
+        along = here.tangent[-2:]
+        if along @ there.tangent[-2:] >= 0:
+            return None
+        found = self._root(lambda point: float(along @ point.tangent[-2:]), here, there)
+        if found is None or np.linalg.norm(found[1].tangent[-2:]) > 0.1 * np.linalg.norm(along):
+            return None
+        return found[0], "cusp", found[1]
+
+    def _root(self, function: Callable[[Point], float], here: Point, there: Point) -> tuple[float, Point] | None:
+        """Return where between two points a function vanishes, or None if the curve is lost there."""
+        seen: dict[float, Point] = {0.0: here, 1.0: there}
+
+        def at(fraction: float) -> float:
+            if fraction not in seen:
+                point = self.zero.between(here, there, fraction)
+                if point is None:
+                    raise OrbitNotFound(f"the curve was lost at {here.orbit.params}")
+                seen[fraction] = point
+            return function(seen[fraction])
+
+        try:
+            root = float(root_scalar(at, bracket=(0.0, 1.0), method="brentq", xtol=1e-14, rtol=1e-13).root)
+            at(root)
+        except (OrbitNotFound, ValueError):
+            return None
+        return root, seen[root]

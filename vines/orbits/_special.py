@@ -1,0 +1,152 @@
+"""Codimension two: functions along a curve of bifurcations that pass through zero where it meets another one."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from itertools import combinations
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from vines.dynamics._constants import constants
+from vines.orbits._conditions import grazing_margin
+from vines.orbits._criticality import branching_curvature
+from vines.orbits._curve_problem import CurveProblem
+from vines.orbits._defining import turnings_kernel
+from vines.orbits._joined import unfolded
+from vines.orbits._problem import Point
+
+__all__ = ["END", "RESONANCES", "Special", "special_functions"]
+
+Multipliers = npt.NDArray[np.complex128]
+
+END = "grazing"
+"""The special point at which the orbits of the curve cease to be admissible."""
+
+RESONANCES = {"resonance_1_1": 1.0, "resonance_1_2": -1.0, "resonance_1_3": -0.5, "resonance_1_4": 0.0}
+"""Cosine of the angle of the critical pair at the strong resonances."""
+
+_LARGEST = 1e7
+"""Modulus of a multiplier beyond which the others are too much rounding to tell what they do."""
+
+_TOUCHING = 1e-5
+"""Time between the turning point that touches and one that the survey finds, below which they are one."""
+
+
+class Special(NamedTuple):
+    """A kind of codimension-two point.
+
+    Attributes
+    ----------
+    type : str
+    function : callable
+        Of a point on the curve; changes its sign there.
+    holds : callable
+        Of the same, whether a zero is what it seems: a pair of product one is one on the circle, for instance.
+    """
+
+    type: str
+    function: Callable[[Point], float]
+    holds: Callable[[Point], bool]
+
+
+def _always(point: Point) -> bool:
+    return True
+
+
+def special_functions(problem: CurveProblem) -> tuple[Special, ...]:
+    """Return what is looked for on a curve of this kind (docs/orbits.md, "Curves")."""
+    kind, flip = problem.kind, "symmetry_breaking" if problem.symmetric else "flip"
+
+    def multipliers(point: Point) -> Multipliers:
+        m = point.orbit.multipliers
+        if problem.symmetric:
+            # Next to a loss of symmetry rounding may hide that an orbit of the family is symmetric.
+            half = point.orbit.half_multipliers
+            m = np.sqrt(m) if half is None else half
+        return m if np.isfinite(m).all() and np.abs(m).max() < _LARGEST else np.full(4, complex(np.nan))
+
+    def critical(point: Point) -> tuple[Multipliers, Multipliers]:
+        """Return the multipliers that make the bifurcation, and the others."""
+        m = multipliers(point)
+        if kind == "grazing":
+            mine: tuple[int, ...] = ()
+        elif kind == "neimark_sacker":
+            mine = min(combinations(range(4), 2), key=lambda pair: abs(1 - m[pair[0]] * m[pair[1]]))
+        else:
+            mine = (int(np.argmin(abs(m - (1 if kind == "fold" else -1)))),)
+        return m[list(mine)], m[[k for k in range(4) if k not in mine]]
+
+    def one(point: Point) -> float:
+        return float(np.prod(1 - critical(point)[1]).real)
+
+    def minus_one(point: Point) -> float:
+        return float(np.prod(1 + critical(point)[1]).real)
+
+    def pairs(point: Point) -> float:
+        others = critical(point)[1]
+        return float(np.prod([1 - a * b for a, b in combinations(others, 2)]).real)
+
+    def on_circle(point: Point) -> bool:
+        a, b = min(combinations(critical(point)[1], 2), key=lambda pair: abs(1 - pair[0] * pair[1]))
+        return abs(a.imag) > 1e-7 and abs(a - b.conjugate()) < 1e-6
+
+    def cosine(point: Point) -> float:
+        return float(critical(point)[0].sum().real) / 2
+
+    def curvature(point: Point) -> float:
+        along = point.tangent[-2:]
+        direction = np.array([-along[1], along[0]]) / np.linalg.norm(along) * problem.spans
+        return branching_curvature(unfolded(kind, point.orbit), problem.names, direction)
+
+    def other_margin(point: Point) -> float:
+        orbit = point.orbit
+        rows = turnings_kernel(constants(orbit.params), orbit.period, orbit.t, orbit.states)
+        # The mirror image of a symmetric orbit touches the other wall at the same time of its own flight.
+        around = len(orbit.word) // (2 if problem.symmetric else 1)
+        mine = (rows[:, 0] % around == problem.place % around) & (np.abs(rows[:, 1] - point.y[-3]) < _TOUCHING)
+        return min(float(rows[~mine, 3].min(initial=2.0)), float((orbit.side * orbit.w_dot).min()))
+
+    def bend(point: Point) -> float:
+        return problem.bend(point.y)
+
+    def small_curvature(point: Point) -> bool:
+        return abs(curvature(point)) < 1.0
+
+    fold = Special(f"{kind}_fold" if kind == "grazing" else f"fold_{flip}", one, _always)
+    if kind == "grazing":
+        if not problem.touches:
+            return ()
+        return (
+            fold,
+            Special(f"grazing_{flip}", minus_one, _always),
+            Special("grazing_neimark_sacker", pairs, on_circle),
+            Special("double_grazing", other_margin, _always),
+            Special("degenerate_grazing", bend, _always),
+        )
+    end = Special(END, grazing_margin, _always)
+    if kind == "fold":
+        return (
+            Special("resonance_1_1", one, _always),
+            Special(f"fold_{flip}", minus_one, _always),
+            Special("fold_neimark_sacker", pairs, on_circle),
+            end,
+        )
+    if kind == "neimark_sacker":
+        return (
+            *(
+                Special(name, lambda point, value=value: cosine(point) - value, _always)
+                for name, value in RESONANCES.items()
+            ),
+            Special("fold_neimark_sacker", one, _always),
+            Special(f"{flip}_neimark_sacker", minus_one, _always),
+            end,
+        )
+    return (
+        fold,
+        Special("resonance_1_2", minus_one, _always),
+        Special(f"{flip}_neimark_sacker", pairs, on_circle),
+        Special(f"degenerate_{kind}", curvature, small_curvature),
+        end,
+    )
