@@ -5,10 +5,11 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
+from vines.dynamics._jit import njit
 from vines.errors import ParameterError
 from vines.model import Params
 
-__all__ = ["Constants", "Oscillator", "constants"]
+__all__ = ["Constants", "Oscillator", "constants", "constants_kernel"]
 
 
 class Oscillator(NamedTuple):
@@ -51,6 +52,45 @@ class Constants(NamedTuple):
     stuck: Oscillator
 
 
+@njit
+def _oscillator(mass, A, Omega, lam):
+    half = 0.5 * lam / mass
+    gamma = math.sqrt(1.0 / mass - half * half)
+    s = complex(-half, gamma)
+    q = A * complex(lam * Omega, -1.0) / complex(1.0 - mass * Omega * Omega, lam * Omega)
+    s2 = s * s
+    s3 = s2 * s
+    s4 = s2 * s2
+    return Oscillator(half, gamma, q.real, q.imag, s2.real, s2.imag, s3.real, s3.imag, s4.real, s4.imag, abs(s))
+
+
+@njit
+def constants_kernel(mu, A, Omega, r, lam):
+    """Return the `Constants` at bare parameter values, which must be those of a valid `Params`."""
+    mass = 1.0 + mu
+    free = _oscillator(1.0, A, Omega, lam)
+    fastest = max(1.0, Omega)
+    cube = 1.0 - r * r * r
+    return Constants(
+        mu,
+        A,
+        Omega,
+        r,
+        lam,
+        (1.0 - r * mu) / mass,
+        mu * (1.0 + r) / mass,
+        (mu - r) / mass,
+        (1.0 + r) / mass,
+        Omega**4,
+        math.sqrt(free.half**2 + (free.gamma - Omega) ** 2),
+        0.9 / fastest,
+        1e-4 / fastest**1.25,
+        2.0 / 3.0 * mu / mass**2 / cube if cube > 0.0 else math.inf,
+        free,
+        _oscillator(mass, A, Omega, lam),
+    )
+
+
 def constants(p: Params) -> Constants:
     """Return the constants of the kernels.
 
@@ -65,40 +105,10 @@ def constants(p: Params) -> Constants:
     >>> print(f"{c.keep1 + c.pass1:.3f} {c.free.gamma:.6f}")
     1.000 0.999982
     """
-    mass = 1.0 + p.mu
-    free = _oscillator(1.0, p)
-    fastest = max(1.0, p.Omega)
-    cube = 1.0 - p.r**3
-    return Constants(
-        mu=p.mu,
-        A=p.A,
-        Omega=p.Omega,
-        r=p.r,
-        lam=p.lam,
-        keep1=(1.0 - p.r * p.mu) / mass,
-        pass1=p.mu * (1.0 + p.r) / mass,
-        keep2=(p.mu - p.r) / mass,
-        pass2=(1.0 + p.r) / mass,
-        Omega4=p.Omega**4,
-        detuning=math.hypot(free.half, free.gamma - p.Omega),
-        window=0.9 / fastest,
-        near=1e-4 / fastest**1.25,
-        correction=2.0 / 3.0 * p.mu / mass**2 / cube if cube > 0.0 else math.inf,
-        free=free,
-        stuck=_oscillator(mass, p),
-    )
-
-
-def _oscillator(mass: float, p: Params) -> Oscillator:
-    half = 0.5 * p.lam / mass
-    gamma = math.sqrt(1.0 / mass - half * half)
-    s = complex(-half, gamma)
-    detuning = complex(1.0 - mass * p.Omega**2, p.lam * p.Omega)
-    if abs(detuning) < 1e-9:
-        raise ParameterError(
-            f"lam is {p.lam:g} at the resonance of mass {mass:g}; allowed is lam > 0 there: "
-            "without damping the response grows without bound"
-        )
-    q = p.A * complex(p.lam * p.Omega, -1.0) / detuning
-    s2, s3, s4 = s * s, s * s * s, s * s * s * s
-    return Oscillator(half, gamma, q.real, q.imag, s2.real, s2.imag, s3.real, s3.imag, s4.real, s4.imag, abs(s))
+    for mass in (1.0, 1.0 + p.mu):
+        if math.hypot(1.0 - mass * p.Omega**2, p.lam * p.Omega) < 1e-9:
+            raise ParameterError(
+                f"lam is {p.lam:g} at the resonance of mass {mass:g}; allowed is lam > 0 there: "
+                "without damping the response grows without bound"
+            )
+    return constants_kernel(p.mu, p.A, p.Omega, p.r, p.lam)

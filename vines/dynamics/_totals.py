@@ -24,7 +24,7 @@ from vines.dynamics._flight import advance_phase, derivatives, phasors, turn
 from vines.dynamics._integrals import largest_displacement, segment_integrals
 from vines.dynamics._jit import njit
 
-__all__ = ["accumulate", "segment_state", "state_energy", "window_totals"]
+__all__ = ["accumulate", "add_segment", "count_event", "segment_state", "state_energy", "window_totals"]
 
 # Entries of the totals of a window.
 (
@@ -77,13 +77,39 @@ def event_loss(c, row):
 
 
 @njit
+def count_event(c, out, row):
+    """Add an impact or a merge, and what it costs, to the totals."""
+    left = row[SIDE] > 0.0
+    out[LOSS_LEFT if left else LOSS_RIGHT] += event_loss(c, row)
+    if row[KIND] == IMPACT:
+        out[IMPACTS_LEFT if left else IMPACTS_RIGHT] += 1.0
+    else:
+        out[STICKS_LEFT if left else STICKS_RIGHT] += 1.0
+
+
+@njit
+def add_segment(c, out, mode, begins, x1, v1, v2, phase, length):
+    """Add the motion of a segment, given by the state at its start, to the totals."""
+    xx, vv, ball, work, loss = segment_integrals(c, mode, x1, v1, v2, phase, length)
+    out[DURATION] += length
+    out[X1_SQUARE] += xx
+    out[V1_SQUARE] += vv
+    out[V2_SQUARE] += ball
+    out[BASE_WORK] += work
+    out[DAMPER_LOSS] += loss
+    best, when = largest_displacement(c, mode, x1, v1, phase, 0.0, length, out[MAX_ABS_X1])
+    if when >= 0.0:
+        out[MAX_ABS_X1] = best
+        out[T_MAX_ABS_X1] = begins + when
+
+
+@njit
 def window_totals(c, rows, n, start, stop):
     """Return the totals of the time window (start, stop] of a run of n rows, the last of which ends it.
 
     Events exactly at `start` count only if they belong to the run's first instant.
     """
     out = np.zeros(TOTALS)
-    best = -1.0
     opened = False
     energy = 0.0
     for i in range(n):
@@ -93,12 +119,7 @@ def window_totals(c, rows, n, start, stop):
         kind = rows[i, KIND]
         counted = i > 0 and (begins > start or (begins == start and rows[0, TIME] == start))
         if counted and kind in (IMPACT, STICK):
-            left = rows[i, SIDE] > 0.0
-            out[LOSS_LEFT if left else LOSS_RIGHT] += event_loss(c, rows[i])
-            if kind == IMPACT:
-                out[IMPACTS_LEFT if left else IMPACTS_RIGHT] += 1.0
-            else:
-                out[STICKS_LEFT if left else STICKS_RIGHT] += 1.0
+            count_event(c, out, rows[i])
         if i == n - 1:
             break
         length = rows[i + 1, TAU]
@@ -120,25 +141,15 @@ def window_totals(c, rows, n, start, stop):
                 energy = state_energy(c, first[X1], first[V1], first[V2], first[PHASE])
             else:
                 energy = state_energy(c, x1, v1, v2, phase)
-            best = abs(x1)
+            out[MAX_ABS_X1] = abs(x1)
             out[T_MAX_ABS_X1] = begins + low
-        xx, vv, ball, work, loss = segment_integrals(c, rows[i, MODE], x1, v1, v2, phase, length - low)
-        out[DURATION] += length - low
-        out[X1_SQUARE] += xx
-        out[V1_SQUARE] += vv
-        out[V2_SQUARE] += ball
-        out[BASE_WORK] += work
-        out[DAMPER_LOSS] += loss
-        best, when = largest_displacement(c, rows[i, MODE], x1, v1, phase, 0.0, length - low, best)
-        if when >= 0.0:
-            out[T_MAX_ABS_X1] = begins + low + when
+        add_segment(c, out, rows[i, MODE], begins + low, x1, v1, v2, phase, length - low)
         if ends >= stop or i == n - 2:
             x1, v1, _, v2, phase = segment_state(c, rows[i], length)
             if i == n - 2 and ends <= stop:
                 last = rows[n - 1]
                 x1, v1, v2, phase = last[X1], last[A_V1], last[A_V2], last[PHASE]
             out[ENERGY_CHANGE] = state_energy(c, x1, v1, v2, phase) - energy
-    out[MAX_ABS_X1] = max(best, 0.0)
     return out
 
 
