@@ -80,6 +80,8 @@ class ViewerError(VinesError, RuntimeError):
 class OrbitNotFound(VinesError, LookupError):  # noqa: N818 - the name is promised in the design
     """No periodic orbit of the word was found; the message says how near the search came."""
 
+    exit_code: int = 1
+
 
 class RunFailed(VinesError, RuntimeError):  # noqa: N818 - reads as what happened
     """Some points of a run failed; the rest is stored."""

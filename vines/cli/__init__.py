@@ -27,6 +27,7 @@ COMMANDS = {
     "schema": ("vines.cli._schema", "Describe the columns of a table, with units."),
     "query": ("vines.cli._query", "Ask the result tables in SQL."),
     "check": ("vines.cli._check", "Do the results reproduce the published values?"),
+    "solve": ("vines.cli._solve", "Print the periodic orbit of a word of impacts."),
     "view": ("vines.cli._view", "Look at logged runs in the Rerun viewer."),
     "warm-up": ("vines.cli._warm_up", "Compile the kernels now, not at the first run."),
 }

@@ -13,6 +13,7 @@ from vines.orbits._reduced import Reduced, manifold_amplitude, manifold_range, r
 from vines.orbits._rows import bifurcation_row, branch_row, orbit_row
 from vines.orbits._switch import switch_branch
 from vines.orbits._symmetric import symmetric_fold, symmetric_orbits
+from vines.orbits._table import symmetric_table
 from vines.orbits._warm_up import warm_up
 
 __all__ = [
@@ -40,5 +41,6 @@ __all__ = [
     "switch_branch",
     "symmetric_fold",
     "symmetric_orbits",
+    "symmetric_table",
     "warm_up",
 ]

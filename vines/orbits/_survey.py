@@ -11,7 +11,7 @@ from vines.dynamics._jit import njit
 from vines.dynamics._saltation import jacobian_kernel
 from vines.orbits._turning import turning_points_kernel
 
-__all__ = ["NO_TURNING", "survey_kernel"]
+__all__ = ["NO_TURNING", "inspect_flight", "survey_kernel"]
 
 NO_TURNING = 2.0
 """Clearance of an orbit whose flights never turn back: the width of the cavity."""
@@ -40,7 +40,7 @@ def _crossing(c, zr, zi, qr, qi, x2, v2, side, inside, outside):
 
 
 @njit
-def _inspect(c, side, x1, v1, x2, v2, phase, tau):
+def inspect_flight(c, side, x1, v1, x2, v2, phase, tau):
     """Inspect the flight that starts at `side` just after an impact and lasts tau.
 
     Returns
@@ -118,7 +118,7 @@ def survey_kernel(c, duration, side, t, states):
             abs(v2n - states[k, 3]),
         )
         after = c.keep1 * v1 + c.pass1 * v2
-        distance, when, where = _inspect(c, side[j], x1, after, x2, v2n, phase, tau)
+        distance, when, where = inspect_flight(c, side[j], x1, after, x2, v2n, phase, tau)
         clearance = min(clearance, distance)
         if where != 0 and wall == 0:
             violation = t[j] + when

@@ -1,0 +1,64 @@
+"""``vines solve``: what a person reads, what a machine reads, and how it fails."""
+
+import json
+
+import pytest
+from click.testing import CliRunner
+
+from vines.cli._solve import command
+from vines.errors import OrbitNotFound, ParameterError
+from vines.model import Params
+from vines.orbits import all_orbits, find_orbit
+
+
+def solve(*arguments):
+    result = CliRunner().invoke(command, list(arguments))
+    if result.exception is not None and not isinstance(result.exception, SystemExit):
+        raise result.exception
+    assert result.exit_code == 0
+    return result.output
+
+
+def test_a_person_reads_everything_about_an_orbit():
+    text = solve("LRLR/2T", "--mu", "0.01", "--A", "0.021")
+    orbit = find_orbit("LRLR/2T", Params(mu=0.01, A=0.021))
+    assert text.startswith("2:2/2T, in the paper 1:1/2T (LRLR/2T): asymmetric, stable, admissible\n")
+    for value in (*orbit.t, *orbit.w_dot, *abs(orbit.multipliers)):
+        assert f"{value:.10f}" in text
+    for value in (orbit.measures.kinetic_ratio, orbit.measures.max_abs_x1, orbit.measures.base_work):
+        assert f"{value:.10g}" in text
+    assert "of that without ball" in text
+    assert "of that with the ball locked" in text
+
+
+def test_an_inadmissible_orbit_says_where_it_meets_a_wall():
+    text = solve("LR", "--mu", "0.01", "--A", "0.08")
+    orbit = find_orbit("LR", Params(mu=0.01, A=0.08))
+    assert not orbit.admissible
+    side = "L" if orbit.violation_side > 0 else "R"
+    assert f"would meet {side} at t = {orbit.violation_time:.10g}" in text
+
+
+def test_all_orbits_are_printed_with_what_is_known_of_others():
+    text = solve("LR", "--mu", "0.01", "--A", "0.019", "--all")
+    assert text.startswith("3 orbits of this word, and no more (all flight times searched)\n")
+    assert text.count("Floquet multipliers") == 3
+
+
+def test_a_machine_reads_json():
+    row = json.loads(solve("LLR", "--mu", "0.01", "--A", "0.023", "--json"))
+    assert row["name"] == "2:1"
+    assert row["violation_time"] is None
+    found = json.loads(solve("LR", "--mu", "0.01", "--A", "0.019", "--Omega", "1", "--lam", "0.012", "--all", "--json"))
+    assert found["complete"] is True
+    assert len(found["orbits"]) == len(all_orbits("LR", Params(mu=0.01, A=0.019, lam=0.012)))
+
+
+def test_no_orbit_is_an_error_of_one_line_and_exit_code_1():
+    for extra in ([], ["--all"], ["--json"]):
+        with pytest.raises(OrbitNotFound, match="raise A") as caught:
+            solve("LR", "--mu", "0.01", "--A", "0.001", *extra)
+        assert "\n" not in str(caught.value)
+        assert caught.value.exit_code == 1
+    with pytest.raises(ParameterError, match="is not a word"):
+        solve("1:1", "--mu", "0.01", "--A", "0.001")

@@ -1,0 +1,138 @@
+"""``vines solve``: one periodic orbit, or all of a word, for a person or a machine to read."""
+
+from __future__ import annotations
+
+import json
+import math
+from typing import TYPE_CHECKING, Any
+
+import click
+
+if TYPE_CHECKING:
+    from vines.orbits import Orbit
+
+
+@click.command("solve")
+@click.argument("word")
+@click.option("--mu", type=float, required=True, help="Mass ratio m/M.")
+@click.option("--A", "amplitude", type=float, required=True, help="Forcing amplitude E/b.")
+@click.option("--Omega", "frequency", type=float, default=1.0, show_default=True, help="Frequency ratio.")
+@click.option("--r", type=float, default=0.65, show_default=True, help="Coefficient of restitution.")
+@click.option("--lam", type=float, help="Damping c/(M omega0); the default is that of Table 1.")
+@click.option("--all", "every", is_flag=True, help="All orbits of the word that are found, not only one.")
+@click.option("--json", "as_json", is_flag=True, help="For machines.")
+def command(
+    word: str,
+    mu: float,
+    amplitude: float,
+    frequency: float,
+    r: float,
+    lam: float | None,
+    every: bool,
+    as_json: bool,
+) -> None:
+    """Print the periodic orbit of a WORD of impacts, such as LR, LLR or LRLR/2T.
+
+    Of several the symmetric admissible one is shown, else a stable one, else the one with the smallest largest
+    multiplier. Exit 1 if there is none.
+
+    \b
+    vines solve LR --mu 0.01 --A 0.017
+    vines solve LLR --mu 0.01 --A 0.023 --all
+    """  # noqa: D301
+    from vines.model import Params
+    from vines.orbits import all_orbits, find_orbit, orbit_row
+
+    given = {} if lam is None else {"lam": lam}
+    p = Params(mu=mu, A=amplitude, Omega=frequency, r=r, **given)
+    if every:
+        found = all_orbits(word, p)
+        # With no orbit the search for one says why and how near it came.
+        orbits = list(found) or [find_orbit(word, p)]
+        complete, remark = found.complete, found.remark
+    else:
+        orbits, complete, remark = [find_orbit(word, p)], None, None
+    if as_json:
+        rows = [_plain({**orbit_row(orbit), "remark": orbit.remark}) for orbit in orbits]
+        shown: Any = {"complete": complete, "remark": remark, "orbits": rows} if every else rows[0]
+        click.echo(json.dumps(shown, indent=1))
+        return
+    if every:
+        count = f"{len(orbits)} orbit{'s' if len(orbits) > 1 else ''}"
+        click.echo(f"{count} of this word{', and no more' if complete else ''} ({remark})\n")
+    click.echo("\n\n".join(describe(orbit) for orbit in orbits))
+
+
+def describe(orbit: Orbit) -> str:
+    """Return an orbit as lines that a person wants to read.
+
+    Examples
+    --------
+    >>> from vines.model import Params
+    >>> from vines.orbits import find_orbit
+    >>> print(describe(find_orbit("LR", Params(mu=0.01, A=0.017))).splitlines()[0])
+    1:1 (LR): symmetric, stable, admissible
+    """
+    from vines.cli._layout import lines
+    from vines.dynamics import ball_locked, no_ball
+
+    p, m = orbit.params, orbit.measures
+    label = orbit.name if orbit.alias == orbit.name else f"{orbit.name}, in the paper {orbit.alias}"
+    kinds = [
+        "symmetric" if orbit.symmetric else "asymmetric",
+        "stable" if orbit.stable else "unstable",
+        "admissible" if orbit.admissible else "not admissible",
+    ]
+    text = [f"{label} ({orbit.word}): {', '.join(kinds)}", f"at {p}, period {orbit.period:.10g}"]
+    if not orbit.admissible:
+        side = "L" if orbit.violation_side > 0 else "R"
+        text.append(
+            f"between its impacts it would meet {side} at t = {orbit.violation_time:.10g}: no orbit of the model"
+        )
+    if orbit.remark:
+        text.append(orbit.remark)
+    states = orbit.states.tolist()
+    rows = [
+        ["L" if side > 0 else "R", *(f"{value:.10f}" for value in (t, phase, wait, *state, w_dot))]
+        for side, t, phase, wait, state, w_dot in zip(
+            orbit.side, orbit.t, orbit.phase, orbit.flight_times, states, orbit.w_dot, strict=True
+        )
+    ]
+    head = ["", "t", "phase", "to the next", "x1", "v1", "x2", "v2", "w'"]
+    text += ["", "impacts (just before each)", *lines(head, rows, wrap=None)]
+    text += ["", "Floquet multipliers over the period"]
+    text += lines(["", "modulus"], [[_complex(z), f"{abs(z):.10f}"] for z in orbit.multipliers.tolist()], wrap=None)
+    free, locked = no_ball(p), ball_locked(p)
+    clearance = "no flight turns back" if orbit.min_clearance == 2 else f"{orbit.min_clearance:.6g}"
+    measures: list[list[object]] = [
+        ["K2/K1", f"{m.kinetic_ratio:.10g}", ""],
+        ["max|x1|", f"{m.max_abs_x1:.10g}", f"{m.max_abs_x1 / free:.4g} of that without ball, {free:.6g}"],
+        ["", "", f"{m.max_abs_x1 / locked:.4g} of that with the ball locked, {locked:.6g}"],
+        ["rms x1", f"{m.rms_x1:.10g}", ""],
+        ["least clearance", clearance, "" if orbit.min_clearance == 2 else "of a turning point from its wall"],
+    ]
+    text += ["", "measures", *(line for line in lines(["", "", ""], measures, wrap=None) if line)]
+    energies: list[list[object]] = [
+        ["base work", f"{m.base_work:.10g}"],
+        ["lost in the damper", f"{m.damper_loss:.10g}"],
+        ["lost in impacts on L", f"{m.impact_loss_left:.10g}"],
+        ["lost in impacts on R", f"{m.impact_loss_right:.10g}"],
+        ["left over, relative", f"{orbit.energy_imbalance:.1e}"],
+    ]
+    text += ["", "energy over the period, in M b² omega0²"]
+    text += [line for line in lines(["", ""], energies, wrap=None) if line]
+    text += ["", f"residual {orbit.residual:.1e}"]
+    return "\n".join(text)
+
+
+def _complex(z: complex) -> str:
+    return f"{z.real:+.10f}" + (f" {z.imag:+.10f}i" if z.imag else "")
+
+
+def _plain(value: Any) -> Any:
+    """Return a value as JSON knows it; what is not finite is null."""
+    if isinstance(value, dict):
+        return {name: _plain(each) for name, each in value.items()}
+    if isinstance(value, list):
+        return [_plain(each) for each in value]
+    return None if isinstance(value, float) and not math.isfinite(value) else value
