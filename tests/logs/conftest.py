@@ -30,6 +30,7 @@ def run():
         "parameters": {"mu": 0.01, "A": 0.1 + 0.2, "Omega": 1.0, "r": 0.65, "lam": 0.011997967},
         "name": "made up",
         "declaration": "[params]\nmu = 0.01  # µ\n",
+        "bare": False,
     }
 
 

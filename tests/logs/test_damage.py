@@ -68,12 +68,6 @@ PROVENANCE = {"vines.provenance": {"key": "0"}}
 COMPLETE = {**PROVENANCE, "vines.status": {"status": "complete"}}
 
 
-def test_log_of_somebody_else(tmp_path):
-    message = refused(tmp_path / "robot.mcap", foreign())
-    assert "no log of vines" in message
-    assert "/pose (json)" in message
-
-
 def test_no_mcap_at_all(tmp_path):
     assert "is not an MCAP file" in refused(tmp_path / "table.mcap", b"PAR1 and so on, long enough to have an end")
 

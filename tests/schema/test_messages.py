@@ -1,5 +1,7 @@
 """The compiled descriptors are current, documented, and give the layout that protobuf itself writes."""
 
+import shutil
+
 import numpy as np
 import pytest
 from google.protobuf import descriptor_pb2
@@ -10,10 +12,23 @@ from vines.places import shipped
 from vines.schema import _compile, _messages
 
 
-def test_committed_set_is_current():
+@pytest.mark.parametrize("name", _compile.DESCRIPTOR_SETS)
+def test_committed_set_is_current(name):
     folder = shipped("schemas")
-    compiled = descriptor_pb2.FileDescriptorSet.FromString(_compile.compile_descriptor_set(folder))
-    assert compiled == schema.file_descriptor_set(), "run: python -m vines.schema._compile"
+    compiled = _compile.compile_descriptor_set(folder, _compile.DESCRIPTOR_SETS[name])
+    there = descriptor_pb2.FileDescriptorSet.FromString((folder / name).read_bytes())
+    now = descriptor_pb2.FileDescriptorSet.FromString(compiled)
+    assert there == now, "run: python -m vines.schema._compile"
+
+
+def test_set_that_is_out_of_date_is_told(tmp_path, monkeypatch, capsys):
+    shutil.copytree(shipped("schemas"), tmp_path / "schemas")
+    (tmp_path / "schemas" / "vines.v1.binpb").write_bytes(b"")
+    monkeypatch.setattr(_compile, "shipped", lambda name: tmp_path / name)
+    assert _compile.main(["--check"]) == 1
+    assert "vines.v1.binpb is out of date" in capsys.readouterr().out
+    assert _compile.main([]) == 0
+    assert _compile.main(["--check"]) == 0
 
 
 def test_check_and_write_say_so(capsys):

@@ -2,21 +2,32 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 
 import numpy as np
 
 from vines.errors import SchemaError
-from vines.schema import numpy_dtype
+from vines.schema import WireFormat, numpy_dtype, schema_bytes, wire_format
 
 __all__ = [
+    "BASE",
     "CHANNELS",
+    "DIGESTS",
+    "FIRST_SENSOR",
+    "KINDS",
+    "ORBIT",
     "PARAMETERS",
     "PROVENANCE",
+    "RECOVERED",
     "RUN",
+    "SAMPLE",
+    "SENSOR",
     "STATUS",
     "Channel",
+    "Rows",
     "as_messages",
+    "as_rows",
     "log_times",
     "message_header",
 ]
@@ -27,6 +38,10 @@ RUN = "vines.run"
 """Metadata record with the name of the run."""
 PARAMETERS = "vines.parameters"
 """Metadata record with the parameters of the model."""
+DIGESTS = "vines.digests"
+"""Metadata record with the SHA-256 of each record before it, so that damage there can be named."""
+RECOVERED = "vines.recovered"
+"""Metadata record of a salvaged log: what was saved and what was lost."""
 STATUS = "vines.status"
 """Metadata record that is written last: without it a log is incomplete."""
 
@@ -34,7 +49,7 @@ _LATEST = 9.2e9
 """Nanoseconds are counted in 64 bits, and viewers read them with a sign: later times have no log time."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Channel:
     """One kind of message in a log.
 
@@ -45,11 +60,17 @@ class Channel:
     topic : str
         Its name in the file.
     message : str
-        Full name of its protobuf message.
+        Full name of its message.
     time : str
         The field of the message that gives its log time.
     key : str
         Its name as an argument of :func:`vines.logs.write_run` and as an attribute of a log.
+    metadata : mapping of str to str
+        What the file says about the channel.
+    schema : tuple of (str, bytes) or None
+        Encoding and content of the schema; None for a message of vines.
+    encoding : str
+        Encoding of the messages.
     """
 
     number: int
@@ -57,6 +78,50 @@ class Channel:
     message: str
     time: str
     key: str
+    metadata: Mapping[str, str] = field(default_factory=dict)
+    schema: tuple[str, bytes] | None = None
+    encoding: str = "protobuf"
+
+    def described(self) -> tuple[str, bytes]:
+        """Return encoding and content of the schema as the file holds it."""
+        return self.schema or ("protobuf", schema_bytes(self.message))
+
+
+@dataclass(frozen=True, eq=False)
+class Rows:
+    """All messages of a channel, ready to be packed.
+
+    Attributes
+    ----------
+    channel : Channel
+        Where they go.
+    layout : WireFormat
+        How a message lies in memory; all have one length.
+    times : numpy.ndarray of uint64, shape (n,)
+        Log times, sorted.
+    values : numpy.ndarray, shape (n,), structured
+        A row a message with the fields of the layout.
+    first : int
+        Sequence number of the first.
+    """
+
+    channel: Channel
+    layout: WireFormat
+    times: np.ndarray
+    values: np.ndarray
+    first: int = 0
+
+    @property
+    def width(self) -> int:
+        """Bytes of a message with its record header."""
+        return 31 + len(self.layout.blank)
+
+    def __len__(self) -> int:
+        return len(self.times)
+
+    def part(self, rows: slice) -> Rows:
+        """Return some of the rows, with their sequence numbers."""
+        return Rows(self.channel, self.layout, self.times[rows], self.values[rows], self.first + rows.start)
 
 
 CHANNELS = (
@@ -64,6 +129,19 @@ CHANNELS = (
     Channel(2, "/impact", "vines.v1.Impact", "t", "impacts"),
     Channel(3, "/stick", "vines.v1.Stick", "t_start", "sticks"),
 )
+"""The channels that the log of a run always has."""
+ORBIT = Channel(4, "/orbit", "vines.v1.Orbit", "t", "orbits")
+"""Channel of the log of an orbit."""
+BASE = Channel(5, "/base", "vines.v1.BaseMotion", "t", "base")
+"""Channel of the log of a rig."""
+SAMPLE = "vines.v1.SensorSample"
+"""Message of a sensor's channel."""
+SENSOR = "/sensor/"
+"""Topics of sensors begin so."""
+FIRST_SENSOR = 100
+"""Number of the first sensor's channel."""
+KINDS = {channel.message: channel for channel in (*CHANNELS, ORBIT, BASE)}
+"""Messages of which a log has one channel at most."""
 
 
 def message_header(payload: int) -> np.dtype:
@@ -132,6 +210,18 @@ def as_messages(array: np.ndarray, channel: Channel) -> np.ndarray:
             f"before the one above it; sort them by {channel.time!r}"
         )
     return fitting
+
+
+def as_rows(array: np.ndarray, channel: Channel, first: int = 0) -> Rows:
+    """Return an array as the messages of a channel of vines, ready to be packed.
+
+    Raises
+    ------
+    SchemaError
+        As :func:`as_messages`.
+    """
+    values = as_messages(array, channel)
+    return Rows(channel, wire_format(channel.message), log_times(values[channel.time]), values, first)
 
 
 def log_times(times: np.ndarray) -> np.ndarray:

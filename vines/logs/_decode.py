@@ -5,14 +5,15 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
+from google.protobuf.descriptor_pb2 import FileDescriptorSet
 
 from vines.logs._channels import Channel
-from vines.schema import field_notes, message_class, numpy_dtype, wire_format
+from vines.schema import field_notes, message_class, numpy_dtype, schema_bytes, wire_format
 
 if TYPE_CHECKING:
     import pyarrow as pa
 
-__all__ = ["decode", "table"]
+__all__ = ["decode", "differing_fields", "table"]
 
 
 def decode(payloads: np.ndarray, channel: Channel) -> np.ndarray:
@@ -46,6 +47,24 @@ def table(parts: list[np.ndarray], channel: Channel) -> pa.Table:
                 metadata={"unit": notes[name][0], "description": notes[name][1]},
             )
             for name in dtype.names or ()
-        ]
+        ],
+        metadata=dict(channel.metadata) or None,
     )
     return pa.table([pa.array(column) for column in columns], schema=schema)
+
+
+def differing_fields(descriptors: bytes, message: str) -> list[str]:
+    """Return the fields of our message that a serialised FileDescriptorSet lacks or describes otherwise."""
+    ours, theirs = _fields(schema_bytes(message), message), _fields(descriptors, message)
+    return sorted(name for name, *_ in ours - theirs)
+
+
+def _fields(descriptors: bytes, message: str) -> set[tuple[str, int, int]]:
+    """Return name, number and type of the fields of a message."""
+    return {
+        (each.name, each.number, each.type)
+        for file in FileDescriptorSet.FromString(descriptors).file
+        for kind in file.message_type
+        if f"{file.package}.{kind.name}" == message
+        for each in kind.field
+    }

@@ -7,29 +7,32 @@ every byte back through its reader with CRC validation.
 
 from __future__ import annotations
 
+import hashlib
 import struct
 import zlib
-from collections.abc import Mapping
+from collections import Counter, deque
+from collections.abc import Iterable, Mapping, Sequence
+from concurrent.futures import Future, ThreadPoolExecutor
 from typing import BinaryIO
 
-import numpy as np
-import zstandard
 from mcap import records
 from mcap.data_stream import RecordBuilder
 from mcap.opcode import Opcode
 from mcap.writer import MCAP0_MAGIC
 
-from vines.logs._channels import CHANNELS, Channel, log_times
-from vines.logs._pack import pack
-from vines.schema import schema_bytes
+from vines.logs._channels import DIGESTS, STATUS, Channel, Rows
+from vines.logs._chunk import Packed, packed
 
-__all__ = ["LogFile"]
+__all__ = ["LogFile", "digest_of", "trusted"]
+
+_AT_ONCE = 2
+"""Chunks that are packed and compressed at the same time; the bytes of the file do not depend on it."""
 
 
 class LogFile:
     """An MCAP file that is being written, with what its summary will say."""
 
-    def __init__(self, stream: BinaryIO):
+    def __init__(self, stream: BinaryIO, profile: str = ""):
         self._stream = stream
         self._offset = 0
         self._crc = 0
@@ -40,17 +43,19 @@ class LogFile:
                 *(Opcode.CHUNK_INDEX, Opcode.ATTACHMENT_INDEX, Opcode.METADATA_INDEX),
             )
         }
-        self._counts = {channel.number: 0 for channel in CHANNELS}
+        self._counts: Counter[int] = Counter()
         self._span: tuple[int, int] | None = None
-        self._zstd = zstandard.ZstdCompressor(level=3)
+        self._sha = hashlib.sha256()
+        self._digests: dict[str, str] = {}
         self._put(MCAP0_MAGIC)
-        self._record(records.Header(profile="", library="vines"))
+        self._record(records.Header(profile=profile, library="vines"))
 
     def _put(self, data: bytes) -> int:
         """Write bytes of the data section; return where they begin."""
         start = self._offset
         self._stream.write(data)
         self._crc = zlib.crc32(data, self._crc)
+        self._sha.update(data)
         self._offset += len(data)
         return start
 
@@ -60,12 +65,15 @@ class LogFile:
         return self._put(data), len(data)
 
     def metadata(self, name: str, values: dict[str, str]) -> None:
-        offset, length = self._record(records.Metadata(name=name, metadata=values))
+        record = records.Metadata(name=name, metadata=values)
+        offset, length = self._record(record)
+        self._digests[name] = digest_of(_bytes(record))
         self._repeated[Opcode.METADATA_INDEX].append(records.MetadataIndex(offset=offset, length=length, name=name))
 
     def attachment(self, name: str, media_type: str, data: bytes) -> None:
         record = records.Attachment(create_time=0, log_time=0, name=name, media_type=media_type, data=data)
         offset, length = self._record(record)
+        self._digests[name] = digest_of(_bytes(record))
         index = records.AttachmentIndex(
             offset=offset,
             length=length,
@@ -78,66 +86,69 @@ class LogFile:
         self._repeated[Opcode.ATTACHMENT_INDEX].append(index)
 
     def channel(self, channel: Channel) -> None:
-        schema = records.Schema(
-            id=channel.number, data=schema_bytes(channel.message), encoding="protobuf", name=channel.message
-        )
-        described = records.Channel(
-            id=channel.number,
-            topic=channel.topic,
-            message_encoding="protobuf",
-            metadata={},
-            schema_id=channel.number,
-        )
-        for opcode, record in ((Opcode.SCHEMA, schema), (Opcode.CHANNEL, described)):
-            self._record(record)
-            self._repeated[opcode].append(record)
-
-    def chunk(self, rows: Mapping[Channel, np.ndarray], places: Mapping[Channel, slice]) -> None:
-        """Write one chunk and its message indexes; ``places`` are the rows' numbers in their channels."""
-        body: list[bytes] = []
-        indexes: dict[int, bytes] = {}
-        size = 0
-        spans: list[tuple[int, int]] = []
-        for channel, part in rows.items():
-            if not len(part):
-                continue
-            times = log_times(part[channel.time])
-            packed = pack(part, times, channel, places[channel].start)
-            entries = np.empty((len(part), 2), "<u8")
-            entries[:, 0] = times
-            entries[:, 1] = size + len(packed) // len(part) * np.arange(len(part))
-            head = struct.pack("<BQHI", Opcode.MESSAGE_INDEX, 6 + entries.nbytes, channel.number, entries.nbytes)
-            indexes[channel.number] = head + entries.tobytes()
-            body.append(packed)
-            size += len(packed)
-            spans.append((int(times[0]), int(times[-1])))
-            self._counts[channel.number] += len(part)
-        data = b"".join(body)
-        first, last = min(span[0] for span in spans), max(span[1] for span in spans)
-        self._span = (first, last) if self._span is None else (min(first, self._span[0]), max(last, self._span[1]))
-        compressed = self._zstd.compress(data)
-        offset, length = self._record(
-            records.Chunk(
-                compression="zstd",
-                data=compressed,
-                message_start_time=first,
-                message_end_time=last,
-                uncompressed_crc=zlib.crc32(data),
-                uncompressed_size=size,
+        """Describe a channel of vines."""
+        encoding, data = channel.described()
+        self.schema(records.Schema(id=channel.number, data=data, encoding=encoding, name=channel.message))
+        self.topic(
+            records.Channel(
+                id=channel.number,
+                topic=channel.topic,
+                message_encoding=channel.encoding,
+                metadata=dict(channel.metadata),
+                schema_id=channel.number,
             )
         )
-        index_offsets = {number: self._put(index) for number, index in indexes.items()}
+
+    def schema(self, record: records.Schema) -> None:
+        self._describe(Opcode.SCHEMA, record, f"schema {record.name}")
+
+    def topic(self, record: records.Channel) -> None:
+        self._counts[record.id] += 0
+        self._describe(Opcode.CHANNEL, record, f"channel {record.topic}")
+
+    def _describe(self, opcode: Opcode, record: records.McapRecord, name: str) -> None:
+        self._record(record)
+        self._digests[name] = digest_of(_bytes(record))
+        self._repeated[opcode].append(record)
+
+    def digests(self) -> None:
+        """Write the SHA-256 of each record so far, and one of these."""
+        self.metadata(DIGESTS, {**self._digests, DIGESTS: _of_digests(self._digests)})
+
+    def status(self, status: str, counts: dict[str, str]) -> None:
+        """Write the status: the last metadata, with the SHA-256 of everything before it."""
+        self.metadata(STATUS, {"status": status, **counts, "sha256": self._sha.hexdigest()})
+
+    def chunks(self, every: Iterable[Sequence[Rows]]) -> None:
+        """Write chunks in their order; packing and compressing runs ahead in threads."""
+        waiting: deque[Future[Packed]] = deque()
+        with ThreadPoolExecutor(_AT_ONCE) as pool:
+            for parts in every:
+                waiting.append(pool.submit(packed, parts))
+                if len(waiting) > 2 * _AT_ONCE:
+                    self.chunk(waiting.popleft().result())
+            while waiting:
+                self.chunk(waiting.popleft().result())
+
+    def chunk(self, made: Packed) -> None:
+        """Write one chunk and its message indexes."""
+        record = made.record
+        first, last = record.message_start_time, record.message_end_time
+        self._span = (first, last) if self._span is None else (min(first, self._span[0]), max(last, self._span[1]))
+        self._counts.update(made.counts)
+        offset, length = self._record(record)
+        index_offsets = {number: self._put(index) for number, index in made.indexes.items()}
         self._repeated[Opcode.CHUNK_INDEX].append(
             records.ChunkIndex(
                 chunk_length=length,
                 chunk_start_offset=offset,
-                compression="zstd",
-                compressed_size=len(compressed),
+                compression=record.compression,
+                compressed_size=len(record.data),
                 message_start_time=first,
                 message_end_time=last,
-                message_index_length=sum(map(len, indexes.values())),
+                message_index_length=sum(map(len, made.indexes.values())),
                 message_index_offsets=index_offsets,
-                uncompressed_size=size,
+                uncompressed_size=record.uncompressed_size,
             )
         )
 
@@ -149,9 +160,9 @@ class LogFile:
             records.Statistics(
                 attachment_count=len(self._repeated[Opcode.ATTACHMENT_INDEX]),
                 channel_count=len(self._repeated[Opcode.CHANNEL]),
-                channel_message_counts=self._counts,
+                channel_message_counts=dict(self._counts),
                 chunk_count=len(self._repeated[Opcode.CHUNK_INDEX]),
-                message_count=sum(self._counts.values()),
+                message_count=self._counts.total(),
                 metadata_count=len(self._repeated[Opcode.METADATA_INDEX]),
                 message_start_time=first,
                 message_end_time=last,
@@ -173,6 +184,21 @@ class LogFile:
         # The checksum of the summary covers the footer too, up to the checksum itself.
         summary += struct.pack("<BQQQ", Opcode.FOOTER, 20, start, offset_start)
         self._stream.write(summary + struct.pack("<I", zlib.crc32(summary)) + MCAP0_MAGIC)
+
+
+def digest_of(data: bytes) -> str:
+    """Return the SHA-256 of the bytes of a record."""
+    return hashlib.sha256(data).hexdigest()
+
+
+def _of_digests(digests: Mapping[str, str]) -> str:
+    return digest_of(repr(sorted(digests.items())).encode())
+
+
+def trusted(digests: Mapping[str, str]) -> dict[str, str]:
+    """Return the digests that a log holds of its records if they are intact themselves, else nothing."""
+    rest = {name: digest for name, digest in digests.items() if name != DIGESTS}
+    return rest if digests.get(DIGESTS) == _of_digests(rest) else {}
 
 
 def _bytes(record: records.McapRecord) -> bytes:

@@ -5,17 +5,20 @@ from __future__ import annotations
 import json
 import os
 import secrets
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from pathlib import Path
+from typing import BinaryIO
 
 import numpy as np
 
 from vines.errors import FileMissingError, SchemaError
-from vines.logs._channels import CHANNELS, PARAMETERS, PROVENANCE, RUN, STATUS, as_messages, log_times
+from vines.logs._bare import bare_rows
+from vines.logs._channels import CHANNELS, ORBIT, PARAMETERS, PROVENANCE, RUN, Rows, as_rows
 from vines.logs._file import LogFile
 from vines.logs._pack import cut
 
-__all__ = ["write_run"]
+__all__ = ["begin", "replacing", "write_rows", "write_run"]
 
 
 def write_run(
@@ -28,6 +31,9 @@ def write_run(
     parameters: Mapping[str, float],
     name: str,
     declaration: str | None = None,
+    orbit: np.ndarray | None = None,
+    word: str | None = None,
+    bare: bool = True,
 ) -> Path:
     """Write a run as an MCAP log, whole or not at all; the same input gives the same bytes.
 
@@ -46,6 +52,12 @@ def write_run(
         What the run is called in lists and viewers.
     declaration : str, optional
         The TOML text that declared the run, kept as the attachment ``declaration.toml``.
+    orbit : numpy.ndarray, shape (1,), structured, optional
+        The fields of ``vines.v1.Orbit`` if the run is one period of a periodic orbit.
+    word : str, optional
+        Its word.
+    bare : bool
+        Whether the log also carries the channels with which it explains itself in a viewer without vines.
 
     Returns
     -------
@@ -59,36 +71,76 @@ def write_run(
     FileMissingError
         If the folder does not exist.
     """
+    given = {"states": states, "impacts": impacts, "sticks": sticks}
+    rows = [as_rows(given[channel.key], channel) for channel in CHANNELS]
+    about = {"name": name, "kind": "run"}
+    if orbit is not None:
+        rows.append(as_rows(orbit, ORBIT))
+        about |= {"kind": "orbit", "word": word or ""}
+    if bare:
+        rows += bare_rows(*(each.values for each in rows[:3]), name, parameters)
+    return write_rows(path, rows, about, provenance, parameters, declaration)
+
+
+def write_rows(
+    path: str | os.PathLike[str],
+    rows: list[Rows],
+    about: Mapping[str, str],
+    provenance: Mapping[str, object],
+    parameters: Mapping[str, float],
+    declaration: str | None,
+) -> Path:
+    """Write the rows of channels as a log, whole or not at all."""
+    with replacing(path) as stream:
+        log = LogFile(stream)
+        begin(log, about, provenance, parameters, declaration)
+        for each in rows:
+            log.channel(each.channel)
+        log.digests()
+        log.chunks(cut(rows))
+        log.status("complete", {each.channel.topic: str(len(each)) for each in rows})
+        log.finish()
+    return Path(path)
+
+
+def begin(
+    log: LogFile,
+    about: Mapping[str, str],
+    provenance: Mapping[str, object],
+    parameters: Mapping[str, float],
+    declaration: str | None,
+) -> None:
+    """Write what stands before the channels of a log."""
+    texts = _texts(provenance)
+    values = {key: repr(float(parameters[key])) for key in sorted(parameters)}
+    log.metadata(PROVENANCE, texts)
+    log.metadata(RUN, dict(about))
+    log.metadata(PARAMETERS, values)
+    if declaration is not None:
+        log.attachment("declaration.toml", "application/toml", declaration.encode())
+
+
+@contextmanager
+def replacing(path: str | os.PathLike[str]) -> Iterator[BinaryIO]:
+    """Give a file to write beside a path, which takes its place when all went well.
+
+    Raises
+    ------
+    FileMissingError
+        If the folder does not exist.
+    """
     target = Path(path)
     if not target.parent.is_dir():
         raise FileMissingError(f"the folder {target.parent} of the log {target.name} does not exist; create it first")
-    given = {"states": states, "impacts": impacts, "sticks": sticks}
-    messages = {channel: as_messages(given[channel.key], channel) for channel in CHANNELS}
-    about = _texts(provenance)
-    values = {key: repr(float(parameters[key])) for key in sorted(parameters)}
-
     partial = target.with_name(f".{target.name}.{os.getpid()}.{secrets.token_hex(4)}.part")
     try:
         with partial.open("xb") as stream:
-            log = LogFile(stream)
-            log.metadata(PROVENANCE, about)
-            log.metadata(RUN, {"name": name})
-            log.metadata(PARAMETERS, values)
-            if declaration is not None:
-                log.attachment("declaration.toml", "application/toml", declaration.encode())
-            for channel in CHANNELS:
-                log.channel(channel)
-            for parts in cut({channel: log_times(rows[channel.time]) for channel, rows in messages.items()}):
-                log.chunk({channel: messages[channel][part] for channel, part in parts.items()}, parts)
-            counts = {channel.topic: str(len(rows)) for channel, rows in messages.items()}
-            log.metadata(STATUS, {"status": "complete", **counts})
-            log.finish()
+            yield stream
             stream.flush()
             os.fsync(stream.fileno())
         partial.replace(target)
     finally:
         partial.unlink(missing_ok=True)
-    return target
 
 
 def _texts(provenance: Mapping[str, object]) -> dict[str, str]:

@@ -1,7 +1,7 @@
-"""Compile ``schemas/vines/v1/*.proto`` into the FileDescriptorSet that is committed beside them.
+"""Compile the ``.proto`` files under ``schemas/`` into the FileDescriptorSets that are committed beside them.
 
-For developers, after a change of a ``.proto``: ``python -m vines.schema._compile`` writes the set anew, with
-``--check`` it only says whether it is current. It needs grpcio-tools (in the ``dev`` extra); reading the
+For developers, after a change of a ``.proto``: ``python -m vines.schema._compile`` writes the sets anew, with
+``--check`` it only says whether they are current. It needs grpcio-tools (in the ``dev`` extra); reading the
 compiled set does not. Comments travel with the set, so that units can be shown and a log explains itself.
 """
 
@@ -15,19 +15,21 @@ from pathlib import Path
 from vines.errors import SchemaError
 from vines.places import shipped
 
-__all__ = ["DESCRIPTOR_SET", "compile_descriptor_set", "main"]
+__all__ = ["DESCRIPTOR_SETS", "compile_descriptor_set", "main"]
 
-DESCRIPTOR_SET = "vines.v1.binpb"
-"""Name of the compiled set in the folder ``schemas``."""
+DESCRIPTOR_SETS = {"vines.v1.binpb": "vines/v1", "foxglove.binpb": "foxglove"}
+"""The compiled sets in the folder ``schemas``, and the folder of the sources of each."""
 
 
-def compile_descriptor_set(schemas: Path) -> bytes:
-    """Return the FileDescriptorSet of all ``vines/v1/*.proto`` under a folder, serialised.
+def compile_descriptor_set(schemas: Path, folder: str = "vines/v1") -> bytes:
+    """Return the FileDescriptorSet of all ``.proto`` of a folder, serialised.
 
     Parameters
     ----------
     schemas : Path
-        The folder that holds ``vines/v1``.
+        The folder ``schemas``.
+    folder : str
+        Folder of the sources in it.
 
     Raises
     ------
@@ -38,10 +40,10 @@ def compile_descriptor_set(schemas: Path) -> bytes:
         from grpc_tools import protoc
     except ImportError as missing:
         raise SchemaError("compiling the schemas needs grpcio-tools; pip install '.[dev]'") from missing
-    sources = sorted(path.relative_to(schemas).as_posix() for path in (schemas / "vines" / "v1").glob("*.proto"))
+    sources = sorted(path.relative_to(schemas).as_posix() for path in (schemas / folder).glob("*.proto"))
     well_known = resources.files("grpc_tools") / "_proto"
-    with tempfile.TemporaryDirectory() as folder:
-        out = Path(folder) / DESCRIPTOR_SET
+    with tempfile.TemporaryDirectory() as temporary:
+        out = Path(temporary) / "set.binpb"
         status = protoc.main(
             [
                 "protoc",
@@ -59,18 +61,21 @@ def compile_descriptor_set(schemas: Path) -> bytes:
 
 
 def main(arguments: list[str]) -> int:
-    """Write the set, or with ``--check`` compare it; return the exit status (1 when it is out of date)."""
-    folder = shipped("schemas")
-    target = folder / DESCRIPTOR_SET
-    compiled = compile_descriptor_set(folder)
-    current = target.is_file() and target.read_bytes() == compiled
-    if "--check" in arguments:
-        print(f"{DESCRIPTOR_SET} is {'current' if current else 'out of date'}")
-        return 0 if current else 1
-    if not current:
-        target.write_bytes(compiled)
-    print(f"{DESCRIPTOR_SET}: {len(compiled)} bytes, {'unchanged' if current else 'written'}")
-    return 0
+    """Write the sets, or with ``--check`` compare them; return the exit status (1 when one is out of date)."""
+    schemas = shipped("schemas")
+    late = 0
+    for name, folder in DESCRIPTOR_SETS.items():
+        target = schemas / name
+        compiled = compile_descriptor_set(schemas, folder)
+        current = target.is_file() and target.read_bytes() == compiled
+        if "--check" in arguments:
+            print(f"{name} is {'current' if current else 'out of date'}")
+            late += not current
+        else:
+            if not current:
+                target.write_bytes(compiled)
+            print(f"{name}: {len(compiled)} bytes, {'unchanged' if current else 'written'}")
+    return 1 if late else 0
 
 
 if __name__ == "__main__":

@@ -24,6 +24,7 @@ __all__ = [
     "WireFormat",
     "field_notes",
     "file_descriptor_set",
+    "foxglove_schema",
     "message_class",
     "message_names",
     "numpy_dtype",
@@ -77,9 +78,14 @@ def file_descriptor_set() -> descriptor_pb2.FileDescriptorSet:
     Examples
     --------
     >>> [file.name for file in file_descriptor_set().file]
-    ['vines/v1/impact.proto', 'vines/v1/state.proto', 'vines/v1/stick.proto']
+    ['vines/v1/base_motion.proto', 'vines/v1/impact.proto', 'vines/v1/orbit.proto', 'vines/v1/sensor_sample.proto',
+     'vines/v1/state.proto', 'vines/v1/stick.proto']
     """
-    path = shipped("schemas") / "vines.v1.binpb"
+    return _compiled("vines.v1.binpb")
+
+
+def _compiled(name: str) -> descriptor_pb2.FileDescriptorSet:
+    path = shipped("schemas") / name
     found = descriptor_pb2.FileDescriptorSet()
     try:
         found.ParseFromString(path.read_bytes())
@@ -104,7 +110,8 @@ def message_names() -> tuple[str, ...]:
     Examples
     --------
     >>> message_names()
-    ('vines.v1.Impact', 'vines.v1.State', 'vines.v1.Stick')
+    ('vines.v1.BaseMotion', 'vines.v1.Impact', 'vines.v1.Orbit', 'vines.v1.SensorSample', 'vines.v1.State',
+     'vines.v1.Stick')
     """
     return tuple(sorted(_descriptors()))
 
@@ -200,6 +207,22 @@ def schema_bytes(name: str) -> bytes:
     """
     file, _ = _find(name)
     return descriptor_pb2.FileDescriptorSet(file=[file]).SerializeToString(deterministic=True)
+
+
+@cache
+def foxglove_schema() -> bytes:
+    """Return the FileDescriptorSet of the messages that viewers know without vines, as a channel carries it.
+
+    Examples
+    --------
+    >>> b"FrameTransforms" in foxglove_schema()
+    True
+    """
+    found = descriptor_pb2.FileDescriptorSet()
+    found.CopyFrom(_compiled("foxglove.binpb"))
+    for file in found.file:
+        file.ClearField("source_code_info")
+    return found.SerializeToString(deterministic=True)
 
 
 @cache

@@ -1,0 +1,115 @@
+"""A log that is written while its run goes on, and what is left of it when its process is killed."""
+
+import signal
+import subprocess
+import sys
+import time
+
+import numpy as np
+import pytest
+from mcap.reader import make_reader
+
+from tests.logs.conftest import made_up
+from vines import logs
+from vines.errors import FileMissingError, LogError, SchemaError
+
+ABOUT = {"provenance": {"by": "a test"}, "parameters": {"A": 0.02}, "name": "live"}
+
+
+def test_live_log_reads_as_any_other(run, tmp_path):
+    path = tmp_path / "live.mcap"
+    with logs.LiveWriter(path, **ABOUT, declaration="x = 1\n") as live:
+        for part in np.array_split(run["states"], 40):
+            live.add("states", part)
+        live.add("impacts", run["impacts"])
+        for row in run["sticks"]:
+            live.add("sticks", row)
+        assert not path.exists()
+    log = logs.read(path)
+    assert log.complete
+    for key in ("states", "impacts", "sticks"):
+        for name in run[key].dtype.names:
+            np.testing.assert_array_equal(getattr(log, key)[name].to_numpy(), run[key][name])
+    assert (log.name, log.declaration, log.parameters) == ("live", "x = 1\n", {"A": 0.02})
+    assert list(tmp_path.iterdir()) == [path]
+    with path.open("rb") as stream:
+        read = list(make_reader(stream, validate_crcs=True).iter_messages())
+    assert len(read) == 3043
+    assert [m.sequence for _, c, m in read if c.topic == "/state"] == list(range(3000))
+
+
+def test_wrong_use_is_told(run, tmp_path):
+    path = tmp_path / "live.mcap"
+    with logs.LiveWriter(path, **ABOUT) as live:
+        live.add("states", run["states"][10:])
+        with pytest.raises(SchemaError, match="before the last one"):
+            live.add("states", run["states"][:10])
+        with pytest.raises(SchemaError, match="no channel 'state'; it has states, impacts, sticks"):
+            live.add("state", run["states"])
+        with pytest.raises(LogError, match="another process writes it"):
+            logs.LiveWriter(path, **ABOUT)
+    with pytest.raises(LogError, match="is finished"):
+        live.add("states", run["states"][10:])
+    with pytest.raises(FileMissingError, match="does not exist"):
+        logs.LiveWriter(tmp_path / "no" / "x.mcap", **ABOUT)
+
+
+def test_run_that_fails_leaves_a_part_to_recover(run, tmp_path):
+    path = tmp_path / "live.mcap"
+
+    def fail():
+        with logs.LiveWriter(path, **ABOUT) as live:
+            live.add("states", run["states"])
+            raise RuntimeError("the run failed")
+
+    with pytest.raises(RuntimeError, match="the run failed"):
+        fail()
+    assert not path.exists()
+    part = tmp_path / "live.mcap.part"
+    with pytest.raises(LogError, match="cut short"):
+        logs.read(part)
+    said = logs.recover(part)
+    assert said.path == tmp_path / "live.recovered.mcap"
+    assert logs.read(said.path).states.num_rows == 3000
+
+
+WRITER = """
+import sys, time
+import numpy as np
+from vines import logs
+from vines.schema import numpy_dtype
+row = np.zeros(1, numpy_dtype("vines.v1.State"))
+with logs.LiveWriter(sys.argv[1], name="killed", provenance={}, parameters={}) as live:
+    began = time.monotonic()
+    while True:
+        row["t"] = time.monotonic() - began
+        live.add("states", row)
+        print(row["t"][0], flush=True)
+        time.sleep(0.002)
+"""
+
+
+def test_killed_process_loses_a_second_at_most(tmp_path):
+    path = tmp_path / "killed.mcap"
+    with subprocess.Popen([sys.executable, "-c", WRITER, str(path)], stdout=subprocess.PIPE, text=True) as process:
+        first = process.stdout.readline()
+        time.sleep(2.5)
+        process.send_signal(signal.SIGKILL)
+        told = [first, *process.stdout.read().split()]
+    written = float(told[-1])
+    assert written > 2.0
+    log = logs.read(logs.recover(tmp_path / "killed.mcap.part").path)
+    saved = log.states["t"].to_numpy()
+    assert 0.0 <= written - saved[-1] < 1.0
+    # Whole up to there: nothing in the middle is missing.
+    np.testing.assert_array_equal(saved, [float(text) for text in told[: len(saved)]])
+
+
+def test_live_log_of_a_rig(tmp_path):
+    samples = made_up("vines.v1.SensorSample", 500, "t", 7)
+    about = {"quantity": "acceleration", "unit": "m/s^2", "sign": "positive to the right", "rate": "51200"}
+    with logs.LiveWriter(tmp_path / "rig.mcap", **ABOUT, sensors={"acc": about}) as live:
+        live.add("acc", samples)
+    log = logs.read(tmp_path / "rig.mcap")
+    assert log.kind == "rig"
+    np.testing.assert_array_equal(log.sensors["acc"]["value"].to_numpy(), samples["value"])

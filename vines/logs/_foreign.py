@@ -1,0 +1,134 @@
+"""Tables from MCAP files that vines did not write: channels in protobuf, with any schema, and in JSON."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from google.protobuf import descriptor_pb2, descriptor_pool, message_factory
+from google.protobuf.message import DecodeError, Message
+from mcap import records
+
+from vines.errors import LogError
+
+if TYPE_CHECKING:
+    import pyarrow as pa
+
+__all__ = ["foreign_tables"]
+
+_READABLE = ("protobuf", "json")
+
+
+def foreign_tables(
+    file: Path,
+    topics: Mapping[int, records.Channel],
+    schemas: Mapping[int, records.Schema],
+    messages: Mapping[int, Sequence[tuple[int, bytes]]],
+) -> dict[str, pa.Table]:
+    """Return the messages of each channel as a table, the log time in nanoseconds as its first column.
+
+    Parameters
+    ----------
+    file : Path
+        Where they come from, for messages.
+    topics, schemas : mapping
+        What the file says about its channels.
+    messages : mapping of int to sequence of (int, bytes)
+        Log time and content of the messages of each channel.
+
+    Raises
+    ------
+    LogError
+        If channels are in an encoding that is neither protobuf nor JSON (all are named), or a message does not fit
+        its schema.
+    """
+    unread = [f"{each.topic} ({each.message_encoding})" for each in topics.values() if not _readable(each)]
+    if unread:
+        raise LogError(
+            f"{file} has channels that vines cannot decode: {', '.join(sorted(unread))}; it reads protobuf and JSON, "
+            "so convert them, or leave them out with `mcap filter --exclude-topic-regex`"
+        )
+    tables: dict[str, pa.Table] = {}
+    for number, topic in topics.items():
+        schema = schemas.get(topic.schema_id)
+        try:
+            rows = _rows(topic, schema, messages.get(number, ()))
+            made = _table(rows)
+        except (DecodeError, ValueError, TypeError, KeyError) as unfit:
+            said = " ".join(str(unfit).split())
+            raise LogError(f"{file}: the messages on {topic.topic} do not fit their schema ({said})") from unfit
+        # Two channels may share a topic; their numbers keep them apart.
+        tables[topic.topic if topic.topic not in tables else f"{topic.topic}#{number}"] = made
+    return tables
+
+
+def _readable(topic: records.Channel) -> bool:
+    return topic.message_encoding in _READABLE
+
+
+def _rows(
+    topic: records.Channel, schema: records.Schema | None, messages: Sequence[tuple[int, bytes]]
+) -> list[dict[str, Any]]:
+    if topic.message_encoding == "json":
+        decoded = [json.loads(data) for _, data in messages]
+        contents = [each if isinstance(each, dict) else {"value": each} for each in decoded]
+    else:
+        if schema is None:
+            raise KeyError("a protobuf channel needs a schema")
+        kind = _class(schema.name, schema.data)
+        contents = [_plain(kind.FromString(data)) for _, data in messages]
+    return [{"log_time": time, **content} for (time, _), content in zip(messages, contents, strict=True)]
+
+
+def _class(name: str, descriptors: bytes) -> type[Message]:
+    """Return a protobuf class from what the file says about it."""
+    pool = descriptor_pool.DescriptorPool()
+    waiting = {file.name: file for file in descriptor_pb2.FileDescriptorSet.FromString(descriptors).file}
+
+    def add(name: str) -> None:
+        file = waiting.pop(name, None)
+        if file is not None:
+            for needed in file.dependency:
+                add(needed)
+            pool.Add(file)
+
+    for each in list(waiting):
+        add(each)
+    return message_factory.GetMessageClass(pool.FindMessageTypeByName(name))
+
+
+def _plain(message: Message) -> dict[str, Any]:
+    """Return a message as Python values: enums by name, maps as lists of pairs, what is absent as None."""
+    found: dict[str, Any] = {}
+    for each in message.DESCRIPTOR.fields:
+        value = getattr(message, each.name)
+        if each.message_type is not None and each.message_type.GetOptions().map_entry:
+            of_messages = each.message_type.fields_by_name["value"].message_type is not None
+            found[each.name] = [{"key": k, "value": _plain(v) if of_messages else v} for k, v in value.items()]
+        elif each.is_repeated:
+            found[each.name] = [_value(each, item) for item in value]
+        elif each.has_presence and not message.HasField(each.name):
+            found[each.name] = None
+        else:
+            found[each.name] = _value(each, value)
+    return found
+
+
+def _value(each: Any, value: Any) -> Any:
+    if each.message_type is not None:
+        return _plain(value)
+    if each.enum_type is not None:
+        known = each.enum_type.values_by_number.get(value)
+        return str(value) if known is None else known.name
+    return value
+
+
+def _table(rows: list[dict[str, Any]]) -> pa.Table:
+    import pyarrow as pa
+
+    names = list(dict.fromkeys(["log_time", *(name for row in rows for name in row)]))
+    columns = [pa.array([row["log_time"] for row in rows], pa.uint64())]
+    columns += [pa.array([row.get(name) for row in rows]) for name in names[1:]]
+    return pa.table(columns, names=names)

@@ -1,0 +1,214 @@
+"""Write a log while its run goes on, so that a killed process loses a second of it at most."""
+
+from __future__ import annotations
+
+import os
+import threading
+from collections.abc import Mapping
+from pathlib import Path
+from types import TracebackType
+from typing import Self
+
+import numpy as np
+
+from vines.errors import FileMissingError, LogError, SchemaError
+from vines.logs._channels import BASE, CHANNELS, Rows, as_rows
+from vines.logs._chunk import packed
+from vines.logs._file import LogFile
+from vines.logs._pack import CHUNK_BYTES
+from vines.logs._rig import sensor_channels
+from vines.logs._write import begin
+
+__all__ = ["LiveWriter"]
+
+_EVERY = 0.4
+"""Seconds after which what has been added is written, in whole chunks."""
+
+
+class LiveWriter:
+    """A log that grows while its run goes on.
+
+    Rows are written to ``<path>.part`` every 0.4 s, or when a chunk is full, by a thread of its own; on leaving the
+    context the log is finished and takes its name. If the process is killed, what was added up to a second before is
+    in ``<path>.part``, which ``vines recover`` makes into a log.
+
+    Parameters
+    ----------
+    path : path-like
+        Where the finished log goes; an existing file is replaced then.
+    name : str
+        What the run is called.
+    provenance, parameters, declaration
+        As in :func:`vines.logs.write_run`.
+    sensors : mapping of str to mapping of str to str, optional
+        What each sensor of a rig measures (see :class:`vines.logs.Sensor`). The log is then one of a rig, with
+        ``base`` and the sensors; else it is one of the simulator, with ``states``, ``impacts`` and ``sticks``.
+
+    Raises
+    ------
+    FileMissingError
+        If the folder does not exist.
+    LogError
+        If ``<path>.part`` exists: another writer is at it, or left it behind.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> from vines import logs
+    >>> from vines.schema import numpy_dtype
+    >>> rows = np.zeros(2, numpy_dtype("vines.v1.Impact"))
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     with LiveWriter(f"{folder}/run.mcap", name="live", provenance={}, parameters={}) as live:
+    ...         live.add("impacts", rows)
+    ...     logs.read(f"{folder}/run.mcap").impacts.num_rows
+    2
+    """
+
+    def __init__(
+        self,
+        path: str | os.PathLike[str],
+        *,
+        name: str,
+        provenance: Mapping[str, object],
+        parameters: Mapping[str, float],
+        declaration: str | None = None,
+        sensors: Mapping[str, Mapping[str, str]] | None = None,
+    ):
+        self._path = Path(path)
+        self._partial = self._path.with_name(f"{self._path.name}.part")
+        if not self._path.parent.is_dir():
+            raise FileMissingError(f"the folder {self._path.parent} of the log {self._path.name} does not exist")
+        if sensors is None:
+            self._channels = {channel.key: channel for channel in CHANNELS}
+        else:
+            self._channels = {BASE.key: BASE, **sensor_channels(sensors)}
+        self._waiting: dict[str, list[Rows]] = {key: [] for key in self._channels}
+        self._counts = dict.fromkeys(self._channels, 0)
+        self._latest = dict.fromkeys(self._channels, 0)
+        self._size = 0
+        self._failed: BaseException | None = None
+        self._lock = threading.Lock()
+        self._due = threading.Event()
+        self._over = threading.Event()
+        try:
+            self._stream = self._partial.open("xb")
+        except FileExistsError:
+            raise LogError(
+                f"{self._partial} exists: another process writes it, or was killed; "
+                f"`vines recover {self._partial}` saves it, then remove it"
+            ) from None
+        self._log = LogFile(self._stream)
+        kind = "run" if sensors is None else "rig"
+        begin(self._log, {"name": name, "kind": kind}, provenance, parameters, declaration)
+        for channel in self._channels.values():
+            self._log.channel(channel)
+        self._log.digests()
+        self._stream.flush()
+        self._thread = threading.Thread(target=self._write_on, name=f"writer of {self._path.name}", daemon=True)
+        self._thread.start()
+
+    def add(self, key: str, rows: np.ndarray) -> None:
+        """Add rows to a channel; they are on disk within a second.
+
+        Parameters
+        ----------
+        key : str
+            ``"states"``, ``"impacts"`` or ``"sticks"``; in the log of a rig ``"base"`` or the name of a sensor.
+        rows : numpy.ndarray, shape (n,), structured
+            The fields of its message, not before the rows that were added earlier.
+
+        Raises
+        ------
+        SchemaError
+            If there is no such channel, the rows do not fit it, or they are earlier than the last ones.
+        OSError
+            If the file could not be written.
+        """
+        if key not in self._channels:
+            raise SchemaError(f"this log has no channel {key!r}; it has {', '.join(self._channels)}")
+        added = as_rows(np.atleast_1d(rows), self._channels[key], self._counts[key])
+        if not len(added):
+            return
+        with self._lock:
+            if self._failed is not None:
+                raise self._failed
+            if self._stream.closed:
+                raise LogError(f"{self._path} is finished; rows can be added only inside its context")
+            if int(added.times[0]) < self._latest[key]:
+                raise SchemaError(
+                    f"rows of {key!r} begin at {added.times[0] / 1e9:g}, "
+                    f"before the last one at {self._latest[key] / 1e9:g}; add them in the order of time"
+                )
+            self._waiting[key].append(added)
+            self._counts[key] += len(added)
+            self._latest[key] = int(added.times[-1])
+            self._size += len(added) * added.width
+            full = self._size >= CHUNK_BYTES
+        if full:
+            self._due.set()
+
+    def _write_on(self) -> None:
+        while not self._over.is_set():
+            self._due.wait(_EVERY)
+            self._due.clear()
+            try:
+                self._flush()
+            except BaseException as failure:
+                # Told by the next `add`, in the thread of the caller.
+                self._failed = failure
+                return
+
+    def _flush(self) -> None:
+        """Write what is waiting, in chunks of the usual size."""
+        with self._lock:
+            taken = [_joined(parts) for parts in self._waiting.values() if parts]
+            self._waiting = {key: [] for key in self._channels}
+            self._size = 0
+            if not taken:
+                return
+            # In the lock: a chunk is whole in the file before the next one begins.
+            for parts in _shares(taken):
+                self._log.chunk(packed(parts))
+            self._stream.flush()
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        """Finish the log; if the run failed, what there is stays in ``<path>.part``."""
+        self._over.set()
+        self._due.set()
+        self._thread.join()
+        try:
+            if self._failed is None:
+                self._flush()
+            if self._failed is None and kind is None:
+                counts = {channel.topic: str(self._counts[key]) for key, channel in self._channels.items()}
+                self._log.status("complete", counts)
+                self._log.finish()
+                self._stream.flush()
+                os.fsync(self._stream.fileno())
+        finally:
+            self._stream.close()
+        if self._failed is not None:
+            raise self._failed
+        if kind is None:
+            self._partial.replace(self._path)
+
+
+def _joined(parts: list[Rows]) -> Rows:
+    first = parts[0]
+    times = np.concatenate([part.times for part in parts])
+    return Rows(first.channel, first.layout, times, np.concatenate([part.values for part in parts]), first.first)
+
+
+def _shares(taken: list[Rows]) -> list[list[Rows]]:
+    """Return the rows in shares of about the size of a chunk, each channel in its order."""
+    count = max(1, -(-sum(len(rows) * rows.width for rows in taken) // CHUNK_BYTES))
+    shares: list[list[Rows]] = []
+    for k in range(count):
+        parts = [rows.part(slice(len(rows) * k // count, len(rows) * (k + 1) // count)) for rows in taken]
+        shares.append([part for part in parts if len(part)])
+    return [share for share in shares if share]

@@ -1,0 +1,200 @@
+"""Find what is intact in the bytes of a damaged MCAP file."""
+
+from __future__ import annotations
+
+import re
+import struct
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from io import BytesIO
+
+from mcap import records
+from mcap.data_stream import ReadDataStream, RecordBuilder
+from mcap.opcode import Opcode
+from mcap.stream_reader import get_chunk_data_stream
+from mcap.writer import MCAP0_MAGIC
+
+from vines.logs._frames import frames, summary_start
+from vines.logs._read import BROKEN
+
+__all__ = ["Piece", "Salvage", "salvage"]
+
+_HEAD = re.compile(rb"(?=[\x01-\x0f].{5}\x00{3})", re.DOTALL)
+"""Where a record may begin: a known opcode and a length below 2^40."""
+_IN_A_ROW = 3
+"""Records that must follow each other before a place counts as the beginning of one."""
+
+
+@dataclass(frozen=True)
+class Piece:
+    """A record of the head of a file: metadata, an attachment, a schema or a channel."""
+
+    opcode: int
+    record: records.Metadata | records.Attachment | records.Schema | records.Channel
+    checked: bool
+    """Whether a checksum of a chunk or of the summary covers it."""
+
+    def data(self) -> bytes:
+        """Return the bytes of the record."""
+        builder = RecordBuilder()
+        self.record.write(builder)
+        return builder.end()
+
+
+@dataclass
+class Salvage:
+    """What is intact in a file.
+
+    Attributes
+    ----------
+    profile : str
+        Profile that the header names.
+    pieces : list of Piece
+        Metadata, attachments, schemas and channels, in their order.
+    chunks : list of list of bytes
+        The message records of each intact chunk, heads included.
+    loose : list of bytes
+        Message records outside chunks, which have no checksum.
+    lost : list of (int, int, str)
+        First byte, byte after the last, and what was lost there.
+    ended : bool
+        Whether the end of the data section was found.
+    """
+
+    profile: str = ""
+    pieces: list[Piece] = field(default_factory=list)
+    chunks: list[list[bytes]] = field(default_factory=list)
+    loose: list[bytes] = field(default_factory=list)
+    lost: list[tuple[int, int, str]] = field(default_factory=list)
+    ended: bool = False
+
+
+_KINDS = {
+    Opcode.METADATA: records.Metadata,
+    Opcode.ATTACHMENT: records.Attachment,
+    Opcode.SCHEMA: records.Schema,
+    Opcode.CHANNEL: records.Channel,
+}
+_NAMES: dict[int, str] = {
+    Opcode.METADATA: "a metadata record",
+    Opcode.ATTACHMENT: "an attachment",
+    Opcode.SCHEMA: "a schema",
+    Opcode.CHANNEL: "the description of a channel",
+    Opcode.CHUNK: "a chunk of messages",
+    Opcode.MESSAGE: "a message",
+    Opcode.MESSAGE_INDEX: "an index, which is made anew",
+    Opcode.HEADER: "the header, which is made anew",
+}
+
+
+def salvage(data: bytes) -> Salvage:
+    """Go through the bytes of an MCAP file and take what is intact.
+
+    Damage inside a record costs that record; damage to its head costs what lies before the next place at which
+    records follow each other again.
+    """
+    found = Salvage()
+    at = len(MCAP0_MAGIC)
+    while at < len(data) and not found.ended:
+        step = _record(data, at)
+        if step is None:
+            after = _next(data, at + 1)
+            what = _NAMES.get(data[at], "a record")
+            cut = after is None
+            found.lost.append((at, len(data) if cut else after, f"{what}, cut off" if cut else what))
+            at = len(data) if after is None else after
+            continue
+        opcode, end = step
+        try:
+            _take(found, opcode, data[at + 9 : end])
+        except BROKEN as broken:
+            said = " ".join(str(broken).split())
+            found.lost.append((at, end, f"{_NAMES.get(Opcode(opcode), 'a record')} ({said})"))
+        at = end
+    _from_summary(found, data)
+    return found
+
+
+def _record(data: bytes, at: int) -> tuple[int, int] | None:
+    """Return opcode and end of the record at a place, or None if what follows is not a record either."""
+    first = _head(data, at)
+    if first is None:
+        return None
+    end = first[1]
+    return first if end == len(data) or data[end:] == MCAP0_MAGIC or _head(data, end, whole=False) else None
+
+
+def _head(data: bytes, at: int, whole: bool = True) -> tuple[int, int] | None:
+    if at + 9 > len(data):
+        # The rest of a head that was cut off is no damage to the record before it.
+        return None if whole else (0, len(data))
+    opcode, length = struct.unpack_from("<BQ", data, at)
+    if not Opcode.HEADER <= opcode <= Opcode.DATA_END or (whole and at + 9 + length > len(data)):
+        return None
+    if length >= 1 << 40:
+        return None
+    return opcode, at + 9 + length
+
+
+def _next(data: bytes, start: int) -> int | None:
+    """Return the first place at which records follow each other again."""
+    for match in _HEAD.finditer(data, start):
+        at = match.start()
+        for _ in range(_IN_A_ROW):
+            step = _head(data, at)
+            if step is None:
+                break
+            at = step[1]
+            if data[at:] == MCAP0_MAGIC or at == len(data):
+                return match.start()
+        else:
+            return match.start()
+    return None
+
+
+def _take(found: Salvage, opcode: int, body: bytes) -> None:
+    """Take one record of the data section."""
+    stream = ReadDataStream(BytesIO(body))
+    if opcode == Opcode.HEADER:
+        found.profile = records.Header.read(stream).profile
+    elif opcode in _KINDS:
+        found.pieces.append(Piece(opcode, _KINDS[Opcode(opcode)].read(stream), checked=False))
+    elif opcode == Opcode.CHUNK:
+        chunk, size = get_chunk_data_stream(records.Chunk.read(stream), validate_crc=True)
+        pieces, messages = _inside(chunk.read(size))
+        found.pieces += pieces
+        if messages:
+            found.chunks.append(messages)
+    elif opcode == Opcode.MESSAGE:
+        if len(body) < 22:
+            raise ValueError("a message record is shorter than its header")
+        found.loose.append(struct.pack("<BQ", opcode, len(body)) + body)
+    elif opcode == Opcode.DATA_END:
+        found.ended = True
+
+
+def _inside(data: bytes) -> tuple[list[Piece], list[bytes]]:
+    """Return the schemas and channels in a chunk, and its messages."""
+    pieces: list[Piece] = []
+    messages: list[bytes] = []
+    for start, opcode, body in frames(data, 0, len(data)):
+        if opcode == Opcode.MESSAGE:
+            if len(body) < 22:
+                raise ValueError("a message record is shorter than its header")
+            messages.append(data[start : start + 9 + len(body)])
+        elif opcode in _KINDS:
+            pieces.append(Piece(opcode, _KINDS[Opcode(opcode)].read(ReadDataStream(BytesIO(body))), checked=True))
+    return pieces, messages
+
+
+def _from_summary(found: Salvage, data: bytes) -> None:
+    """Add the schemas and channels that an intact summary repeats."""
+    start = summary_start(data)
+    if start is not None:
+        found.pieces += [piece for piece in _repeated(data, start) if piece.opcode in (Opcode.SCHEMA, Opcode.CHANNEL)]
+
+
+def _repeated(data: bytes, start: int) -> Iterator[Piece]:
+    for _, opcode, body in frames(data, start, len(data) - len(MCAP0_MAGIC)):
+        if opcode in (Opcode.SCHEMA, Opcode.CHANNEL):
+            yield Piece(opcode, _KINDS[Opcode(opcode)].read(ReadDataStream(BytesIO(body))), checked=True)
