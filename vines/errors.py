@@ -12,6 +12,7 @@ from collections.abc import Iterable
 
 __all__ = [
     "DeclarationError",
+    "EngineError",
     "FileMissingError",
     "LogError",
     "OrbitNotFound",
@@ -65,6 +66,12 @@ class StoreError(VinesError, RuntimeError):
     """A stored result is missing, damaged, or being written by another process."""
 
 
+class EngineError(VinesError, RuntimeError):
+    """Whoever should compute is missing: dask is not installed, or its scheduler is gone. What was computed is kept."""
+
+    exit_code: int = 3
+
+
 class LogError(VinesError, ValueError):
     """An MCAP log is damaged, incomplete, or holds what cannot be decoded."""
 
@@ -108,10 +115,13 @@ def nearest(name: str, known: Iterable[str]) -> str:
     --------
     >>> nearest("settel", ["settle", "record"])
     "did you mean 'settle'? Allowed: record, settle"
+    >>> nearest("a", ["A", "mu"])
+    "did you mean 'A'? Allowed: A, mu"
     >>> nearest("zzz", ["settle", "record"])
     'allowed: record, settle'
     """
     names = sorted(known)
     listed = ", ".join(names) if names else "nothing"
-    close = difflib.get_close_matches(name, names, n=1, cutoff=0.6)
-    return f"did you mean {close[0]!r}? Allowed: {listed}" if close else f"allowed: {listed}"
+    folded = {known_name.casefold(): known_name for known_name in reversed(names)}
+    close = difflib.get_close_matches(name.casefold(), folded, n=1, cutoff=0.6)
+    return f"did you mean {folded[close[0]]!r}? Allowed: {listed}" if close else f"allowed: {listed}"

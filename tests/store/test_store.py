@@ -13,9 +13,10 @@ import pytest
 
 from vines import schema
 from vines.errors import SchemaError, StoreError, UnknownNameError
-from vines.store import Store, canonical, commit_part, key_of, revision, versions, write_parquet
+from vines.store import Ids, Store, TableFile, canonical, commit_part, key_of, revision, versions, write_parquet
 
-ROWS = [{"point_id": f"p{i}", "A": 0.1 * i, "status": "ok"} for i in range(5)]
+P = [f"{i:020x}" for i in range(10)]
+ROWS = [{"point_id": P[i], "A": 0.1 * i, "status": "ok"} for i in range(5)]
 
 
 def commit(store, key, text="hello", **options):
@@ -40,7 +41,7 @@ def test_nothing_is_made_by_reading(tmp_path):
     assert store.pins("any") == {}
     assert store.pinned() == {}
     assert not store.has("x")
-    assert store.pool("x").computed() == {}
+    assert store.pool("x").parts() == []
     assert not store.data.exists()
 
 
@@ -125,30 +126,63 @@ def part(store, number, rows, failed=(), logs=None):
             (folder / name).write_text(name)
         ids = [row["point_id"] for row in rows]
         tables = {"points": schema.cast("points", rows)}
-        commit_part(store.pool("k").folder, folder, number, tables, ids=ids, failed=failed, logs=logs or {})
+        commit_part(store.pool("k").folder, folder, number, tables, ids=Ids.of(ids), failed=failed, logs=logs or {})
 
 
-def test_a_pool_gathers_points_in_the_wanted_order_from_all_parts(tmp_path):
+def located(store, *points):
+    found = store.pool("k").locate(Ids.of(points))
+    return list(zip(found.part.tolist(), found.row.tolist(), found.failed.tolist(), strict=True))
+
+
+def test_a_pool_finds_points_in_all_parts(tmp_path):
     store = Store(tmp_path)
-    part(store, 1, ROWS[:2], logs={"p1": "p1.txt"})
+    assert located(store, P[0]) == [(-1, -1, False)]
+    part(store, 1, ROWS[:2], logs={P[1]: "p1.txt"})
     part(store, 2, ROWS[2:])
     pool = store.pool("k")
     assert pool.next_number() == 3
-    assert [row["point_id"] for row in pool.gather("points", ["p4", "p0", "p3"]).to_pylist()] == ["p4", "p0", "p3"]
-    assert pool.row("points", "p3")["A"] == ROWS[3]["A"]
-    assert pool.computed()["p1"].logs == {"p1": "p1.txt"}
+    assert located(store, P[4], P[0], P[9]) == [(1, 2, False), (0, 0, False), (-1, -1, False)]
+    assert pool.row("points", P[3])["A"] == ROWS[3]["A"]
+    assert pool.parts()[0].logs == {P[1]: "p1.txt"}
+    assert pool.parts()[0].versions == versions()
     with pytest.raises(StoreError, match="not in the pool"):
-        pool.row("points", "p9")
+        pool.row("points", P[9])
+
+
+def test_a_part_stores_no_empty_columns_and_gives_them_back(tmp_path):
+    store = Store(tmp_path)
+    part(store, 1, ROWS)
+    (found,) = store.pool("k").parts()
+    assert pq.read_schema(found.folder / "points.parquet").names == ["point_id", "A", "status"]
+    assert found.table("points").equals(schema.cast("points", ROWS))
 
 
 def test_a_point_that_failed_counts_until_it_was_computed(tmp_path):
     store = Store(tmp_path)
-    part(store, 1, [{"point_id": "p0", "status": "failed"}, ROWS[1]], failed=["p0"])
-    assert list(store.pool("k").failed()) == ["p0"]
+    part(store, 1, [{"point_id": P[0], "status": "failed"}, ROWS[1]], failed=[P[0]])
+    assert located(store, P[0], P[1]) == [(0, 0, True), (0, 1, False)]
     part(store, 2, ROWS[:1])
-    pool = store.pool("k")
-    assert (pool.failed(), set(pool.computed())) == ({}, {"p0", "p1"})
-    assert [row["status"] for row in pool.gather("points", ["p0", "p1"]).to_pylist()] == ["ok", "ok"]
+    assert located(store, P[0], P[1]) == [(1, 0, False), (0, 1, False)]
+    part(store, 3, [{"point_id": P[0], "status": "failed"}], failed=[P[0]])
+    assert located(store, P[0]) == [(1, 0, False)]
+
+
+def test_ids_that_agree_in_eight_bytes_are_told_apart():
+    ids = Ids.of(["00" * 8 + tail for tail in ("0001", "0002", "0003")])
+    assert ids.locate(Ids.of(["00" * 8 + tail for tail in ("0002", "0004", "0001")])).tolist() == [1, -1, 0]
+    assert Ids.of([]).locate(ids).tolist() == [-1, -1, -1]
+    assert ids.arrow().to_pylist() == ids.hex()
+
+
+def test_bytes_do_not_depend_on_how_rows_were_cut(tmp_path, monkeypatch):
+    monkeypatch.setattr("vines.store._parquet.ROW_GROUP", 7)
+    rows = [{"point_id": f"{i:020x}", "A": 0.1 * i, "name": "1:1" if i % 3 else None} for i in range(40)]
+    for name, size in (("one", 40), ("two", 3), ("three", 11)):
+        with TableFile(tmp_path / name, "points", provenance={}) as file:
+            for i in range(0, 40, size):
+                file.add(rows[i : i + size])
+    assert (tmp_path / "one").read_bytes() == (tmp_path / "two").read_bytes() == (tmp_path / "three").read_bytes()
+    assert pq.ParquetFile(tmp_path / "one").metadata.num_row_groups == 6
 
 
 def test_a_part_that_comes_twice_is_kept_once(tmp_path):
@@ -175,7 +209,7 @@ def test_a_writer_waits_for_another_and_clears_what_a_killed_one_left(tmp_path):
 
     began = time.monotonic()
     with store.writing(kill):
-        assert not store.staging_folder.exists()
+        assert not any(store.staging_folder.iterdir())
     other.communicate()
     assert waited == [True]
     assert time.monotonic() - began < 5

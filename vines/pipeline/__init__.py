@@ -5,12 +5,13 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from vines.pipeline._axes import Axis
-    from vines.pipeline._declaration import Carry, Pipeline, Stage, available, find, load
+    from vines.pipeline._declaration import Carry, Pipeline, Refine, Stage, available, find, load
     from vines.pipeline._events import Event, RunSummary, silent
-    from vines.pipeline._jobs import Batch, Input, Job, Point, Range, WholeJob
+    from vines.pipeline._jobs import Batch, Input, Job, Point, Points, Range, WholeJob
     from vines.pipeline._kinds import Kind, kind, kinds, register
     from vines.pipeline._plan import StagePlan, plan
     from vines.pipeline._run import run_pipeline
+    from vines.pipeline._shard import Shard
 
 __all__ = [
     "Axis",
@@ -22,8 +23,11 @@ __all__ = [
     "Kind",
     "Pipeline",
     "Point",
+    "Points",
     "Range",
+    "Refine",
     "RunSummary",
+    "Shard",
     "Stage",
     "StagePlan",
     "WholeJob",
@@ -48,8 +52,11 @@ _HOME = {
     "Kind": "vines.pipeline._kinds",
     "Pipeline": "vines.pipeline._declaration",
     "Point": "vines.pipeline._jobs",
+    "Points": "vines.pipeline._jobs",
     "Range": "vines.pipeline._jobs",
+    "Refine": "vines.pipeline._declaration",
     "RunSummary": "vines.pipeline._events",
+    "Shard": "vines.pipeline._shard",
     "Stage": "vines.pipeline._declaration",
     "StagePlan": "vines.pipeline._plan",
     "WholeJob": "vines.pipeline._jobs",

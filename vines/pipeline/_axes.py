@@ -6,21 +6,28 @@ refined grid computes only its new points.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from decimal import Context, Decimal
 from fractions import Fraction
-from typing import Any, Literal
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, Literal
 
 from vines.errors import DeclarationError, nearest
+
+if TYPE_CHECKING:
+    import numpy as np
 
 __all__ = ["Axis", "exact", "read_axis"]
 
 _RANGE_KEYS = ("count", "from", "log", "step", "to")
 _MOST = 10_000_000
+_EXACT = 2**53
+_DIGITS = 50
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Axis:
     """A varied parameter.
 
@@ -42,7 +49,7 @@ class Axis:
     count: int
 
     def values(self) -> tuple[float, ...]:
-        """Return the values in ascending order.
+        """Return the values, ascending unless the axis is zipped with another.
 
         Examples
         --------
@@ -52,17 +59,54 @@ class Axis:
         (1.0, 10.0, 100.0)
         """
         if self.form == "list":
-            return tuple(float(value) for value in sorted(self.ends))
-        first, last = min(self.ends), max(self.ends)
+            return tuple(float(value) for value in self.ends)
         if self.count == 1:
-            return (float(first),)
+            return (float(self.ends[0]),)
         if self.form == "log":
-            return tuple(_logarithmic(first, last, Fraction(i, self.count - 1)) for i in range(self.count))
-        # one common denominator: the quotient of two whole numbers is rounded correctly, once
-        denominator = first.denominator * last.denominator * (self.count - 1)
-        low = first.numerator * last.denominator
-        high = last.numerator * first.denominator
-        return tuple((low * (self.count - 1) + (high - low) * i) / denominator for i in range(self.count))
+            return _logarithms(self.ends[0], self.ends[-1], self.count)
+        start, step, denominator = self._line()
+        # the quotient of two whole numbers is rounded correctly, once
+        return tuple((start + step * i) / denominator for i in range(self.count))
+
+    def at(self, places: np.ndarray) -> np.ndarray:
+        """Return the values at some places, the same bit by bit as :meth:`values` gives, for many at once."""
+        import numpy as np
+
+        if self.form == "linear" and self.count > 1:
+            start, step, denominator = self._line()
+            if max(abs(start), abs(start + step * (self.count - 1)), denominator) < _EXACT:
+                # whole numbers that floats hold exactly: one division rounds as Python's does
+                return (start + step * places.astype(np.int64)).astype(np.float64) / float(denominator)
+        return self._array[places]
+
+    def value(self, position: Fraction) -> float:
+        """Return the value at a position between places, rounded once; whole numbers are the places themselves.
+
+        Examples
+        --------
+        >>> Axis("A", "linear", (Fraction("0.1"), Fraction("0.4")), 4).value(Fraction(1, 2))
+        0.15
+        """
+        if self.form == "log":
+            return _logarithmic(self.ends[0], self.ends[-1], position / (self.count - 1))
+        if self.form == "linear":
+            start, stop = self.ends
+            return float(start + (stop - start) * position / (self.count - 1))
+        place = min(int(position), self.count - 2)
+        return float(self.ends[place] + (self.ends[place + 1] - self.ends[place]) * (position - place))
+
+    def _line(self) -> tuple[int, int, int]:
+        """Return whole numbers a, b and c such that the value at place i is (a + b i)/c."""
+        first, last = self.ends
+        step = (last - first) / (self.count - 1)
+        denominator = math.lcm(first.denominator, step.denominator)
+        return int(first * denominator), int(step * denominator), denominator
+
+    @cached_property
+    def _array(self) -> np.ndarray:
+        import numpy as np
+
+        return np.array(self.values())
 
     def canonical(self) -> list[Any]:
         """Return the declaration as plain data, the same however the decimals were written."""
@@ -86,7 +130,7 @@ def exact(value: object, where: str) -> Fraction:
     return Fraction(decimal)
 
 
-def read_axis(name: str, form: object, where: str, *, interval: bool) -> Axis:
+def read_axis(name: str, form: object, where: str, *, interval: bool, zipped: bool = False) -> Axis:
     """Read ``vary.<name>``.
 
     Parameters
@@ -99,6 +143,8 @@ def read_axis(name: str, form: object, where: str, *, interval: bool) -> Axis:
         File and key, for messages.
     interval : bool
         Whether the kind covers an interval: only ``from`` and ``to`` then.
+    zipped : bool
+        Whether the values run together with those of another axis: they stay in the order declared, and may repeat.
 
     Raises
     ------
@@ -106,7 +152,7 @@ def read_axis(name: str, form: object, where: str, *, interval: bool) -> Axis:
         If it is neither, a key is unknown, or the numbers contradict each other.
     """
     if isinstance(form, list) and not interval:
-        return _read_list(name, form, where)
+        return _read_list(name, form, where, zipped=zipped)
     allowed = ("from", "to") if interval else _RANGE_KEYS
     if not isinstance(form, Mapping):
         shape = "{ from = …, to = … }" if interval else "{ from = …, to = …, count = … } or a list"
@@ -120,13 +166,16 @@ def read_axis(name: str, form: object, where: str, *, interval: bool) -> Axis:
     start, stop = exact(form["from"], f"{where}.from"), exact(form["to"], f"{where}.to")
     if interval:
         return Axis(name, "range", (start, stop), 0)
-    return _read_range(name, form, (start, stop), where)
+    axis = _read_range(name, form, (start, stop), where)
+    return axis if zipped else Axis(name, axis.form, (min(axis.ends), max(axis.ends)), axis.count)
 
 
-def _read_list(name: str, form: list[object], where: str) -> Axis:
+def _read_list(name: str, form: list[object], where: str, *, zipped: bool) -> Axis:
     values = tuple(exact(value, f"{where}[{i}]") for i, value in enumerate(form))
     if not values:
         raise DeclarationError(f"{where} is empty; list at least one value")
+    if zipped:
+        return Axis(name, "list", values, len(values))
     if len({float(value) for value in values}) < len(values):
         raise DeclarationError(f"{where} lists a value twice; each point is computed once")
     return Axis(name, "list", tuple(sorted(values)), len(values))
@@ -154,16 +203,27 @@ def _read_range(name: str, form: Mapping[str, object], ends: tuple[Fraction, Fra
         raise DeclarationError(f"{where}.count is {count!r}; allowed is a whole number from 1 to {_MOST}")
     if (start == stop) != (count == 1):
         raise DeclarationError(f"{where}: {count} values from {float(start):g} to {float(stop):g} cannot be")
-    return Axis(name, "log" if logarithmic else "linear", (min(ends), max(ends)), count)
+    return Axis(name, "log" if logarithmic else "linear", ends, count)
+
+
+def _logarithms(first: Fraction, last: Fraction, count: int) -> tuple[float, ...]:
+    """Return evenly spaced values on a logarithmic scale; each product adds 1e-60, far below the last place."""
+    context = Context(prec=_DIGITS + 10)
+    low, high = _ln(first, context), _ln(last, context)
+    ratio = context.exp(context.divide(context.subtract(high, low), Decimal(count - 1)))
+    value = context.divide(Decimal(first.numerator), Decimal(first.denominator))
+    inner = [float(value := context.multiply(value, ratio)) for _ in range(count - 2)]
+    return (float(first), *inner, float(last))
 
 
 def _logarithmic(first: Fraction, last: Fraction, part: Fraction) -> float:
     if part in (0, 1):
         return float(last if part else first)
-    context = Context(prec=50)
-    low = context.ln(context.divide(Decimal(first.numerator), Decimal(first.denominator)))
-    high = context.ln(context.divide(Decimal(last.numerator), Decimal(last.denominator)))
-    way = context.divide(
-        context.multiply(context.subtract(high, low), Decimal(part.numerator)), Decimal(part.denominator)
-    )
-    return float(context.exp(context.add(low, way)))
+    context = Context(prec=_DIGITS)
+    low, high = _ln(first, context), _ln(last, context)
+    share = context.divide(Decimal(part.numerator), Decimal(part.denominator))
+    return float(context.exp(context.add(low, context.multiply(context.subtract(high, low), share))))
+
+
+def _ln(value: Fraction, context: Context) -> Decimal:
+    return context.ln(context.divide(Decimal(value.numerator), Decimal(value.denominator)))

@@ -19,9 +19,9 @@ if TYPE_CHECKING:
     from vines.pipeline._axes import Axis
     from vines.pipeline._kinds import Kind
 
-__all__ = ["Carry", "Pipeline", "Stage", "available", "find", "load"]
+__all__ = ["Carry", "Pipeline", "Refine", "Stage", "available", "find", "load"]
 
-_STAGES = re.compile(r"^\s*\[\s*stages\b", re.MULTILINE)
+_STAGES = re.compile(r"^\s*(\[\s*stages\b|include\s*=)", re.MULTILINE)
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,9 +45,45 @@ class Carry:
     stage: str | None = None
     at: tuple[tuple[str, float], ...] = ()
 
+
+@dataclass(frozen=True, slots=True)
+class Refine:
+    """Where points are added to a grid.
+
+    Attributes
+    ----------
+    on : tuple of str
+        Columns of the primary table that are watched.
+    along : str
+        The axis between whose neighbours points are added.
+    tolerance : float
+        Neighbours nearer than this get no point between them.
+    jump : tuple of (str, float)
+        The relative change of each watched number beyond which a point is added; ``""`` stands for all others.
+    most : int
+        More points than this are not added.
+    """
+
+    on: tuple[str, ...]
+    along: str
+    tolerance: float
+    jump: tuple[tuple[str, float], ...] = (("", 0.1),)
+    most: int = 10_000
+
+    def jump_of(self, name: str) -> float:
+        """Return the relative change of a column that counts as a jump."""
+        table = dict(self.jump)
+        return table.get(name, table[""])
+
     def canonical(self) -> dict[str, Any]:
         """Return the declaration as plain data."""
-        return {"axis": self.axis, "direction": self.direction, "stage": self.stage, "at": dict(self.at)}
+        return {
+            "on": sorted(self.on),
+            "along": self.along,
+            "tolerance": self.tolerance,
+            "jump": dict(self.jump),
+            "most": self.most,
+        }
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,6 +106,10 @@ class Stage:
         Whether and how states are carried along an axis.
     needs : tuple of str
         Stages whose results it takes, in the order declared.
+    zipped : tuple of tuple of str
+        Axes that run together.
+    refine : Refine or None
+        Where points are added to the grid.
     """
 
     name: str
@@ -79,6 +119,8 @@ class Stage:
     axes: tuple[Axis, ...]
     carry: Carry | None
     needs: tuple[str, ...]
+    zipped: tuple[tuple[str, ...], ...] = ()
+    refine: Refine | None = None
 
     @property
     def after(self) -> tuple[str, ...]:

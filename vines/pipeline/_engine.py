@@ -1,4 +1,4 @@
-"""Computing chunks in this process or in several, through the protocol of ``concurrent.futures.Executor``."""
+"""Computing chunks in this process or in others, through the protocol of ``concurrent.futures.Executor``."""
 
 from __future__ import annotations
 
@@ -7,20 +7,19 @@ import multiprocessing
 import os
 from collections.abc import Callable
 from concurrent.futures import FIRST_COMPLETED, Executor, Future, wait
-from typing import TYPE_CHECKING
+from types import TracebackType
+from typing import Protocol
 
 from vines.errors import StoreError
 from vines.pipeline._work import Chunk, Pace, Work
 from vines.pipeline._worker import Done, Task, compute_task, prepare_worker
 
-if TYPE_CHECKING:
-    from concurrent.futures import ProcessPoolExecutor
-
-__all__ = ["compute_all", "cores"]
+__all__ = ["Crew", "Engine", "Processes", "cores"]
 
 WORTH_SECONDS = 4.0
 """Work that would take one process longer than this is worth starting others, which costs each about 1.5 s."""
 _DEATHS = 3
+_LOOK_SECONDS = 1.0
 
 
 def cores() -> int:
@@ -28,106 +27,197 @@ def cores() -> int:
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
-def compute_all(
-    work: Work,
-    make: Callable[[Chunk], Task],
-    stored: Callable[[Done, int], None],
-    jobs: int,
-    worth: float = WORTH_SECONDS,
-) -> None:
-    """Compute everything that is left.
+class Crew(Protocol):
+    """Who computes chunks outside this process."""
+
+    worth: float
+    """Seconds of work from which on it is used; below, this process computes alone."""
+
+    def size(self) -> int:
+        """Return how many chunks it computes at the same time; starts it where only it can know."""
+        ...
+
+    def executor(self) -> Executor:
+        """Return its executor, started if it was not."""
+        ...
+
+    def is_loss(self, error: BaseException) -> bool:
+        """Whether an error means that a worker was lost with its chunk; afterwards the crew can go on.
+
+        Raises
+        ------
+        VinesError
+            If the crew cannot go on.
+        """
+        ...
+
+    def look(self) -> None:
+        """See that it is still there; called every second.
+
+        Raises
+        ------
+        VinesError
+            If it is not.
+        """
+        ...
+
+    def stop(self, *, now: bool) -> None:
+        """End it; `now` leaves chunks unfinished."""
+        ...
+
+
+class Processes:
+    """Worker processes on this machine.
 
     Parameters
     ----------
-    work : Work
-        What is left; empty at the end.
-    make : callable
-        Makes the task of a chunk.
-    stored : callable
-        Told of each chunk that is stored, and how many processes are at work.
     jobs : int
-        How many processes there may be.
-    worth : float
-        Seconds of work from which on more than one process is started.
-
-    Raises
-    ------
-    StoreError
-        If worker processes die again and again.
+        How many.
     """
-    pace = Pace()
-    while (chunk := work.take(pace.size)) is not None:
-        done = compute_task(make(chunk))
-        work.finish(chunk, done.last)
-        pace.add(done.points, done.seconds)
-        stored(done, 1)
-        processes = min(jobs, work.width)
-        if processes > 1 and pace.seconds_for(work.left) >= max(worth, 1e-9):
-            _compute_parallel(work, make, stored, processes, pace)
 
+    def __init__(self, jobs: int) -> None:
+        self.worth = WORTH_SECONDS
+        self._jobs = jobs
+        self._executor: Executor | None = None
+        self._before: set[object] = set()
 
-def _compute_parallel(
-    work: Work, make: Callable[[Chunk], Task], stored: Callable[[Done, int], None], processes: int, pace: Pace
-) -> None:
-    from concurrent.futures.process import BrokenProcessPool
+    def size(self) -> int:
+        """Return how many there may be."""
+        return self._jobs
 
-    deaths = 0
-    while work.left:
-        before = set(multiprocessing.active_children())
-        executor = _start(processes)
-        flying: dict[Future[Done], Chunk] = {}
-        try:
-            _drain(executor, flying, work, make, stored, processes, pace)
-            executor.shutdown()
-        except BrokenProcessPool:
-            deaths += 1
-            for chunk in reversed(list(flying.values())):
-                work.give_back(chunk)
-            if deaths >= _DEATHS:
-                text = f"worker processes died {deaths} times, perhaps for want of memory"
-                raise StoreError(f"{text}; what was computed is kept; run again with fewer --jobs") from None
-        finally:
-            # after an interruption a chunk may have seconds to go; its part is not there yet, so nothing is lost
-            for child in set(multiprocessing.active_children()) - before:
-                child.terminate()
-            executor.shutdown(wait=False, cancel_futures=True)
+    def executor(self) -> Executor:
+        """Return the pool of processes."""
+        if self._executor is None:
+            from concurrent.futures import ProcessPoolExecutor
 
+            self._before = set(multiprocessing.active_children())
+            self._executor = ProcessPoolExecutor(
+                self._jobs,
+                mp_context=multiprocessing.get_context("spawn"),
+                initializer=prepare_worker,
+                initargs=(os.getpid(),),
+            )
+        return self._executor
 
-def _start(processes: int) -> ProcessPoolExecutor:
-    from concurrent.futures import ProcessPoolExecutor
+    def is_loss(self, error: BaseException) -> bool:
+        """Whether a process died; the others of its pool die with it, and a new pool takes over."""
+        from concurrent.futures.process import BrokenProcessPool
 
-    return ProcessPoolExecutor(
-        processes,
-        mp_context=multiprocessing.get_context("spawn"),
-        initializer=prepare_worker,
-        initargs=(os.getpid(),),
-    )
+        if not isinstance(error, BrokenProcessPool):
+            return False
+        self.stop(now=True)
+        return True
 
+    def look(self) -> None:
+        """Nothing to see: the pool itself tells when a process dies."""
 
-def _drain(
-    executor: Executor,
-    flying: dict[Future[Done], Chunk],
-    work: Work,
-    make: Callable[[Chunk], Task],
-    stored: Callable[[Done, int], None],
-    processes: int,
-    pace: Pace,
-) -> None:
-    """Keep every process busy until nothing is left; `flying` holds the chunks that are under way."""
-    while True:
-        while len(flying) < processes + 1:
-            # near the end smaller chunks, so that the processes finish together
-            share = math.ceil(work.left / (2 * processes)) if work.free else work.left
-            chunk = work.take(max(1, min(pace.size, share)))
-            if chunk is None:
-                break
-            flying[executor.submit(compute_task, make(chunk))] = chunk
-        if not flying:
+    def stop(self, *, now: bool) -> None:
+        """End the processes; a part that is not committed is not there, so nothing is half done."""
+        executor, self._executor = self._executor, None
+        if executor is None:
             return
-        ready, _ = wait(flying, return_when=FIRST_COMPLETED)
-        for future in ready:
-            done = future.result()
-            chunk = flying.pop(future)
+        if now:
+            for child in set(multiprocessing.active_children()) - self._before:
+                child.terminate()
+        executor.shutdown(wait=not now, cancel_futures=now)
+
+
+class Engine:
+    """Computes what is left of a stage, alone or with a crew.
+
+    Parameters
+    ----------
+    crew : Crew
+        Who helps.
+    """
+
+    def __init__(self, crew: Crew) -> None:
+        self.crew = crew
+
+    def compute(self, work: Work, make: Callable[[Chunk], Task], stored: Callable[[Done, int], None]) -> None:
+        """Compute everything that is left.
+
+        Parameters
+        ----------
+        work : Work
+            What is left; empty at the end.
+        make : callable
+            Makes the task of a chunk.
+        stored : callable
+            Told of each chunk that is stored, and how many processes are at work.
+
+        Raises
+        ------
+        StoreError
+            If worker processes die again and again.
+        EngineError
+            If the scheduler is lost.
+        """
+        pace = Pace()
+        if work.left and self.crew.worth <= 0:
+            self._together(work, make, stored, pace)
+        while (chunk := work.take(pace.size)) is not None:
+            done = compute_task(make(chunk))
             work.finish(chunk, done.last)
             pace.add(done.points, done.seconds)
-            stored(done, processes)
+            stored(done, 1)
+            if min(self.crew.size(), work.width) > 1 and pace.seconds_for(work.left) >= self.crew.worth:
+                self._together(work, make, stored, pace)
+
+    def __enter__(self) -> Engine:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        # after an interruption a chunk may have seconds to go; its part is not there yet, so nothing is lost
+        self.crew.stop(now=kind is not None)
+
+    def _together(
+        self, work: Work, make: Callable[[Chunk], Task], stored: Callable[[Done, int], None], pace: Pace
+    ) -> None:
+        deaths = 0
+        while work.left:
+            flying: dict[Future[Done], Chunk] = {}
+            try:
+                self._drain(flying, work, make, stored, pace)
+            except Exception as error:
+                if not self.crew.is_loss(error):
+                    raise
+                deaths += 1
+                for chunk in reversed(list(flying.values())):
+                    work.give_back(chunk)
+                if deaths >= _DEATHS:
+                    text = f"worker processes died {deaths} times, perhaps for want of memory"
+                    raise StoreError(f"{text}; what was computed is kept; run again with fewer --jobs") from None
+
+    def _drain(
+        self,
+        flying: dict[Future[Done], Chunk],
+        work: Work,
+        make: Callable[[Chunk], Task],
+        stored: Callable[[Done, int], None],
+        pace: Pace,
+    ) -> None:
+        """Keep everybody busy until nothing is left; `flying` holds the chunks that are under way."""
+        executor = self.crew.executor()
+        while True:
+            size = max(1, min(self.crew.size(), work.width + len(flying)))
+            while len(flying) < size + 1:
+                # near the end smaller chunks, so that all finish together
+                share = math.ceil(work.left / (2 * size)) if len(work.free) else work.left
+                chunk = work.take(max(1, min(pace.size, share)))
+                if chunk is None:
+                    break
+                flying[executor.submit(compute_task, make(chunk))] = chunk
+            if not flying:
+                return
+            ready, _ = wait(flying, timeout=_LOOK_SECONDS, return_when=FIRST_COMPLETED)
+            if not ready:
+                self.crew.look()
+            for future in ready:
+                done = future.result()
+                chunk = flying.pop(future)
+                work.finish(chunk, done.last)
+                pace.add(done.points, done.seconds)
+                stored(done, size)

@@ -64,6 +64,10 @@ class StageOutcome:
         Key of its result; empty if it has none.
     reason : str
         Why it ran, failed, or was skipped.
+    remark : str
+        Why a refinement ended early.
+    versions : tuple of (str, str)
+        Versions of the packages that computed its points.
     """
 
     name: str
@@ -73,6 +77,8 @@ class StageOutcome:
     failed: int = 0
     key: str = ""
     reason: str = ""
+    remark: str = ""
+    versions: tuple[tuple[str, str], ...] = ()
 
 
 @dataclass(frozen=True, slots=True)

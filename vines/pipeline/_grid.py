@@ -1,23 +1,45 @@
-"""The points of a stage: their ids, their parameters, and the chains of a carried axis."""
+"""The points of a stage: their values, ids, and chains, all computed when asked; ten bytes a point are kept."""
 
 from __future__ import annotations
 
-import hashlib
-import itertools
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import TYPE_CHECKING
 
+from vines.pipeline._axes import Axis
+from vines.pipeline._chains import carried_id
 from vines.pipeline._declaration import Stage
-from vines.pipeline._jobs import Point
 
-__all__ = ["Grid"]
+if TYPE_CHECKING:
+    import numpy as np
 
-_DIGITS = 20
+    from vines.store import Ids
+
+__all__ = ["Chain", "Grid"]
+
+_BLOCK = 2**16
+
+
+@dataclass(frozen=True, slots=True)
+class Chain:
+    """Points each of which starts where the one before it ended.
+
+    Attributes
+    ----------
+    places : sequence of int
+        Places in the grid, in the order of the chain.
+    start : str
+        Id of the point of the same pool that the first one starts from; empty if it starts the chain.
+    """
+
+    places: Sequence[int]
+    start: str = ""
 
 
 @dataclass(frozen=True)
 class Grid:
-    """All points that a stage wants, in their final order: the first axis varies slowest, each ascending.
+    """All points that a stage declares, in their final order: the first axis varies slowest, each ascending.
 
     Parameters
     ----------
@@ -31,61 +53,130 @@ class Grid:
     origin: str = ""
 
     @cached_property
-    def values(self) -> list[tuple[float, ...]]:
-        """The varied values of each point."""
-        return list(itertools.product(*(axis.values() for axis in self.stage.axes)))
+    def groups(self) -> list[tuple[Axis, ...]]:
+        """The axes; those that are zipped run together."""
+        axes = {axis.name: axis for axis in self.stage.axes}
+        partners = {name: names for names in self.stage.zipped for name in names}
+        named = dict.fromkeys(partners.get(name, (name,)) for name in axes)
+        return [tuple(axes[name] for name in names) for names in named]
 
     @cached_property
-    def chains(self) -> list[list[int]]:
-        """Places of the points of each chain, in the order of the chain; empty if nothing is carried."""
+    def names(self) -> tuple[str, ...]:
+        """The varied parameters, the slowest first."""
+        return tuple(axis.name for group in self.groups for axis in group)
+
+    def __len__(self) -> int:
+        total = 1
+        for group in self.groups:
+            total *= group[0].count
+        return total
+
+    def columns(self, places: Sequence[int] | np.ndarray) -> dict[str, np.ndarray]:
+        """Return the varied values of the points at some places."""
+        import numpy as np
+
+        left = np.asarray(places, dtype=np.int64)
+        found: dict[str, np.ndarray] = {}
+        for group in reversed(self.groups):
+            left, at = np.divmod(left, group[0].count)
+            found.update({axis.name: axis.at(at) for axis in group})
+        return {name: found[name] for name in self.names}
+
+    @cached_property
+    def chains(self) -> list[Chain]:
+        """The chains; empty if nothing is carried."""
         carry = self.stage.carry
         if carry is None:
             return []
-        place = [axis.name for axis in self.stage.axes].index(carry.axis)
-        chains: dict[tuple[float, ...], list[int]] = {}
-        for i, values in enumerate(self.values):
-            chains.setdefault(values[:place] + values[place + 1 :], []).append(i)
-        step = 1 if carry.direction == "up" else -1
-        return [chain[::step] for chain in chains.values()]
+        number = next(i for i, group in enumerate(self.groups) if carry.axis in [axis.name for axis in group])
+        count = self.groups[number][0].count
+        stride = 1
+        for group in self.groups[number + 1 :]:
+            stride *= group[0].count
+        along = range(0, count * stride, stride)
+        ends = next(axis.ends for axis in self.groups[number] if axis.name == carry.axis)
+        rising = ends[0] <= ends[-1]
+        order = along if rising == (carry.direction == "up") else along[::-1]
+        return [
+            Chain(range(order.start + first, order.stop + first, order.step))
+            for block in range(0, len(self), count * stride)
+            for first in range(block, block + stride)
+        ]
 
     @cached_property
-    def ids(self) -> list[str]:
+    def ids(self) -> Ids:
         """The id of each point: a hash of its varied values and, if carried, of its predecessor's id."""
-        texts = self._texts()
+        import numpy as np
+
+        from vines.pipeline._identity import free_ids
+        from vines.store import Ids
+
+        if self.stage.carry is not None:
+            found = [""] * len(self)
+            for chain in self.chains:
+                for place, identity in zip(chain.places, self._along(chain.places), strict=True):
+                    found[place] = identity
+            return Ids.of(found)
+        if not self.names:
+            return free_ids([np.zeros(1)])
+        raw = np.empty((len(self), 10), dtype=np.uint8)
+        for start in range(0, len(self), _BLOCK):
+            columns = self.columns(np.arange(start, min(start + _BLOCK, len(self))))
+            raw[start : start + _BLOCK] = free_ids([columns[name] for name in sorted(columns)]).raw
+        return Ids(raw)
+
+    def identity(self, values: Mapping[str, float]) -> str:
+        """Return what names the point with these varied values: its id if it is carried, else the values.
+
+        Both are found without numpy, which a status should not have to load.
+        """
+        from vines.store import canonical
+
         if self.stage.carry is None:
-            return [_id(text) for text in texts]
-        ids = [""] * len(texts)
-        for chain in self.chains:
-            before = self.origin
-            for i in chain:
-                before = _id(f'{{"after":"{before}","values":{texts[i]}}}')
-                ids[i] = before
-        return ids
+            return canonical(dict(values))
+        place = self.place(values)
+        chain = next(chain.places for chain in self.chains if place in chain.places)
+        return self._along(chain[: chain.index(place) + 1])[-1]
 
-    def _texts(self) -> list[str]:
-        """Return the canonical JSON of the varied values of each point; made for millions of them."""
-        order = sorted(range(len(self.stage.axes)), key=lambda k: self.stage.axes[k].name)
-        form = "{{" + ",".join(f'"{self.stage.axes[k].name}":{{{k}!r}}' for k in order) + "}}"
-        return [form.format(*values) for values in self.values]
+    def place(self, values: Mapping[str, float]) -> int:
+        """Return the place of the point with these varied values."""
+        place = 0
+        for group in self.groups:
+            rows = list(zip(*(axis.values() for axis in group), strict=True))
+            place = place * group[0].count + rows.index(tuple(values[axis.name] for axis in group))
+        return place
 
-    def point(self, i: int) -> Point:
-        """Return a point with all its parameters, in the order of the kind."""
-        every = {**self._blank, **dict(zip(self._names, self.values[i], strict=True))}
-        return Point(self.ids[i], every)
+    def has(self, values: Mapping[str, float]) -> bool:
+        """Whether there is a point with these varied values."""
+        if set(values) != set(self.names):
+            return False
+        try:
+            self.place(values)
+        except ValueError:
+            return False
+        return True
 
-    @cached_property
-    def _names(self) -> list[str]:
-        return [axis.name for axis in self.stage.axes]
-
-    @cached_property
-    def _blank(self) -> dict[str, float]:
-        """The fixed parameters in the order of the kind, with room for the varied ones."""
+    def fixed(self) -> dict[str, float]:
+        """Return all parameters in the order of the kind; those that vary are 0 here."""
         return {name: self.stage.params.get(name, 0.0) for name in self.stage.kind.parameters}
 
-    def at(self, values: dict[str, float]) -> str:
-        """Return the id of the point with these varied values."""
-        return self.ids[self.values.index(tuple(values[axis.name] for axis in self.stage.axes))]
+    def _along(self, places: Sequence[int]) -> list[str]:
+        """Return the ids of the first points of a chain."""
+        names = sorted(self.names)
+        before, found = self.origin, []
+        for values in self._rows(places, names):
+            before = carried_id(before, names, values)
+            found.append(before)
+        return found
 
-
-def _id(text: str) -> str:
-    return hashlib.sha256(text.encode()).hexdigest()[:_DIGITS]
+    def _rows(self, places: Sequence[int], names: Sequence[str]) -> list[tuple[float, ...]]:
+        """Return the varied values point by point."""
+        values = {axis.name: axis.values() for axis in self.stage.axes}
+        found: dict[str, list[float]] = {}
+        left = list(places)
+        for group in reversed(self.groups):
+            count = group[0].count
+            at = [place % count for place in left]
+            left = [place // count for place in left]
+            found.update({axis.name: [values[axis.name][i] for i in at] for axis in group})
+        return list(zip(*(found[name] for name in names), strict=True))

@@ -21,6 +21,8 @@ from vines.store import canonical, key_of
 
 __all__ = ["Ingredients", "changes", "gather"]
 
+_CHOICE = ("refine", "vary", "zip")
+
 
 @dataclass(frozen=True, slots=True)
 class Ingredients:
@@ -29,7 +31,8 @@ class Ingredients:
     Attributes
     ----------
     form : dict
-        ``kind``, ``options``, ``params``, ``vary``, ``carry``, ``inputs``, ``tables``, ``files``, ``code``.
+        ``kind``, ``options``, ``params``, ``vary``, ``carry``, ``inputs``, ``tables``, ``files``, ``code``, and where
+        there are such ``zip``, ``refine`` and ``messages`` (the digest of the schema of logs).
     files : tuple of Path
         The files that the kind named.
     """
@@ -39,8 +42,9 @@ class Ingredients:
 
     @property
     def pool_key(self) -> str:
-        """Key of the pool of points: all but the values that vary."""
-        return key_of({**self._plain(), "vary": [axis[0] for axis in self.form["vary"]]})
+        """Key of the pool of points: all but the values that vary, and how they were chosen."""
+        plain = {name: value for name, value in self._plain().items() if name not in _CHOICE}
+        return key_of({**plain, "vary": [axis[0] for axis in self.form["vary"]]})
 
     @property
     def request(self) -> str:
@@ -104,6 +108,10 @@ def gather(stage: Stage, inputs: Mapping[str, str], origin: str, code: CodeDiges
         "files": {path.name: _digest(path) for path in files},
         "code": {"digest": code.digest(spec.body), "modules": code.modules(spec.body)},
     }
+    if stage.zipped:
+        form["zip"] = [list(names) for names in stage.zipped]
+    if stage.refine is not None:
+        form["refine"] = stage.refine.canonical()
     if spec.logs:
         form["messages"] = _digest(shipped("schemas") / "vines.v1.binpb")
     return Ingredients(form, tuple(files))
@@ -125,10 +133,17 @@ def changes(before: Mapping[str, Any], now: Mapping[str, Any]) -> str:
     found += _axes(before.get("vary", []), now.get("vary", []))
     if before.get("carry") != now.get("carry"):
         found.append(f"carry {_carry(before.get('carry'))} → {_carry(now.get('carry'))}")
+    found += _values(before.get("refine", {}), now.get("refine", {}), "refine.")
+    if before.get("zip") != now.get("zip"):
+        found.append(f"zip {_shown(before.get('zip'))} → {_shown(now.get('zip'))}")
     old, new = dict(before.get("inputs", [])), dict(now.get("inputs", []))
     found += [f"input {name} is new" for name in new if name not in old]
     found += [f"input {name} is no longer needed" for name in old if name not in new]
-    found += [f"input {name} changed" for name in new if name in old and old[name] != new[name]]
+    found += [
+        f"input {name} changed ({old[name][:8]} → {new[name][:8]})"
+        for name in new
+        if name in old and old[name] != new[name]
+    ]
     if set(old) == set(new) and list(old) != list(new):
         found.append("the order of the inputs changed")
     for part, word in (("tables", "schema of"), ("files", "file")):

@@ -5,22 +5,25 @@ Bodies import these types, so this module stays small: it belongs to the code di
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import itertools
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple, overload
 
 from vines.errors import UnknownNameError, nearest
 
 if TYPE_CHECKING:
     import msgspec
+    import numpy as np
     import pyarrow as pa
 
-__all__ = ["Batch", "Input", "Job", "Point", "Range", "WholeJob"]
+    from vines.store import Ids
+
+__all__ = ["Batch", "Input", "Job", "Point", "Points", "Range", "WholeJob"]
 
 
-@dataclass(frozen=True, slots=True)
-class Point:
+class Point(NamedTuple):
     """One point of a grid.
 
     Attributes
@@ -33,6 +36,68 @@ class Point:
 
     id: str
     params: dict[str, float]
+
+
+class Points(Sequence[Point]):
+    """Points of a job: a sequence of :class:`Point`, made one by one, or columns for bodies that take many at once.
+
+    Parameters
+    ----------
+    fixed : dict of str to float
+        All parameters in the order of the kind; what is given for those that vary doesn't matter.
+    varied : dict of str to numpy.ndarray of float64, shape (n,)
+        Values of those that vary.
+    ids : Ids
+        Their ids.
+    """
+
+    def __init__(self, fixed: dict[str, float], varied: dict[str, np.ndarray], ids: Ids) -> None:
+        self.fixed = fixed
+        self.varied = varied
+        self.key = ids
+
+    def __len__(self) -> int:
+        return len(self.key)
+
+    @property
+    def ids(self) -> list[str]:
+        """Their ids, one by one."""
+        return self.key.hex()
+
+    def column(self, name: str) -> np.ndarray:
+        """Return the values of a parameter.
+
+        Raises
+        ------
+        UnknownNameError
+            If there is no such parameter.
+        """
+        import numpy as np
+
+        if name in self.varied:
+            return self.varied[name]
+        if name not in self.fixed:
+            raise UnknownNameError(f"unknown parameter {name!r}: {nearest(name, self.fixed)}")
+        return np.full(len(self), self.fixed[name])
+
+    def __iter__(self) -> Iterator[Point]:
+        names = list(self.varied)
+        columns = [self.varied[name].tolist() for name in names]
+        values = zip(*columns, strict=True) if columns else itertools.repeat(())
+        for identity, row in zip(self.ids, values, strict=bool(columns)):
+            yield Point(identity, {**self.fixed, **dict(zip(names, row, strict=True))})
+
+    @overload
+    def __getitem__(self, at: int) -> Point: ...
+
+    @overload
+    def __getitem__(self, at: slice) -> Points: ...
+
+    def __getitem__(self, at: int | slice) -> Point | Points:
+        if isinstance(at, slice):
+            return Points(self.fixed, {name: values[at] for name, values in self.varied.items()}, self.key.take(at))
+        place = range(len(self))[at]
+        return next(iter(self[place : place + 1]))
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,8 +124,8 @@ class Job:
     ----------
     options : msgspec.Struct
         The options of the kind, as declared, defaults filled in.
-    points : tuple of Point
-        The points; in the order of the chain when they are carried.
+    points : Points
+        The points, in the order of the chain when they are carried: one by one, or as columns.
     carry : str or None
         The carried axis. The end state of each point is then the start of the next.
     start : dict or None
@@ -74,7 +139,7 @@ class Job:
     """
 
     options: msgspec.Struct
-    points: tuple[Point, ...]
+    points: Points
     carry: str | None
     start: dict[str, Any] | None
     folder: Path
@@ -163,7 +228,7 @@ class Batch:
 
     Attributes
     ----------
-    tables : mapping of str to pyarrow.Table, or to a sequence of rows (dicts)
+    tables : mapping of str to pyarrow.Table, to a mapping of columns, or to a sequence of rows (dicts)
         One for each table of the kind, cast to its schema by the engine. A stage of the points shape gives
         exactly one row of the primary table for each point, and ``point_id`` in every row. A stage of the
         whole shape may leave ``point_id`` out; the rows are then numbered.

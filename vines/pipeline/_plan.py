@@ -2,18 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+import hashlib
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 from vines.pipeline._code import CodeDigests
 from vines.pipeline._declaration import Pipeline, Stage
 from vines.pipeline._grid import Grid
 from vines.pipeline._ingredients import Ingredients, changes, gather
-from vines.store import Store, key_of
+from vines.store import Store, canonical, versions
 
-__all__ = ["Planner", "Prepared", "StagePlan", "plan"]
+if TYPE_CHECKING:
+    from vines.pipeline._refined import Refined
+
+__all__ = ["Planner", "Prepared", "StagePlan", "other_versions", "plan"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,6 +37,10 @@ class StagePlan:
         ``failed``. A stage of the whole shape counts as one point.
     key : str
         Key of the result; where points are still to be computed, the key if none of them fails.
+    versions : str
+        Which packages the result was computed with, where they are others than now; empty otherwise.
+    remark : str
+        Why a refinement ended early; empty otherwise.
     """
 
     name: str
@@ -43,6 +51,8 @@ class StagePlan:
     done: int
     failed: int
     key: str
+    versions: str = ""
+    remark: str = ""
 
 
 @dataclass
@@ -69,11 +79,22 @@ class Prepared:
         """Key of what is asked for."""
         return self.ingredients.request
 
-    def result_key(self, failed: Iterable[str] = ()) -> str:
-        """Return the key of the result, given the points that failed."""
+    def result_key(self, grid: Grid | Refined | None = None, failed: Iterable[str] = ()) -> str:
+        """Return the key of the result.
+
+        Parameters
+        ----------
+        grid : Grid or Refined, optional
+            All its points, in their order; those declared if left out.
+        failed : iterable of str
+            Those of them that failed.
+        """
         if self.stage.kind.shape == "whole":
             return self.request
-        return key_of({"pool": self.pool_key, "points": sorted(self.grid.ids), "failed": sorted(failed)})
+        head = canonical({"pool": self.pool_key, "failed": sorted(failed)})
+        digest = hashlib.sha256(head.encode())
+        digest.update((self.grid if grid is None else grid).ids.raw.tobytes())
+        return digest.hexdigest()
 
 
 class Planner:
@@ -119,7 +140,8 @@ class Planner:
         if pin.get("request") == prepared.request and self.store.has(pin["result"]):
             self.keys[name] = pin["result"]
             counts = (pin["points"], pin["points"], pin["failed"])
-            return StagePlan(name, stage.kind.name, "up_to_date", "", *counts, pin["result"])
+            notes = (other_versions(pin.get("versions", {})), pin.get("remark", ""))
+            return StagePlan(name, stage.kind.name, "up_to_date", "", *counts, pin["result"], *notes)
         if stage.kind.shape == "whole":
             key = prepared.result_key()
             wanted, done, failed = 1, int(self.store.has(key)), 0
@@ -127,23 +149,27 @@ class Planner:
             key, wanted, done, failed = self._points(prepared)
         self.keys[name] = key
         state, reason = self._state(prepared, wanted, done)
-        return StagePlan(name, stage.kind.name, state, reason, wanted, done, failed, key)
+        then = other_versions(pin.get("versions", {})) if pin else ""
+        return StagePlan(name, stage.kind.name, state, reason, wanted, done, failed, key, then)
 
     def set_key(self, name: str, key: str) -> None:
         """Say which key the result of a stage has now that it was computed."""
         self.keys[name] = key
 
     def _points(self, prepared: Prepared) -> tuple[str, int, int, int]:
-        wanted = prepared.grid.ids
+        grid = prepared.grid
         pool = self.store.pool(prepared.pool_key)
-        computed, tried = pool.computed(), pool.failed()
-        failed = [point for point in wanted if point in tried]
-        done = sum(point in computed for point in wanted) + len(failed)
-        return prepared.result_key(failed), len(wanted), done, len(failed)
+        if not pool.names():  # the ids, and numpy for them, are only needed where something is there
+            return prepared.request, len(grid), 0, 0
+        located = pool.locate(grid.ids)
+        failed = grid.ids.take(located.failed).hex()
+        return prepared.result_key(failed=failed), len(grid), int((located.part >= 0).sum()), len(failed)
 
     def _state(self, prepared: Prepared, wanted: int, done: int) -> tuple[Literal["stale", "missing", "never"], str]:
         left = f"{wanted - done} of {wanted} points to compute" if wanted > 1 else "to compute"
-        if done == wanted:
+        if prepared.stage.refine is not None:
+            left += ", and those of the refinement" if done < wanted else ", or some of the refinement"
+        elif done == wanted:
             left = "everything is computed, the result has to be put together"
         pin = prepared.pin
         if not pin:
@@ -158,7 +184,20 @@ class Planner:
         if stage.carry is None or stage.carry.stage is None:
             return ""
         source = self.prepare(stage.carry.stage)
-        return f"{source.pool_key}/{source.grid.at(dict(stage.carry.at))}"
+        return f"{source.pool_key}/{source.grid.identity(dict(stage.carry.at))}"
+
+
+def other_versions(then: Mapping[str, str]) -> str:
+    """Return in words which packages were others when something was computed; vines itself is told by its code.
+
+    Examples
+    --------
+    >>> other_versions({"numpy": "0.1"})[:20]
+    'numpy 0.1 then, now '
+    """
+    now = versions()
+    names = [name for name in sorted(then) if name != "vines" and then[name] != now.get(name)]
+    return "; ".join(f"{name} {then[name]} then, now {now.get(name, 'not installed')}" for name in names)
 
 
 def plan(pipeline: Pipeline, store: Store, stages: Iterable[str] | None = None) -> list[StagePlan]:

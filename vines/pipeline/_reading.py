@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import itertools
-import re
 import tomllib
 from collections.abc import Iterable, Mapping
 from decimal import Decimal
@@ -13,111 +12,52 @@ from typing import Any
 
 import msgspec
 
-from vines.errors import DeclarationError, FileMissingError, VinesError, nearest
+from vines.errors import DeclarationError, VinesError, nearest
 from vines.pipeline._axes import Axis, exact, read_axis
-from vines.pipeline._declaration import Carry, Pipeline, Stage
+from vines.pipeline._declaration import Pipeline, Stage
+from vines.pipeline._include import with_included
 from vines.pipeline._kinds import Kind, kind
+from vines.pipeline._names import NAME, RESERVED
+from vines.pipeline._points import read_carry, read_refine, read_zipped
 from vines.places import find_root
 
-__all__ = ["read"]
+__all__ = ["GENERAL", "TOP", "read", "read_form"]
 
-_NAME = re.compile(r"[a-z][a-z0-9_]*")
-_TOP = ("params", "source", "stages", "title")
-_GENERAL = ("carry", "kind", "needs", "params", "vary")
-# Words that SQL keeps for itself; a pipeline's name stands unquoted before the dot in `<pipeline>.<stage>`.
-_RESERVED = frozenset(
-    [
-        "all",
-        "analyse",
-        "analyze",
-        "and",
-        "any",
-        "array",
-        "as",
-        "asc",
-        "asymmetric",
-        "both",
-        "case",
-        "cast",
-        "check",
-        "collate",
-        "column",
-        "constraint",
-        "create",
-        "default",
-        "deferrable",
-        "desc",
-        "describe",
-        "distinct",
-        "do",
-        "else",
-        "end",
-        "except",
-        "false",
-        "fetch",
-        "for",
-        "foreign",
-        "from",
-        "group",
-        "having",
-        "in",
-        "information_schema",
-        "initially",
-        "intersect",
-        "into",
-        "lambda",
-        "lateral",
-        "leading",
-        "limit",
-        "main",
-        "memory",
-        "not",
-        "null",
-        "offset",
-        "on",
-        "only",
-        "or",
-        "order",
-        "pg_catalog",
-        "pivot",
-        "pivot_longer",
-        "pivot_wider",
-        "placing",
-        "primary",
-        "qualify",
-        "references",
-        "returning",
-        "select",
-        "show",
-        "some",
-        "summarize",
-        "symmetric",
-        "system",
-        "table",
-        "temp",
-        "then",
-        "to",
-        "trailing",
-        "true",
-        "union",
-        "unique",
-        "unpivot",
-        "using",
-        "variadic",
-        "when",
-        "where",
-        "window",
-        "with",
-    ]
-)
+TOP = ("include", "params", "source", "stages", "title")
+GENERAL = ("carry", "kind", "needs", "params", "refine", "vary", "zip")
 
 
 def read(path: Path, overrides: Mapping[str, Any], root: Path | None) -> Pipeline:
     """Read a declaration; see :func:`vines.pipeline.load`."""
-    form = _override(_parse(path), overrides, path)
-    _known(form, _TOP, f"{path}")
-    name = path.stem
-    if not _NAME.fullmatch(name) or name in _RESERVED:
+    return read_form(path.stem, with_included(path), overrides, path, root)
+
+
+def read_form(
+    name: str, declared: Mapping[str, Any], overrides: Mapping[str, Any], path: Path, root: Path | None
+) -> Pipeline:
+    """Check a declaration that was read from a file or made in Python.
+
+    Parameters
+    ----------
+    name : str
+        Name of the pipeline.
+    declared : mapping
+        The declaration as plain data.
+    overrides : mapping
+        Values that replace some of it, by dotted key.
+    path : Path
+        Where it comes from, for messages.
+    root : Path or None
+        Root of the project; found from the current folder if None.
+
+    Raises
+    ------
+    DeclarationError, ParameterError, StateError
+        As :func:`vines.pipeline.load`.
+    """
+    form = _override(dict(declared), overrides, path)
+    _known(form, TOP, f"{path}")
+    if not NAME.fullmatch(name) or name in RESERVED:
         rule = "a name is [a-z][a-z0-9_]* and no reserved word of SQL"
         raise DeclarationError(f"{path}: a pipeline cannot be called {name!r}; {rule}; rename the file")
     tables = _table(form.get("stages", {}), f"{path}: stages")
@@ -135,15 +75,6 @@ def read(path: Path, overrides: Mapping[str, Any], root: Path | None) -> Pipelin
     for stage in stages.values():
         _check_box(stage, f"{path}: stages.{stage.name}")
     return pipeline
-
-
-def _parse(path: Path) -> dict[str, Any]:
-    try:
-        return tomllib.loads(path.read_text("utf-8"), parse_float=Decimal)
-    except FileNotFoundError:
-        raise FileMissingError(f"{path}: there is no such file; 'vines list' shows the pipelines there are") from None
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError, OSError) as error:
-        raise DeclarationError(f"{path}: not a TOML file: {str(error).splitlines()[0]}") from None
 
 
 def _override(form: dict[str, Any], overrides: Mapping[str, Any], path: Path) -> dict[str, Any]:
@@ -172,27 +103,32 @@ def _value(value: Any) -> Any:
 
 def _stage(name: str, table: dict[str, Any], spec: Kind, common: dict[str, Any], path: Path) -> Stage:
     where = f"{path}: stages.{name}"
-    if not _NAME.fullmatch(name):
+    if not NAME.fullmatch(name):
         raise DeclarationError(f"{where}: a stage cannot be called {name!r}; a name is [a-z][a-z0-9_]*")
     fields = msgspec.structs.fields(spec.options)
-    general = [key for key in _GENERAL if _allows(spec, key)]
+    general = [key for key in GENERAL if _allows(spec, key)]
     _known(table, [*general, *(field.encode_name for field in fields)], where)
-    axes = _axes(table.get("vary", {}), spec, where)
+    zipped = read_zipped(table["zip"], table.get("vary", {}), f"{where}.zip") if "zip" in table else ()
+    axes = _axes(table.get("vary", {}), spec, where, {name for names in zipped for name in names})
+    _check_zipped(zipped, axes, where)
     params = _params(table.get("params", {}), spec, common, axes, path, where)
-    own = {key: value for key, value in table.items() if key not in _GENERAL}
+    own = {key: value for key, value in table.items() if key not in GENERAL}
     _known_inside(own, spec.options, where)
     plain = {key: _plain(value, f"{where}.{key}") for key, value in own.items()}
     try:
         options = msgspec.convert(plain, spec.options)
     except msgspec.ValidationError as error:
         raise DeclarationError(_say(error, where)) from None
-    carry = _carry(table["carry"], axes, f"{where}.carry") if "carry" in table else None
+    carry = read_carry(table["carry"], axes, f"{where}.carry") if "carry" in table else None
+    refine = None
+    if "refine" in table:
+        refine = read_refine(table["refine"], spec, axes, zipped, carry, f"{where}.refine")
     needs = table.get("needs", [])
     if not isinstance(needs, list) or not all(isinstance(need, str) for need in needs):
         raise DeclarationError(f'{where}.needs is {needs!r}; list names of stages, such as ["up"]')
     if len(set(needs)) < len(needs):
         raise DeclarationError(f"{where}.needs names a stage twice; once is enough")
-    return Stage(name, spec, options, params, axes, carry, tuple(needs))
+    return Stage(name, spec, options, params, axes, carry, tuple(needs), zipped, refine)
 
 
 def _kind(table: object, where: str) -> Kind:
@@ -207,16 +143,30 @@ def _kind(table: object, where: str) -> Kind:
 
 
 def _allows(spec: Kind, key: str) -> bool:
-    return {"carry": spec.carry, "needs": spec.needs, "vary": spec.vary != "none", "params": bool(spec.parameters)}.get(
-        key, True
-    )
+    grid = spec.vary == "grid"
+    allowed = {"carry": spec.carry, "needs": spec.needs, "vary": spec.vary != "none", "params": bool(spec.parameters)}
+    return {**allowed, "zip": grid, "refine": grid}.get(key, True)
 
 
-def _axes(form: object, spec: Kind, where: str) -> tuple[Axis, ...]:
+def _axes(form: object, spec: Kind, where: str, zipped: Iterable[str]) -> tuple[Axis, ...]:
     table = _table(form, f"{where}.vary")
     _known(table, spec.parameters, f"{where}.vary")
     interval = spec.vary == "range"
-    return tuple(read_axis(name, value, f"{where}.vary.{name}", interval=interval) for name, value in table.items())
+    return tuple(
+        read_axis(name, value, f"{where}.vary.{name}", interval=interval, zipped=name in zipped)
+        for name, value in table.items()
+    )
+
+
+def _check_zipped(zipped: tuple[tuple[str, ...], ...], axes: tuple[Axis, ...], where: str) -> None:
+    counts = {axis.name: axis.count for axis in axes}
+    for names in zipped:
+        if len({counts[name] for name in names}) > 1:
+            said = ", ".join(f"{name} has {counts[name]}" for name in names)
+            raise DeclarationError(f"{where}.zip: axes that run together need equally many values: {said}")
+        rows = list(zip(*(axis.values() for axis in axes if axis.name in names), strict=True))
+        if len(set(rows)) < len(rows):
+            raise DeclarationError(f"{where}.zip: {', '.join(names)} take the same values twice; each point is once")
 
 
 def _params(
@@ -242,26 +192,6 @@ def _params(
     return params
 
 
-def _carry(form: object, axes: tuple[Axis, ...], where: str) -> Carry:
-    table = {"axis": form} if isinstance(form, str) else _table(form, where)
-    _known(table, ("axis", "direction", "start"), where)
-    names = [axis.name for axis in axes]
-    axis = table.get("axis")
-    if axis not in names:
-        raise DeclarationError(f"{where}: axis {axis!r} is not varied: {nearest(str(axis), names)}")
-    direction = table.get("direction", "up")
-    if direction not in ("up", "down"):
-        raise DeclarationError(f"{where}.direction is {direction!r}; allowed: up, down")
-    if "start" not in table:
-        return Carry(axis, direction)
-    start = _table(table["start"], f"{where}.start")
-    _known(start, ("at", "from"), f"{where}.start")
-    stage = _text(start.get("from"), f"{where}.start.from")
-    at = _table(start.get("at", {}), f"{where}.start.at")
-    values = {name: float(exact(value, f"{where}.start.at.{name}")) for name, value in at.items()}
-    return Carry(axis, direction, stage, tuple(sorted(values.items())))
-
-
 def _check_needs(stage: Stage, stages: Mapping[str, Stage], where: str) -> None:
     for need in stage.needs:
         if need not in stages:
@@ -273,10 +203,11 @@ def _check_needs(stage: Stage, stages: Mapping[str, Stage], where: str) -> None:
     fit = [name for name, each in stages.items() if each.kind.tables == stage.kind.tables and name != stage.name]
     if source is None or source.kind.tables[:1] != stage.kind.tables[:1]:
         raise DeclarationError(f"{where}.carry.start.from: {stage.carry.stage!r}: {nearest(stage.carry.stage, fit)}")
-    varied = {axis.name: axis.values() for axis in source.axes}
+    from vines.pipeline._grid import Grid
+
     at = dict(stage.carry.at)
-    if set(at) != set(varied) or any(value not in varied[name] for name, value in at.items()):
-        axes = ", ".join(varied) or "nothing"
+    if not Grid(source).has(at):
+        axes = ", ".join(axis.name for axis in source.axes) or "nothing"
         text = f"no point of stage {source.name!r}, which varies {axes}; name one value of each"
         raise DeclarationError(f"{where}.carry.start.at: {at} is {text}")
 

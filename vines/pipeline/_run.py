@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import Any
+from typing import TYPE_CHECKING, Any, Literal
 
 from vines.errors import SchemaError
 from vines.pipeline._declaration import Pipeline
 from vines.pipeline._events import Event, Report, RunSummary, StageOutcome, silent
 from vines.pipeline._plan import Planner, Prepared, StagePlan
 from vines.store import Store
+
+if TYPE_CHECKING:
+    from vines.pipeline._engine import Engine
+    from vines.pipeline._shard import Shard
 
 __all__ = ["run_pipeline"]
 
@@ -20,6 +24,10 @@ def run_pipeline(
     *,
     stages: Iterable[str] | None = None,
     jobs: int | None = None,
+    engine: Literal["local", "dask"] = "local",
+    scheduler: str | None = None,
+    shard: Shard | None = None,
+    merge: bool = False,
     force: bool = False,
     retry_failed: bool = False,
     report: Report = silent,
@@ -38,6 +46,15 @@ def run_pipeline(
         Only these stages and what they need.
     jobs : int, optional
         Processes for the points; all cores if left out. Small work stays in this process.
+    engine : {"local", "dask"}
+        Who computes the points.
+    scheduler : str, optional
+        Address of a dask scheduler; without one dask gets a cluster of its own on this machine.
+    shard : Shard, optional
+        Compute this share of the points and nothing else: no result is put together. Several shards may run at the same
+        time.
+    merge : bool
+        Put results together from points that shards computed; compute no point.
     force : bool
         Compute the named stages (all if none are named) again, whether or not they are there.
     retry_failed : bool
@@ -57,12 +74,17 @@ def run_pipeline(
     FileMissingError
         If a file that a stage needs is missing.
     StoreError
-        If the store is damaged.
+        If the store is damaged, or workers die again and again.
+    EngineError
+        If dask is missing, or its scheduler is gone.
     """
     named = None if stages is None else tuple(stages)
     order = pipeline.select(named)
     planner = Planner(pipeline, store)
     plans = [planner.plan(name) for name in order]
+    if shard is not None:
+        crew = _crew(engine, scheduler, jobs)
+        return _share(planner.afresh(), order, shard, crew, retry_failed=retry_failed, report=report)
     gone = [name for name in planner.pins if name not in pipeline.stages]
     if not (force or gone) and all(_settled(each, retry_failed) for each in plans):
         planner.code.save()
@@ -71,24 +93,65 @@ def run_pipeline(
         return RunSummary(pipeline.name, tuple(_kept(each) for each in plans))
     with store.writing(lambda: report(Event("waiting"))):
         # another process may have done some of it meanwhile
-        run = _Run(planner.afresh(), jobs, retry_failed, report)
+        run = _Run(planner.afresh(), _crew(engine, scheduler, jobs), retry_failed, merge, report)
         forced = set(order if named is None else named) if force else set()
-        for name in order:
-            run.stage(name, force=name in forced)
+        with run.engine:
+            for name in order:
+                run.stage(name, force=name in forced)
         run.planner.code.save()
         if gone:
             store.unpin(pipeline.name, gone)
     return RunSummary(pipeline.name, tuple(run.outcomes.values()))
 
 
+def _crew(engine: str, scheduler: str | None, jobs: int | None) -> Engine:
+    from vines.pipeline._engine import Engine, Processes, cores
+
+    count = jobs if jobs is not None else cores()
+    if engine == "local":
+        return Engine(Processes(count))
+    from vines.pipeline._dask import Dask
+
+    return Engine(Dask(scheduler, count))
+
+
+def _share(
+    planner: Planner, order: Iterable[str], shard: Shard, engine: Engine, *, retry_failed: bool, report: Report
+) -> RunSummary:
+    """Compute one share of the points of each stage. Without the lock: parts of pools stand in nobody's way."""
+    from vines.pipeline._sweep import Sweep
+
+    outcomes = []
+    with engine:
+        for name in order:
+            each = planner.plan(name)
+            prepared = planner.prepare(name)
+            if prepared.stage.kind.shape == "whole" or _settled(each, retry_failed):
+                continue
+            sweep = Sweep(prepared, planner.store, engine, report, retry_failed=retry_failed, shard=shard)
+            if not sweep.has_start():
+                reason = "the point that it starts from belongs to another shard; run the shards once more"
+                report(Event("skipped", name, text=reason))
+                outcomes.append(StageOutcome(name, "skipped", reason=reason))
+                continue
+            report(_event("started", each, f"shard {shard}; {each.reason}"))
+            failed = sweep.compute()
+            wanted = sweep.new
+            report(Event("done", name, wanted, wanted, failed))
+            outcomes.append(StageOutcome(name, "computed", wanted, sweep.new, failed, reason=each.reason))
+    planner.code.save()
+    return RunSummary(planner.pipeline.name, tuple(outcomes))
+
+
 class _Run:
     """One run, stage by stage."""
 
-    def __init__(self, planner: Planner, jobs: int | None, retry_failed: bool, report: Report) -> None:
+    def __init__(self, planner: Planner, engine: Engine, retry_failed: bool, merge: bool, report: Report) -> None:
         self.pipeline = planner.pipeline
         self.store = planner.store
-        self.jobs = jobs
+        self.engine = engine
         self.retry_failed = retry_failed
+        self.merge = merge
         self.report = report
         self.planner = planner
         self.outcomes: dict[str, StageOutcome] = {}
@@ -118,7 +181,8 @@ class _Run:
             self.store.pin(self.pipeline.name, name, _pin(prepared, outcome))
         self.outcomes[name] = outcome
         what = "failed" if outcome.state == "failed" else "done"
-        self.report(Event(what, name, outcome.wanted, outcome.wanted, outcome.failed, text=outcome.reason))
+        text = outcome.reason if outcome.state == "failed" else outcome.remark
+        self.report(Event(what, name, outcome.wanted, outcome.wanted, outcome.failed, text=text))
 
     def _whole(self, prepared: Prepared, each: StagePlan, *, force: bool) -> StageOutcome:
         from vines.pipeline._whole import compute_whole
@@ -131,17 +195,34 @@ class _Run:
         return StageOutcome(each.name, "computed", 1, 1, 0, each.key, each.reason)
 
     def _points(self, prepared: Prepared, each: StagePlan, *, force: bool) -> StageOutcome:
-        from vines.pipeline._sweep import compute_points, put_together
+        from vines.pipeline._gather import put_together
+        from vines.pipeline._sweep import Sweep
 
+        sweep = Sweep(prepared, self.store, self.engine, self.report, force=force, retry_failed=self.retry_failed)
         try:
-            new = compute_points(
-                prepared, self.store, jobs=self.jobs, force=force, retry_failed=self.retry_failed, report=self.report
-            )
+            if self.merge:
+                sweep.look()
+            else:
+                sweep.compute()
         except (SchemaError, ImportError) as error:  # a mistake in the kind, not in a point: the other stages go on
             reason = f"{type(error).__name__}: {error}"
             return StageOutcome(each.name, "failed", each.wanted, reason=reason)
-        key, failed = put_together(prepared, self.store, replace=force)
-        return StageOutcome(each.name, "computed", each.wanted, new, failed, key, each.reason)
+        if sweep.left:
+            count = f"{sweep.left} of {len(sweep.grid)} points are missing"
+            reason = f"{count}; run the shards again, or 'vines run {self.pipeline.name}' computes them here"
+            return StageOutcome(each.name, "failed", len(sweep.grid), reason=reason)
+        made = put_together(prepared, sweep.grid, self.store, replace=force, remark=sweep.remark)
+        return StageOutcome(
+            each.name,
+            "computed",
+            len(sweep.grid),
+            sweep.new,
+            made.failed,
+            made.key,
+            each.reason,
+            sweep.remark,
+            tuple(made.versions.items()),
+        )
 
 
 def _settled(each: StagePlan, retry_failed: bool) -> bool:
@@ -166,5 +247,6 @@ def _pin(prepared: Prepared, outcome: StageOutcome) -> dict[str, Any]:
         "points": outcome.wanted,
         "failed": outcome.failed,
         "ingredients": prepared.ingredients.form,
-        "versions": versions(),
+        "versions": dict(outcome.versions) or versions(),
+        "remark": outcome.remark,
     }

@@ -1,32 +1,33 @@
-"""Stages of the points shape: compute the points that the pool does not have, and put the result together."""
+"""Stages of the points shape: compute the points that the pool does not have, round by round if they are refined."""
 
 from __future__ import annotations
 
-import os
-import shutil
-from collections import deque
+from dataclasses import dataclass, field
 from functools import partial
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from vines import schema
-from vines.pipeline._engine import compute_all, cores
+import numpy as np
+
+from vines.pipeline._engine import Engine
 from vines.pipeline._events import Event, Report
+from vines.pipeline._grid import Grid
+from vines.pipeline._jobs import Points
 from vines.pipeline._plan import Prepared
 from vines.pipeline._work import Chunk, Work
 from vines.pipeline._worker import Done, Task
-from vines.store import Store, describe_table, write_parquet
+from vines.store import Ids, Store
 
 if TYPE_CHECKING:
+    from vines.pipeline._refined import Refined
+    from vines.pipeline._shard import Shard
     from vines.store import Pool
 
-__all__ = ["compute_points", "put_together"]
+__all__ = ["Sweep"]
 
 
-def compute_points(
-    prepared: Prepared, store: Store, *, jobs: int | None, force: bool, retry_failed: bool, report: Report
-) -> int:
-    """Compute the points of a stage that are not in its pool and return how many that were.
+@dataclass
+class Sweep:
+    """One stage while its points are computed.
 
     Parameters
     ----------
@@ -34,173 +35,187 @@ def compute_points(
         The stage.
     store : Store
         Where its pool is.
-    jobs : int or None
-        How many processes there may be; all cores if None.
-    force : bool
-        Compute all of them again.
-    retry_failed : bool
-        Compute those again that failed.
+    engine : Engine
+        Computes chunks.
     report : callable
         Told of each chunk that is stored.
-    """
-    stage, grid = prepared.stage, prepared.grid
-    pool = store.pool(prepared.pool_key)
-    pool.describe(prepared.ingredients.form)
-    there = {} if force else pool.computed()
-    tried = {} if force or retry_failed else pool.failed()
-    work = _work(prepared, store, pool, set(there) | set(tried), set(tried))
-    total = len(grid.ids)
-    new = work.left
-    done_before = total - new
-    failed = sum(point in tried for point in grid.ids)
-    numbers = iter(range(pool.next_number(), 10**8))
-    provenance = prepared.ingredients.provenance(prepared.pool_key)
+    force, retry_failed : bool
+        Compute all points again, or those that failed.
+    shard : Shard or None
+        Compute this share only.
 
-    def make(chunk: Chunk) -> Task:
+    Attributes
+    ----------
+    grid : Grid or Refined
+        All points that are wanted as far as that is known.
+    new : int
+        How many points were computed.
+    left : int
+        How many points of the grid are not there in the end; only other shards leave any.
+    remark : str
+        Why the refinement ended before its tolerance; empty if it did not.
+    """
+
+    prepared: Prepared
+    store: Store
+    engine: Engine
+    report: Report
+    force: bool = False
+    retry_failed: bool = False
+    shard: Shard | None = None
+    new: int = 0
+    left: int = 0
+    remark: str = ""
+    _done: int = 0
+    _failed: int = 0
+    _numbers: Any = field(default=None)
+
+    def __post_init__(self) -> None:
+        self.grid: Grid | Refined = self.prepared.grid
+        self.pool: Pool = self.store.pool(self.prepared.pool_key)
+        self._numbers = iter(range(self.pool.next_number(), 10**8))
+        self._provenance = self.prepared.ingredients.provenance(self.prepared.pool_key)
+
+    def compute(self) -> int:
+        """Compute what is missing, with a refinement until no round adds a point; return how many points failed."""
+        rule = self.prepared.stage.refine
+        self.pool.describe(self.prepared.ingredients.form)
+        settled: Ids | None = None
+        while True:
+            self._round(settled)
+            if self.left or rule is None:
+                return self._failed
+            from vines.pipeline._refined import refine
+
+            settled = self.grid.ids
+            grid, self.remark = refine(self.grid, self.pool)
+            if grid is self.grid:
+                return self._failed
+            self.grid = grid
+
+    def look(self) -> None:
+        """Find out what is missing, as :meth:`compute` does, but compute nothing."""
+        from vines.pipeline._refined import refine
+
+        while True:
+            located = self.pool.locate(self.grid.ids)
+            self.left = int((located.part < 0).sum())
+            if self.left or self.prepared.stage.refine is None:
+                return
+            grid, self.remark = refine(self.grid, self.pool)
+            if grid is self.grid:
+                return
+            self.grid = grid
+
+    def has_start(self) -> bool:
+        """Whether the point of another stage that its chains start from is there, if there is such a point."""
+        if not self.prepared.origin:
+            return True
+        key, _, identity = self.prepared.origin.partition("/")
+        found = self.store.pool(key).locate(Ids.of([point_id(identity)]))
+        return bool(found.part[0] >= 0)
+
+    def _round(self, settled: Ids | None) -> None:
+        """Compute the points of the grid that are missing, those of earlier rounds apart."""
+        ids = self.grid.ids
+        located = self.pool.locate(ids)
+        open_ends = located.part < 0
+        if self.retry_failed:
+            open_ends |= located.failed
+        if self.force:
+            open_ends[:] = True
+        if settled is not None:
+            open_ends &= settled.locate(ids) < 0
+        mine = self._mine()
+        self._failed = int((located.failed & ~open_ends).sum())
+        self._done = len(ids) - int(open_ends.sum())
+        work = self._work(open_ends & mine, open_ends, located.failed)
+        self.new += work.left
+        self.engine.compute(work, self._task, self._stored)
+        self.left = int((open_ends & ~mine).sum())
+        if self.left:  # another shard may have computed some of it meanwhile
+            self.left = int((self.pool.locate(ids).part < 0).sum())
+
+    def _mine(self) -> np.ndarray:
+        total = len(self.grid)
+        if self.shard is None:
+            return np.ones(total, dtype=bool)
+        if self.prepared.stage.carry is None:
+            return self.shard.mine(total)
+        mine = np.zeros(total, dtype=bool)
+        chains = self.grid.chains
+        for chain, own in zip(chains, self.shard.mine(len(chains)), strict=True):
+            mine[chain.places] = own
+        return mine
+
+    def _task(self, chunk: Chunk) -> Task:
+        stage = self.prepared.stage
+        grid = self.grid
         return Task(
-            number=next(numbers),
+            number=next(self._numbers),
             body=stage.kind.body,
             tables=stage.kind.tables,
             options=stage.options,
-            provenance=provenance,
-            points=tuple(grid.point(i) for i in chunk.places),
+            provenance=self._provenance,
+            points=Points(grid.fixed(), grid.columns(chunk.places), grid.ids.take(np.asarray(chunk.places))),
             carry=stage.carry.axis if stage.carry is not None else None,
             start=chunk.start,
             broken="a point before it in the carried chain failed" if chunk.broken else "",
-            data=store.data,
-            pool=pool.folder,
+            data=self.store.data,
+            pool=self.pool.folder,
         )
 
-    count = {"done": done_before, "failed": failed}
+    def _stored(self, done: Done, processes: int) -> None:
+        self._done += done.points
+        self._failed += len(done.failed)
+        self.report(
+            Event("progress", self.prepared.stage.name, len(self.grid), self._done, self._failed, processes, done.why)
+        )
 
-    def stored(done: Done, processes: int) -> None:
-        count["done"] += done.points
-        count["failed"] += len(done.failed)
-        report(Event("progress", stage.name, total, count["done"], count["failed"], processes))
+    def _work(self, wanted: np.ndarray, absent: np.ndarray, failed: np.ndarray) -> Work:
+        if self.prepared.stage.carry is None:
+            everything = wanted.all()
+            return Work(free=range(len(wanted)) if everything else np.flatnonzero(wanted).astype(np.int32))  # type: ignore
+        work = Work()
+        for chain in self.grid.chains:
+            self._add_chain(work, chain.places, chain.start, wanted, failed & ~absent)
+        return work
 
-    compute_all(work, make, stored, max(1, jobs if jobs is not None else cores()))
-    return new
+    def _add_chain(self, work: Work, places: Any, first: str, wanted: np.ndarray, failed: np.ndarray) -> None:
+        """Add the stretches of a chain that are wanted, each with the row that it starts from."""
+        primary = self.prepared.stage.kind.tables[0]
+        before, stretch, start = -1, [], -1
+        for place in [*places, -1]:
+            if place >= 0 and wanted[place]:
+                start = start if stretch else before
+                stretch.append(place)
+            elif stretch:
+                if start >= 0:
+                    row = partial(self.pool.row, primary, self.grid.ids.take([start]).text())
+                    work.add_chain(stretch, row, broken=bool(failed[start]))
+                elif first:
+                    broken = bool(self.pool.locate(Ids.of([first])).failed[0])
+                    work.add_chain(stretch, partial(self.pool.row, primary, first), broken=broken)
+                else:
+                    work.add_chain(stretch, self._origin_row, broken=False)
+                stretch = []
+            before = place
 
-
-def put_together(prepared: Prepared, store: Store, *, replace: bool) -> tuple[str, int]:
-    """Make the result of a stage from its pool; return its key and how many of its points failed.
-
-    The rows are sorted by the values of the axes, so that the bytes don't depend on who computed which point when.
-
-    Parameters
-    ----------
-    prepared : Prepared
-        The stage; all its points are in the pool.
-    store : Store
-        Where it goes.
-    replace : bool
-        Whether to replace a result of the same key.
-    """
-    stage, grid = prepared.stage, prepared.grid
-    pool = store.pool(prepared.pool_key)
-    holders = {**pool.failed(), **pool.computed()}
-    computed = pool.computed()
-    failed = [point for point in grid.ids if point not in computed]
-    key = prepared.result_key(failed)
-    if store.has(key) and not replace:
-        return key, len(failed)
-    provenance = prepared.ingredients.provenance(key)
-    with store.staging() as place:
-        folder = place / "result"
-        folder.mkdir()
-        about = {}
-        names: dict[str, Any] = {}
-        for name in stage.kind.tables:
-            rows = pool.gather(name, grid.ids)
-            sorted_by = _sorted_by(prepared, name)
-            count = write_parquet(folder / f"{name}.parquet", name, rows, provenance=provenance, sorted_by=sorted_by)
-            about[name] = describe_table(name, count)
-            if stage.kind.logs and not names and "name" in rows.column_names:
-                ids = rows.column("point_id").to_pylist()
-                names = dict(zip(ids, rows.column("name").to_pylist(), strict=True))
-        logs = []
-        for i, point in enumerate(grid.ids):
-            log = holders[point].logs.get(point)
-            if log is not None:
-                _link(holders[point].folder / log, folder / "logs" / log)
-                params = grid.point(i).params
-                logs.append({"point_id": point, "file": f"logs/{log}", "params": params, "name": names.get(point)})
-        manifest = {
-            "kind": stage.kind.name,
-            "ingredients": prepared.ingredients.form,
-            "provenance": provenance,
-            "pool": prepared.pool_key,
-            "points": len(grid.ids),
-            "failed": len(failed),
-            "tables": about,
-            "logs": logs,
-        }
-        store.commit(key, folder, manifest, replace=replace)
-    return key, len(failed)
+    def _origin_row(self) -> dict[str, Any] | None:
+        """Return the row of the point of another stage that starts the chains."""
+        if not self.prepared.origin:
+            return None
+        key, _, identity = self.prepared.origin.partition("/")
+        return self.store.pool(key).row(self.prepared.stage.kind.tables[0], point_id(identity))
 
 
-def _work(prepared: Prepared, store: Store, pool: Pool, there: set[str], failed: set[str]) -> Work:
-    grid = prepared.grid
-    if prepared.stage.carry is None:
-        return Work(free=deque(i for i, point in enumerate(grid.ids) if point not in there))
-    work = Work()
-    primary = prepared.stage.kind.tables[0]
-    origin = partial(_origin_row, prepared, store, primary)
-    for chain in grid.chains:
-        segment: list[int] = []
-        before: int | None = None
-        start: int | None = None
-        for i in chain:
-            if grid.ids[i] not in there:
-                if not segment:
-                    start = before
-                segment.append(i)
-            elif segment:
-                _add(work, segment, start, grid.ids, pool, primary, origin, failed)
-                segment = []
-            before = i
-        if segment:
-            _add(work, segment, start, grid.ids, pool, primary, origin, failed)
-    return work
+def point_id(identity: str) -> str:
+    """Return the id of a point that is named by its id or by its values, see :meth:`Grid.identity`."""
+    if not identity.startswith("{"):
+        return identity
+    import json
 
+    from vines.pipeline._identity import free_ids
 
-def _add(
-    work: Work,
-    segment: list[int],
-    start: int | None,
-    ids: list[str],
-    pool: Pool,
-    primary: str,
-    origin: Any,
-    failed: set[str],
-) -> None:
-    if start is None:
-        work.add_chain(segment, origin, broken=False)
-    else:
-        work.add_chain(segment, partial(pool.row, primary, ids[start]), broken=ids[start] in failed)
-
-
-def _origin_row(prepared: Prepared, store: Store, primary: str) -> dict[str, Any] | None:
-    if not prepared.origin:
-        return None
-    key, _, point = prepared.origin.partition("/")
-    return store.pool(key).row(primary, point)
-
-
-def _sorted_by(prepared: Prepared, name: str) -> list[str]:
-    columns = schema.table(name).names
-    found: list[str] = []
-    for axis in prepared.stage.axes:
-        if axis.name not in columns:
-            break
-        found.append(axis.name)
-    return found
-
-
-def _link(source: Path, target: Path) -> None:
-    """Put a file into a second folder without a second copy of its bytes, where the file system can."""
-    target.parent.mkdir(exist_ok=True)
-    try:
-        os.link(source, target)
-    except OSError:
-        shutil.copyfile(source, target)
+    values = json.loads(identity)
+    return free_ids([np.array([values[name]]) for name in sorted(values)] or [np.zeros(1)]).text()

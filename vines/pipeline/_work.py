@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -11,6 +11,8 @@ __all__ = ["Chunk", "Pace", "Work"]
 
 TARGET_SECONDS = 2.0
 """How long a chunk should take: an interruption costs no more, and storing a part costs some hundredths of it."""
+MOST_POINTS = 2**15
+"""More points than that are not computed in one call, however quick they are: their rows have to fit into memory."""
 _GROWTH = 8
 
 
@@ -22,7 +24,7 @@ class Chunk:
     predecessor failed.
     """
 
-    places: tuple[int, ...]
+    places: Sequence[int]
     chain: int = -1
     start: dict[str, Any] | None = None
     broken: bool = False
@@ -43,14 +45,16 @@ class Work:
 
     Attributes
     ----------
-    free : deque of int
-        Points that depend on no other.
+    free : sequence of int
+        Places of points that depend on no other, a range or an array.
     chains : dict of int to _Chain
         Carried chains that no chunk is being computed of.
     """
 
-    free: deque[int] = field(default_factory=deque)
+    free: Sequence[int] = ()
     chains: dict[int, _Chain] = field(default_factory=dict)
+    _taken: int = 0
+    _returned: list[Sequence[int]] = field(default_factory=list)
     _away: dict[int, _Chain] = field(default_factory=dict)
 
     def add_chain(self, places: list[int], start: Callable[[], dict[str, Any] | None], *, broken: bool) -> None:
@@ -71,30 +75,40 @@ class Work:
     def left(self) -> int:
         """How many points nobody has taken yet."""
         chains = [*self.chains.values(), *self._away.values()]
-        return len(self.free) + sum(len(chain.places) for chain in chains)
+        return self._free + sum(len(chain.places) for chain in chains)
+
+    @property
+    def _free(self) -> int:
+        return len(self.free) - self._taken + sum(map(len, self._returned))
 
     @property
     def width(self) -> int:
         """How many chunks could be computed at the same time."""
-        return len(self.free) + len(self.chains) + len(self._away)
+        return self._free + len(self.chains) + len(self._away)
 
     def take(self, size: int) -> Chunk | None:
         """Return the next chunk of at most so many points; ``None`` if nothing can be taken now."""
-        if self.free:
-            return Chunk(tuple(self.free.popleft() for _ in range(min(size, len(self.free)))))
+        if self._returned:
+            places = self._returned.pop()
+            if len(places) > size:
+                self._returned.append(places[size:])
+            return Chunk(places[:size])
+        if self._taken < len(self.free):
+            start, self._taken = self._taken, min(self._taken + size, len(self.free))
+            return Chunk(self.free[start : self._taken])
         if not self.chains:
             return None
         number, chain = next(iter(self.chains.items()))
         del self.chains[number]
         self._away[number] = chain
-        start = None if chain.broken else chain.start()
+        start_row = None if chain.broken else chain.start()
         taken = tuple(chain.places.popleft() for _ in range(min(size, len(chain.places))))
-        return Chunk(taken, number, start, chain.broken)
+        return Chunk(taken, number, start_row, chain.broken)
 
     def give_back(self, chunk: Chunk) -> None:
         """Take back a chunk that was lost with its process."""
         if chunk.chain < 0:
-            self.free.extendleft(reversed(chunk.places))
+            self._returned.append(chunk.places)
             return
         chain = self._away.pop(chunk.chain)
         chain.places.extendleft(reversed(chunk.places))
@@ -123,7 +137,7 @@ class Pace:
         self.seconds_a_point = rate if self.chunks < 2 else 0.5 * (self.seconds_a_point + rate)
         self.chunks += 1
         right = TARGET_SECONDS / max(self.seconds_a_point, 1e-9)
-        self.size = max(1, int(min(right, _GROWTH * max(self.size, points))))
+        self.size = max(1, min(int(right), _GROWTH * max(self.size, points), MOST_POINTS))
 
     def seconds_for(self, points: int) -> float:
         """Return how long so many points would take one process; 0 while that is not known."""

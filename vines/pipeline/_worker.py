@@ -7,21 +7,21 @@ from __future__ import annotations
 
 import importlib
 import time
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from vines import schema
 from vines.errors import SchemaError
-from vines.pipeline._jobs import Batch, Job, Point
+from vines.pipeline._jobs import Batch, Job, Point, Points
 from vines.store import Store, commit_part
 
 if TYPE_CHECKING:
     import msgspec
     import pyarrow as pa
 
-__all__ = ["Done", "Task", "body_of", "compute_task", "prepare_worker"]
+__all__ = ["Done", "Task", "body_of", "compute_apart", "compute_task", "one_thread", "prepare_worker"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,7 +34,7 @@ class Task:
         Number of the part that it will be.
     body, tables, options, provenance
         As in :class:`Kind` and :class:`Job`.
-    points : tuple of Point
+    points : Points
         The points, in the order of the chain if carried.
     carry : str or None
         The carried axis.
@@ -53,7 +53,7 @@ class Task:
     tables: tuple[str, ...]
     options: msgspec.Struct
     provenance: dict[str, Any]
-    points: tuple[Point, ...]
+    points: Points
     carry: str | None
     start: dict[str, Any] | None
     broken: str
@@ -63,13 +63,28 @@ class Task:
 
 @dataclass(frozen=True, slots=True)
 class Done:
-    """What became of a task: how many points, which failed, how long it took, and the last row if carried."""
+    """What became of a task.
+
+    Attributes
+    ----------
+    number, points : int
+        Number of the part, and how many points it has.
+    failed : tuple of str
+        Those that failed.
+    seconds : float
+        How long it took.
+    last : dict or None
+        The last row if carried and not failed.
+    why : str
+        Why the first of those that failed did; empty if none did.
+    """
 
     number: int
     points: int
     failed: tuple[str, ...]
     seconds: float
     last: dict[str, Any] | None
+    why: str = ""
 
 
 @dataclass
@@ -79,6 +94,14 @@ class _Gathered:
     tables: dict[str, list[pa.Table]]
     logs: dict[str, str] = field(default_factory=dict)
     failed: dict[str, str] = field(default_factory=dict)
+
+
+def one_thread() -> None:
+    """See that numba and the libraries under numpy use one thread in this process, if they are not loaded yet."""
+    import os
+
+    for name in ("NUMBA", "OMP", "OPENBLAS", "MKL"):
+        os.environ[f"{name}_NUM_THREADS"] = "1"
 
 
 def prepare_worker(parent: int) -> None:
@@ -93,7 +116,7 @@ def prepare_worker(parent: int) -> None:
     import signal
     import threading
 
-    os.environ["NUMBA_NUM_THREADS"] = "1"
+    one_thread()
     signal.signal(signal.SIGINT, signal.SIG_IGN)
 
     def watch() -> None:
@@ -133,21 +156,35 @@ def compute_task(task: Task) -> Done:
         import pyarrow as pa
 
         tables = {name: pa.concat_tables(pieces) for name, pieces in gathered.tables.items()}
-        ids = [point.id for point in task.points]
-        commit_part(task.pool, part, task.number, tables, ids=ids, failed=gathered.failed, logs=gathered.logs)
+        failed = gathered.failed
+        commit_part(task.pool, part, task.number, tables, ids=task.points.key, failed=failed, logs=gathered.logs)
     last = None
-    if task.carry is not None and ids[-1] not in gathered.failed:
-        last = _row_of(tables[task.tables[0]], ids[-1])
-    return Done(task.number, len(ids), tuple(gathered.failed), time.perf_counter() - began, last)
+    if task.carry is not None and task.points.key.take([-1]).text() not in failed:
+        last = _last_row(tables[task.tables[0]])
+    why = next(iter(failed.values()), "")
+    return Done(task.number, len(task.points), tuple(failed), time.perf_counter() - began, last, why)
+
+
+def compute_apart(task: Task) -> Done:
+    """Compute a chunk in a process that others started: with one thread, and kernels kept beside the results."""
+    import os
+    import sys
+
+    os.environ.setdefault("VINES_DATA", str(task.data))
+    if "numba" in sys.modules:
+        sys.modules["numba"].set_num_threads(1)
+    else:
+        one_thread()
+    return compute_task(task)
 
 
 def _attempt(
-    task: Task, points: Sequence[Point], start: dict[str, Any] | None, part: Path, gathered: _Gathered
+    task: Task, points: Points, start: dict[str, Any] | None, part: Path, gathered: _Gathered
 ) -> dict[str, Any] | None:
     """Compute points, by halves where that fails; return the last row if they are carried and none failed."""
     folder = part.parent / f"work-{points[0].id}-{len(points)}"
     folder.mkdir()
-    job = Job(task.options, tuple(points), task.carry, start, folder, task.provenance)
+    job = Job(task.options, points, task.carry, start, folder, task.provenance)
     compute = body_of(task.body)  # that it cannot be imported is no property of a point
     try:
         batch = compute(job)
@@ -168,31 +205,42 @@ def _attempt(
         kept = f"{point}{Path(name).suffix}"
         (folder / name).rename(part / kept)
         gathered.logs[point] = kept
-    return _row_of(tables[task.tables[0]], points[-1].id) if task.carry is not None else None
+    return _last_row(tables[task.tables[0]]) if task.carry is not None else None
 
 
-def _check(task: Task, points: Sequence[Point], batch: Batch) -> dict[str, pa.Table]:
-    """Cast the tables of a batch and see that they are those of its points."""
-    ids = [point.id for point in points]
+def _check(task: Task, points: Points, batch: Batch) -> dict[str, pa.Table]:
+    """Cast the tables of a batch and see that they are those of its points; the primary one in their order."""
+    import pyarrow.compute
+
+    pc: Any = pyarrow.compute
+    ids = points.key.arrow()
     unknown = set(batch.tables) - set(task.tables)
     if unknown:
         raise SchemaError(f"{task.body}: returned table {min(unknown)!r}, which its kind does not name")
     tables = {name: schema.cast(name, batch.tables.get(name, ())) for name in task.tables}
     primary = task.tables[0]
-    if sorted(tables[primary].column("point_id").to_pylist()) != sorted(ids):
-        raise SchemaError(f"{task.body}: table {primary!r} needs exactly one row for each of its {len(ids)} points")
+    given: Any = tables[primary].column("point_id").combine_chunks()
+    if not given.equals(ids):
+        order = pc.index_in(ids, given)
+        if len(given) != len(ids) or order.null_count:
+            text = f"needs exactly one row for each of its {len(ids)} points"
+            raise SchemaError(f"{task.body}: table {primary!r} {text}")
+        tables[primary] = tables[primary].take(order)
     for name, table in tables.items():
-        strange = set(table.column("point_id").unique().to_pylist()) - set(ids)
-        if strange:
-            raise SchemaError(f"{task.body}: table {name!r} has rows of point {min(strange)}, which was not asked for")
-    if set(batch.logs) - set(ids):
-        raise SchemaError(f"{task.body}: a log of point {min(set(batch.logs) - set(ids))}, which was not asked for")
+        known = pc.is_in(table.column("point_id"), ids)
+        if not pc.all(known).as_py() and table.num_rows:
+            strange = table.filter(pc.invert(known)).column("point_id")[0]
+            raise SchemaError(f"{task.body}: table {name!r} has rows of point {strange}, which was not asked for")
+    strangers = set(batch.logs) - set(points.ids) if batch.logs else ()
+    if strangers:
+        raise SchemaError(f"{task.body}: a log of point {min(strangers)}, which was not asked for")
     return tables
 
 
-def _fail(task: Task, points: Sequence[Point], reason: str, gathered: _Gathered) -> None:
+def _fail(task: Task, points: Iterable[Point], reason: str, gathered: _Gathered) -> None:
     primary = task.tables[0]
     columns = schema.table(primary).names
+    points = list(points)
     rows = [_failed_row(point, task.carry, reason, columns) for point in points]
     gathered.tables[primary].append(schema.cast(primary, rows))
     for name in task.tables[1:]:
@@ -205,9 +253,8 @@ def _failed_row(point: Point, carry: str | None, reason: str, columns: Sequence[
     return {name: value for name, value in row.items() if name in columns}
 
 
-def _row_of(table: pa.Table, point: str) -> dict[str, Any]:
-    place = table.column("point_id").to_pylist().index(point)
-    return table.slice(place, 1).to_pylist()[0]
+def _last_row(table: pa.Table) -> dict[str, Any]:
+    return table.slice(table.num_rows - 1).to_pylist()[0]
 
 
 def _say(error: Exception) -> str:

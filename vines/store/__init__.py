@@ -8,21 +8,30 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from vines.store._atomic import write_text
+    from vines.store._garbage import Garbage, find_garbage, remove_garbage
+    from vines.store._ids import Ids
     from vines.store._keys import canonical, key_of
-    from vines.store._parquet import write_parquet
-    from vines.store._pools import Pool, commit_part
+    from vines.store._parquet import TableFile, write_parquet
+    from vines.store._pools import Located, Part, Pool, commit_part
     from vines.store._provenance import revision, versions
     from vines.store._results import Result, describe_table
     from vines.store._store import Store
 
 __all__ = [
+    "Garbage",
+    "Ids",
+    "Located",
+    "Part",
     "Pool",
     "Result",
     "Store",
+    "TableFile",
     "canonical",
     "commit_part",
     "describe_table",
+    "find_garbage",
     "key_of",
+    "remove_garbage",
     "revision",
     "versions",
     "write_parquet",
@@ -30,13 +39,20 @@ __all__ = [
 ]
 
 _HOMES = {
+    "Garbage": "vines.store._garbage",
+    "Ids": "vines.store._ids",
+    "Located": "vines.store._pools",
+    "Part": "vines.store._pools",
     "Pool": "vines.store._pools",
     "Result": "vines.store._results",
     "Store": "vines.store._store",
+    "TableFile": "vines.store._parquet",
     "canonical": "vines.store._keys",
     "commit_part": "vines.store._pools",
     "describe_table": "vines.store._results",
+    "find_garbage": "vines.store._garbage",
     "key_of": "vines.store._keys",
+    "remove_garbage": "vines.store._garbage",
     "revision": "vines.store._provenance",
     "versions": "vines.store._provenance",
     "write_parquet": "vines.store._parquet",

@@ -2,14 +2,11 @@
 
 from __future__ import annotations
 
-import contextlib
 import os
-import shutil
 import uuid
-from collections.abc import Iterator
 from pathlib import Path
 
-__all__ = ["commit_folder", "staging", "sync_file", "write_text"]
+__all__ = ["commit_folder", "sync_file", "write_text"]
 
 
 def sync_file(path: Path) -> None:
@@ -35,17 +32,6 @@ def write_text(path: Path, text: str) -> None:
         temporary.unlink(missing_ok=True)
         raise
     sync_file(path.parent)
-
-
-@contextlib.contextmanager
-def staging(folder: Path) -> Iterator[Path]:
-    """Give an empty folder below `folder`; what is left in it at the end is removed."""
-    place = folder / uuid.uuid4().hex
-    place.mkdir(parents=True)
-    try:
-        yield place
-    finally:
-        shutil.rmtree(place, ignore_errors=True)
 
 
 def commit_folder(source: Path, target: Path) -> bool:

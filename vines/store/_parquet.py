@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
+from types import TracebackType
 from typing import TYPE_CHECKING, Any
 
 from vines import schema
@@ -12,10 +13,109 @@ from vines.store._keys import canonical
 if TYPE_CHECKING:
     import pyarrow as pa
 
-__all__ = ["ROW_GROUP", "write_parquet"]
+__all__ = ["ROW_GROUP", "TableFile", "write_parquet"]
 
 ROW_GROUP = 122_880
 """Rows in a row group: DuckDB's vector block, measured best for narrow queries (docs/tables.md)."""
+
+
+class TableFile:
+    """A Parquet file that grows piece by piece; its bytes do not depend on how the rows were cut into pieces.
+
+    Parameters
+    ----------
+    path : Path
+        File to write.
+    name : str
+        Table of ``schemas/``; what is added is cast to it.
+    provenance : mapping
+        Plain data for the schema metadata key ``vines``; nothing that differs from run to run.
+    sorted_by : sequence of str
+        Columns that the rows are sorted by, ascending, for readers that skip row groups.
+    columns : sequence of str, optional
+        Only these columns of the table.
+
+    Raises
+    ------
+    SchemaError
+        If rows do not fit the schema.
+    OSError
+        If the file cannot be written.
+    """
+
+    def __init__(
+        self,
+        path: Path,
+        name: str,
+        *,
+        provenance: Mapping[str, Any],
+        sorted_by: Sequence[str] = (),
+        columns: Sequence[str] | None = None,
+    ) -> None:
+        import pyarrow as pa
+        import pyarrow.parquet as pq
+
+        spec = schema.table(name)
+        about = {
+            "table": name,
+            "version": spec.version,
+            "units": {column.name: column.unit for column in spec.columns if column.unit},
+            "provenance": dict(provenance),
+        }
+        kept = [column for column in spec.columns if columns is None or column.name in columns]
+        floats: Any = [column.name for column in kept if column.dtype == "float64"]
+        floats += [f"{column.name}.list.element" for column in kept if column.dtype == "list<float64>"]
+        strings: Any = [column.name for column in kept if column.dtype == "string"]
+        form = schema.arrow_schema(name)
+        form = pa.schema([form.field(column.name) for column in kept], metadata={"vines": canonical(about)})
+        self.rows = 0
+        self._path = path
+        self._name = name
+        self._schema = form
+        self._waiting: list[pa.Table] = []
+        self._count = 0
+        self._writer = pq.ParquetWriter(
+            path,
+            form,
+            compression="zstd",
+            use_dictionary=strings,
+            use_byte_stream_split=floats,
+            sorting_columns=[pq.SortingColumn(form.get_field_index(column)) for column in sorted_by] or None,
+        )
+
+    def __enter__(self) -> TableFile:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        if kind is None:
+            self._write(self._count)
+        self._writer.close()
+
+    def add(self, data: pa.Table | Sequence[Mapping[str, Any]]) -> None:
+        """Add rows at the end; full row groups are written at once."""
+        table = schema.cast(self._name, data).select(self._schema.names)
+        self._waiting.append(table.replace_schema_metadata(self._schema.metadata))
+        self._count += table.num_rows
+        self.rows += table.num_rows
+        self._write(self._count - self._count % ROW_GROUP)
+
+    def _write(self, rows: int) -> None:
+        import pyarrow as pa
+
+        if not rows:
+            return
+        # one array a column: pages are cut the same whatever the pieces were
+        whole: Any = pa.concat_tables(self._waiting).combine_chunks()
+        self._waiting = [whole.slice(rows)]
+        self._count -= rows
+        try:
+            for start in range(0, rows, ROW_GROUP):
+                group = whole.slice(start, min(ROW_GROUP, rows - start)).combine_chunks()
+                self._writer.write_table(group, row_group_size=ROW_GROUP)
+        except pa.ArrowException as error:
+            raise OSError(f"{self._path}: {error}") from error
 
 
 def write_parquet(
@@ -25,6 +125,7 @@ def write_parquet(
     *,
     provenance: Mapping[str, Any],
     sorted_by: Sequence[str] = (),
+    sparse: bool = False,
 ) -> int:
     """Write rows of a table and return how many there are.
 
@@ -40,38 +141,21 @@ def write_parquet(
         Plain data for the schema metadata key ``vines``; nothing that differs from run to run.
     sorted_by : sequence of str
         Columns that the rows are sorted by, ascending, for readers that skip row groups.
+    sparse : bool
+        Leave out the columns that are empty throughout.
 
     Raises
     ------
     SchemaError
         If the data do not fit the schema.
+    OSError
+        If the file cannot be written.
     """
-    import pyarrow as pa
-    import pyarrow.parquet as pq
-
     table = schema.cast(name, data)
-    spec = schema.table(name)
-    about = {
-        "table": name,
-        "version": spec.version,
-        "units": {column.name: column.unit for column in spec.columns if column.unit},
-        "provenance": dict(provenance),
-    }
-    table = table.replace_schema_metadata({"vines": canonical(about)})
-    floats: Any = [column.name for column in spec.columns if column.dtype == "float64"]
-    floats += [f"{column.name}.list.element" for column in spec.columns if column.dtype == "list<float64>"]
-    strings: Any = [column.name for column in spec.columns if column.dtype == "string"]
-    sorting = [pq.SortingColumn(table.column_names.index(column)) for column in sorted_by]
-    try:
-        pq.write_table(
-            table,
-            path,
-            compression="zstd",
-            row_group_size=ROW_GROUP,
-            use_dictionary=strings,
-            use_byte_stream_split=floats,
-            sorting_columns=sorting or None,
-        )
-    except pa.ArrowException as error:
-        raise OSError(f"{path}: {error}") from error
-    return table.num_rows
+    columns = None
+    if sparse:
+        full = [column for column in table.column_names if table.column(column).null_count < table.num_rows]
+        columns = list(dict.fromkeys(["point_id", *full]))
+    with TableFile(path, name, provenance=provenance, sorted_by=sorted_by, columns=columns) as file:
+        file.add(table)
+    return file.rows

@@ -5,15 +5,15 @@ from __future__ import annotations
 import contextlib
 import json
 import platform
-import shutil
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from vines.errors import StoreError
-from vines.store._atomic import commit_folder, staging, write_text
+from vines.store._atomic import commit_folder, write_text
 from vines.store._results import Result, describe_files, read_result
+from vines.store._staging import clear_staging, staging
 
 if TYPE_CHECKING:
     from vines.store._pools import Pool
@@ -60,6 +60,11 @@ class Store:
         return self.data / "cache"
 
     @property
+    def logs(self) -> Path:
+        """Folder of the log files of runs."""
+        return self.data / "logs"
+
+    @property
     def staging_folder(self) -> Path:
         """Folder of what is being written; on the same file system, so that a rename is atomic."""
         return self.data / "staging"
@@ -88,8 +93,7 @@ class Store:
                 on_wait()
             lock.acquire(poll_interval=0.2)
         try:
-            # what a killed run left behind
-            shutil.rmtree(self.staging_folder, ignore_errors=True)
+            clear_staging(self.staging_folder)
             yield
         finally:
             lock.release()
@@ -122,24 +126,30 @@ class Store:
         manifest : mapping
             The manifest without ``files``, ``written`` and ``host``, which are added here.
         replace : bool
-            Whether to put it in the place of a result of the same key. Else that one is kept.
+            Whether to put it in the place of a result of the same key that differs from it. Else that one is kept.
         """
+        files = describe_files(folder)
         whole = {
             **manifest,
             "key": key,
-            "files": describe_files(folder),
+            "files": files,
             "written": datetime.now(UTC).isoformat(timespec="seconds"),
             "host": platform.node(),
         }
         write_text(folder / "manifest.json", json.dumps(whole, indent=1) + "\n")
         target = self.results / key
-        if replace and target.exists():
+        if replace and target.exists() and not (self.has(key) and self._same(key, files)):
             with self.staging() as trash:
                 target.rename(trash / "old")
                 commit_folder(folder, target)
         else:
             commit_folder(folder, target)
         return self.result(key)
+
+    def _same(self, key: str, files: Mapping[str, Any]) -> bool:
+        """Whether the stored result of a key has these files and they are intact."""
+        there = self.result(key)
+        return there.manifest["files"] == files and not there.damage()
 
     def pool(self, key: str) -> Pool:
         """Return the pool of a key; it need not exist yet."""
