@@ -33,7 +33,7 @@ _LARGEST = 1e9
 """Modulus of a multiplier beyond which double precision leaves less than six digits of those near one."""
 
 _ON_CIRCLE = 1e-6
-"""Distance of the product of a pair from one beyond which a change of sign was rounding, not a bifurcation."""
+"""Distance of a multiplier, or the product of a pair, from what it should be, beyond which it was only rounding."""
 
 
 class Condition(NamedTuple):
@@ -119,6 +119,8 @@ def critical_multiplier(kind: str, point: Point, symmetric: bool) -> tuple[compl
         found = m[np.argmin(abs(m - 1))]
     elif kind in ("symmetry_breaking", "period_doubling"):
         found = m[np.argmin(abs(m + 1))]
+        if abs(found + 1) > _ON_CIRCLE:
+            return None
     elif kind == "neimark_sacker":
         i, j = min(_PAIRS, key=lambda pair: abs(1 - m[pair[0]] * m[pair[1]]))
         real = abs(m[i].imag) < _REAL * abs(m[i]) or abs(m[i] - m[j].conjugate()) > _REAL * abs(m[i])

@@ -56,8 +56,8 @@ def branching_curvature(orbit: Orbit, names: tuple[str, str], direction: Floats)
 
     def solve(right: npt.NDArray[Any]) -> Floats:
         # The right-hand sides have no part along `left`, and the solution needs none along `null`.
-        balanced = right - left * (left @ right)
-        return np.linalg.solve(slope + np.outer(left, null), balanced)
+        balanced: Floats = np.asarray(right - left * (left @ right), dtype=np.float64)
+        return np.asarray(np.linalg.solve(slope + np.outer(left, null), balanced), dtype=np.float64)
 
     # The critical eigenvalue's change along the old family.
     tilt = solve(-(at(phases, _CHANGE)[0] - at(phases, -_CHANGE)[0]) / (2 * _CHANGE))
