@@ -5,11 +5,15 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from vines.catalogue._catalogue import Catalogue, connect, connect_tables
+    from vines.catalogue._diff import ColumnDifference, TableDifference, compare_tables
 
-__all__ = ["Catalogue", "connect", "connect_tables"]
+__all__ = ["Catalogue", "ColumnDifference", "TableDifference", "compare_tables", "connect", "connect_tables"]
 
 _HOMES = {
     "Catalogue": "vines.catalogue._catalogue",
+    "ColumnDifference": "vines.catalogue._diff",
+    "TableDifference": "vines.catalogue._diff",
+    "compare_tables": "vines.catalogue._diff",
     "connect": "vines.catalogue._catalogue",
     "connect_tables": "vines.catalogue._catalogue",
 }

@@ -23,12 +23,16 @@ COMMANDS = {
     "list": ("vines.cli._list", "List the pipelines and what they are for."),
     "status": ("vines.cli._status", "Say what is computed, what is stale, and why."),
     "run": ("vines.cli._run", "Compute what a pipeline still lacks."),
+    "merge": ("vines.cli._merge", "Put together what shards of a run computed."),
+    "graph": ("vines.cli._graph", "Draw a pipeline as a Mermaid flowchart."),
     "tables": ("vines.cli._tables", "List the result tables."),
     "schema": ("vines.cli._schema", "Describe the columns of a table, with units."),
     "query": ("vines.cli._query", "Ask the result tables in SQL."),
     "check": ("vines.cli._check", "Do the results reproduce the published values?"),
     "solve": ("vines.cli._solve", "Print the periodic orbit of a word of impacts."),
     "view": ("vines.cli._view", "Look at logged runs in the Rerun viewer."),
+    "diff": ("vines.cli._diff", "Compare two results, parameters and values."),
+    "gc": ("vines.cli._gc", "Remove results that nothing refers to."),
     "warm-up": ("vines.cli._warm_up", "Compile the kernels now, not at the first run."),
 }
 
@@ -96,6 +100,14 @@ def main() -> None:
     except VinesError as error:
         click.echo(f"vines: {error}", err=True)
         code = error.exit_code
+    except PermissionError as error:
+        click.echo(f"vines: {error.filename}: {error.strerror}; choose a folder that may be written", err=True)
+        code = 2
+    except (NotADirectoryError, FileExistsError) as error:
+        click.echo(
+            f"vines: {error.filename}: {error.strerror}; VINES_DATA, VINES_ROOT and --root name folders", err=True
+        )
+        code = 2
     except BrokenPipeError:
         # The reader of our output went away (`vines query … | head`); nothing is wrong.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())

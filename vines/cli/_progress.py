@@ -65,7 +65,7 @@ class Lines(Quiet):
         if fresh <= 0 or now <= start:
             return ""
         rate = fresh / (now - start)
-        return f", {rate:.0f} points/s, {(event.wanted - event.done) / rate:.0f} s left{_failures(event)}"
+        return f", {rate:.3g} points/s, {(event.wanted - event.done) / rate:.0f} s left{_failures(event)}"
 
     def _took(self, event: Event, now: float) -> str:
         start, _ = self._started.get(event.stage, (now, 0))
@@ -85,6 +85,7 @@ class Bars(Lines):
             TextColumn("{task.description:18s}"),
             BarColumn(bar_width=28),
             MofNCompleteColumn(),
+            TextColumn("{task.fields[rate]}"),
             TimeElapsedColumn(),
             Remaining(),
             TextColumn("{task.fields[note]}"),
@@ -103,11 +104,19 @@ class Bars(Lines):
         match event.what:
             case "started":
                 self._tasks[event.stage] = self._bars.add_task(
-                    event.stage, total=event.wanted, completed=event.done, note=""
+                    event.stage, total=event.wanted, completed=event.done, note="", rate=""
                 )
             case "progress" | "done" if event.stage in self._tasks:
                 completed = event.wanted if event.what == "done" else event.done
-                self._bars.update(self._tasks[event.stage], completed=completed, note=_failures(event))
+                task = self._tasks[event.stage]
+                speed = self._bars.tasks[task].speed
+                self._bars.update(
+                    task,
+                    total=event.wanted,  # a refinement adds points
+                    completed=completed,
+                    note=_failures(event),
+                    rate=f"{speed:.3g}/s" if speed and event.wanted > 1 else "",
+                )
             case "waiting":
                 self._bars.console.print("waiting for another vines run on the same data")
             case "failed" | "skipped":

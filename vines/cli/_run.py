@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Literal
 
 import click
 
 from vines.errors import DeclarationError, RunFailed
+
+if TYPE_CHECKING:
+    from vines.pipeline import StagePlan
 
 
 @click.command("run")
@@ -16,6 +19,13 @@ from vines.errors import DeclarationError, RunFailed
     "--set", "settings", multiple=True, metavar="K=V", help="Replace a value, e.g. stages.up.vary.A.count=801."
 )
 @click.option("--jobs", type=click.IntRange(min=1), help="Processes; all cores if left out, one where more do not pay.")
+@click.option("--engine", type=click.Choice(["local", "dask"]), default="local", help="Who computes the points.")
+@click.option(
+    "--scheduler",
+    metavar="ADDR",
+    help="A dask scheduler, e.g. tcp://node1:8786; else dask starts a cluster of its own here.",
+)
+@click.option("--shard", metavar="I/N", help="Compute one of N shares of the points; 'vines merge' puts all together.")
 @click.option("--dry-run", is_flag=True, help="Say what would be computed, and why; compute nothing.")
 @click.option("--force", is_flag=True, help="Compute everything again.")
 @click.option("--retry-failed", is_flag=True, help="Try the points again that failed.")
@@ -25,6 +35,9 @@ def command(
     stages: tuple[str, ...],
     settings: tuple[str, ...],
     jobs: int | None,
+    engine: Literal["local", "dask"],
+    scheduler: str | None,
+    shard: str | None,
     dry_run: bool,
     force: bool,
     retry_failed: bool,
@@ -35,13 +48,19 @@ def command(
     What is computed is kept by point: a second run computes nothing, a finer grid only what is new, and after an
     interruption the same command goes on.
     """
+    from vines.cli._interrupt import stoppable
     from vines.stages import compile_if_cold, run, status
 
-    overrides = dict(_setting(text) for text in settings)
+    if scheduler is not None and engine != "dask":
+        raise DeclarationError(f"--scheduler {scheduler} needs --engine dask")
+    if shard is not None and force:
+        raise DeclarationError("--shard cannot be forced: shards see what others computed; force without --shard")
+
+    overrides = dict(read_setting(text) for text in settings)
     chosen = stages or None
     plans = status(name, stages=chosen, overrides=overrides)
     if dry_run:
-        _print_plans(plans)
+        _print_plans(plans, force=force, retry_failed=retry_failed)
         return
     if not force and not retry_failed and all(p.state == "up_to_date" for p in plans):
         if not quiet:
@@ -49,47 +68,53 @@ def command(
             tail = f"; {failed} points failed before (--retry-failed tries them again)" if failed else ""
             click.echo(f"{name}: nothing to compute, all {len(plans)} stages are up to date{tail}")
             _say_what_was_found(name)
+        if any(p.failed for p in plans):
+            raise click.exceptions.Exit(RunFailed.exit_code)
         return
     from vines.cli._progress import progress
 
     compile_if_cold(plans, (lambda line: None) if quiet else click.echo)
     failure: RunFailed | None = None
-    with progress(quiet) as report:
+    with stoppable(f"'vines run {name}' goes on"), progress(quiet) as report:
         try:
             run(
                 name,
                 stages=chosen,
                 overrides=overrides,
                 jobs=jobs,
+                engine=engine,
+                scheduler=scheduler,
+                shard=shard,
                 force=force,
                 retry_failed=retry_failed,
                 report=report,
             )
         except RunFailed as error:
             failure = error
-        except KeyboardInterrupt:
-            raise click.ClickException(f"stopped; what is finished is kept, 'vines run {name}' goes on") from None
-    if not quiet:
+    if shard is not None and not quiet:
+        click.echo(f"shard {shard} is computed; when all are, 'vines merge {name}' puts the results together")
+    elif not quiet:
         _say_what_was_found(name)
     if failure is not None:
         raise failure
 
 
-def _setting(text: str) -> tuple[str, str]:
+def read_setting(text: str) -> tuple[str, str]:
     key, sign, value = text.partition("=")
     if not sign or not key.strip():
         raise DeclarationError(f"--set {text!r} is not of the form key=value, such as stages.up.vary.A.count=801")
     return key.strip(), value.strip()
 
 
-def _print_plans(plans: Any) -> None:
+def _print_plans(plans: list[StagePlan], *, force: bool, retry_failed: bool) -> None:
     from vines.cli._layout import print_rows
 
-    print_rows(
-        ["stage", "kind", "would compute", "why"],
-        [[p.name, p.kind, f"{p.wanted - p.done} of {p.wanted}", p.reason or "up to date"] for p in plans],
-        wrap=3,
-    )
+    rows = []
+    for p in plans:
+        count = p.wanted if force else p.wanted - p.done + (p.failed if retry_failed else 0)
+        why = "forced" if force else p.reason or ("failed before" if count else "up to date")
+        rows.append([p.name, p.kind, f"{count} of {p.wanted}", why])
+    print_rows(["stage", "kind", "would compute", "why"], rows, wrap=3)
 
 
 def _say_what_was_found(name: str) -> None:

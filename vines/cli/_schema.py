@@ -6,14 +6,26 @@ import json
 
 import click
 
+from vines.errors import UnknownNameError, nearest
+
 
 @click.command("schema")
-@click.argument("table")
+@click.argument("table", required=False)
+@click.option("--declaration", is_flag=True, help="Print the JSON Schema of pipeline files, for editors.")
 @click.option("--json", "as_json", is_flag=True, help="For machines.")
-def command(table: str, as_json: bool) -> None:
+def command(table: str | None, declaration: bool, as_json: bool) -> None:
     """Describe the columns of TABLE: name, type, unit, what it is, and where it comes from."""
     from vines import schema
 
+    if declaration:
+        from vines.stages import declaration_schema
+
+        click.echo(declaration_schema())
+        return
+    if table is None:
+        raise UnknownNameError(
+            f"which table? {nearest('', schema.tables())}; or --declaration for the form of pipelines"
+        )
     found = schema.table(table)
     if as_json:
         rows = [

@@ -4,8 +4,12 @@ from __future__ import annotations
 
 import json
 from dataclasses import asdict
+from typing import TYPE_CHECKING
 
 import click
+
+if TYPE_CHECKING:
+    from vines.pipeline import StagePlan
 
 
 @click.command("status")
@@ -32,8 +36,14 @@ def command(name: str | None, as_json: bool) -> None:
     print_rows(
         ["stage", "kind", "state", "points", "failed", "why"],
         [
-            [p.name, p.kind, p.state.replace("_", " "), f"{p.done}/{p.wanted}", p.failed or "", p.reason]
+            [p.name, p.kind, p.state.replace("_", " "), f"{p.done}/{p.wanted}", p.failed or "", _why(p)]
             for p in plans[name]
         ],
         wrap=5,
     )
+
+
+def _why(plan: StagePlan) -> str:
+    """Return the reason, with what else a reader should know of the result."""
+    versions = f"computed with {plan.versions}" if plan.versions else ""
+    return "; ".join(filter(None, [plan.reason, plan.remark, versions]))

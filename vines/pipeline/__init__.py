@@ -5,11 +5,17 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from vines.pipeline._axes import Axis
+    from vines.pipeline._builder import Declaration, span
     from vines.pipeline._declaration import Carry, Pipeline, Refine, Stage, available, find, load
     from vines.pipeline._events import Event, RunSummary, silent
+    from vines.pipeline._form import json_schema
+    from vines.pipeline._graph import mermaid
+    from vines.pipeline._include import with_included
+    from vines.pipeline._ingredients import what_changed
     from vines.pipeline._jobs import Batch, Input, Job, Point, Points, Range, WholeJob
+    from vines.pipeline._journal import Journal
     from vines.pipeline._kinds import Kind, kind, kinds, register
-    from vines.pipeline._plan import StagePlan, plan
+    from vines.pipeline._plan import StagePlan, plan, pool_keys
     from vines.pipeline._run import run_pipeline
     from vines.pipeline._shard import Shard
 
@@ -17,9 +23,11 @@ __all__ = [
     "Axis",
     "Batch",
     "Carry",
+    "Declaration",
     "Event",
     "Input",
     "Job",
+    "Journal",
     "Kind",
     "Pipeline",
     "Point",
@@ -33,22 +41,30 @@ __all__ = [
     "WholeJob",
     "available",
     "find",
+    "json_schema",
     "kind",
     "kinds",
     "load",
+    "mermaid",
     "plan",
+    "pool_keys",
     "register",
     "run_pipeline",
     "silent",
+    "span",
+    "what_changed",
+    "with_included",
 ]
 
 _HOME = {
     "Axis": "vines.pipeline._axes",
     "Batch": "vines.pipeline._jobs",
     "Carry": "vines.pipeline._declaration",
+    "Declaration": "vines.pipeline._builder",
     "Event": "vines.pipeline._events",
     "Input": "vines.pipeline._jobs",
     "Job": "vines.pipeline._jobs",
+    "Journal": "vines.pipeline._journal",
     "Kind": "vines.pipeline._kinds",
     "Pipeline": "vines.pipeline._declaration",
     "Point": "vines.pipeline._jobs",
@@ -62,13 +78,19 @@ _HOME = {
     "WholeJob": "vines.pipeline._jobs",
     "available": "vines.pipeline._declaration",
     "find": "vines.pipeline._declaration",
+    "json_schema": "vines.pipeline._form",
     "kind": "vines.pipeline._kinds",
     "kinds": "vines.pipeline._kinds",
     "load": "vines.pipeline._declaration",
+    "mermaid": "vines.pipeline._graph",
     "plan": "vines.pipeline._plan",
+    "pool_keys": "vines.pipeline._plan",
     "register": "vines.pipeline._kinds",
     "run_pipeline": "vines.pipeline._run",
     "silent": "vines.pipeline._events",
+    "span": "vines.pipeline._builder",
+    "what_changed": "vines.pipeline._ingredients",
+    "with_included": "vines.pipeline._include",
 }
 
 

@@ -19,8 +19,12 @@ if TYPE_CHECKING:
     from vines.pipeline._axes import Axis
     from vines.pipeline._kinds import Kind
 
-__all__ = ["Carry", "Pipeline", "Refine", "Stage", "available", "find", "load"]
+__all__ = ["JUMP", "MOST", "Carry", "Pipeline", "Refine", "Stage", "available", "find", "load"]
 
+JUMP = (("", 0.1),)
+"""Relative change of a number from one point to the next that counts as a jump, where nothing is said."""
+MOST = 10_000
+"""Points that a refinement adds at most, where nothing is said."""
 _STAGES = re.compile(r"^\s*(\[\s*stages\b|include\s*=)", re.MULTILINE)
 
 
@@ -67,8 +71,8 @@ class Refine:
     on: tuple[str, ...]
     along: str
     tolerance: float
-    jump: tuple[tuple[str, float], ...] = (("", 0.1),)
-    most: int = 10_000
+    jump: tuple[tuple[str, float], ...] = JUMP
+    most: int = MOST
 
     def jump_of(self, name: str) -> float:
         """Return the relative change of a column that counts as a jump."""

@@ -19,7 +19,7 @@ from vines.pipeline._declaration import Stage
 from vines.places import shipped
 from vines.store import canonical, key_of
 
-__all__ = ["Ingredients", "changes", "gather"]
+__all__ = ["Ingredients", "gather", "what_changed"]
 
 _CHOICE = ("refine", "vary", "zip")
 
@@ -117,12 +117,12 @@ def gather(stage: Stage, inputs: Mapping[str, str], origin: str, code: CodeDiges
     return Ingredients(form, tuple(files))
 
 
-def changes(before: Mapping[str, Any], now: Mapping[str, Any]) -> str:
+def what_changed(before: Mapping[str, Any], now: Mapping[str, Any]) -> str:
     """Return in words what differs between two sets of ingredients: changed values before → after.
 
     Examples
     --------
-    >>> changes({"options": {"settle": 400}}, {"options": {"settle": 800}})
+    >>> what_changed({"options": {"settle": 400}}, {"options": {"settle": 800}})
     'settle 400 → 800'
     """
     found: list[str] = []

@@ -11,13 +11,13 @@ from typing import TYPE_CHECKING, Any, Literal
 from vines.pipeline._code import CodeDigests
 from vines.pipeline._declaration import Pipeline, Stage
 from vines.pipeline._grid import Grid
-from vines.pipeline._ingredients import Ingredients, changes, gather
+from vines.pipeline._ingredients import Ingredients, gather, what_changed
 from vines.store import Store, canonical, versions
 
 if TYPE_CHECKING:
     from vines.pipeline._refined import Refined
 
-__all__ = ["Planner", "Prepared", "StagePlan", "other_versions", "plan"]
+__all__ = ["Planner", "Prepared", "StagePlan", "other_versions", "plan", "pool_keys"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -174,7 +174,7 @@ class Planner:
         pin = prepared.pin
         if not pin:
             return "never", f"never finished; {left}"
-        changed = changes(pin.get("ingredients", {}), prepared.ingredients.form)
+        changed = what_changed(pin.get("ingredients", {}), prepared.ingredients.form)
         if not changed and not self.store.has(pin["result"]):
             return "missing", f"the result {pin['result'][:12]} is gone; {left}"
         return "stale", f"{changed or 'the form of the key changed'}; {left}"
@@ -185,6 +185,15 @@ class Planner:
             return ""
         source = self.prepare(stage.carry.stage)
         return f"{source.pool_key}/{source.grid.identity(dict(stage.carry.at))}"
+
+
+def pool_keys(pipeline: Pipeline, store: Store) -> set[str]:
+    """Return the keys of the pools that a pipeline asks for as it is declared."""
+    planner = Planner(pipeline, store)
+    for name in pipeline.order:
+        planner.plan(name)
+    stages = [planner.prepare(name) for name in pipeline.order]
+    return {each.pool_key for each in stages if each.stage.kind.shape == "points"}
 
 
 def other_versions(then: Mapping[str, str]) -> str:

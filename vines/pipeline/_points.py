@@ -8,7 +8,7 @@ from typing import Any
 from vines import schema
 from vines.errors import DeclarationError, nearest
 from vines.pipeline._axes import Axis, exact
-from vines.pipeline._declaration import Carry, Refine
+from vines.pipeline._declaration import JUMP, MOST, Carry, Refine
 from vines.pipeline._kinds import Kind
 
 __all__ = ["CARRY", "REFINE", "read_carry", "read_refine", "read_zipped"]
@@ -95,7 +95,7 @@ def read_refine(
     if "tolerance" not in table:
         raise DeclarationError(f"{where}: 'tolerance' is missing; say how near two points may come")
     tolerance = _positive(table["tolerance"], f"{where}.tolerance")
-    most = table.get("most", Refine.most)
+    most = table.get("most", MOST)
     if isinstance(most, bool) or not isinstance(most, int) or most < 1:
         raise DeclarationError(f"{where}.most is {most!r}; allowed is a whole number >= 1")
     along = _along(table.get("along"), axes, zipped, carry, f"{where}.along")
@@ -119,14 +119,14 @@ def _along(
 
 def _jump(form: object, on: list[str], where: str) -> tuple[tuple[str, float], ...]:
     if form is None:
-        return Refine(("",), "", 1.0).jump
+        return JUMP
     if not isinstance(form, Mapping):
         return (("", _positive(form, where)),)
     for name in form:
         if name not in on:
             raise DeclarationError(f"{where}: {name!r} is not watched: {nearest(str(name), on)}")
     own = {str(name): _positive(value, f"{where}.{name}") for name, value in form.items()}
-    return (*Refine(("",), "", 1.0).jump, *sorted(own.items()))
+    return (*JUMP, *sorted(own.items()))
 
 
 def _positive(value: object, where: str) -> float:

@@ -10,15 +10,21 @@ if TYPE_CHECKING:
     from vines.stages._asking import checks, list_tables, query, rows_of, save_query, table
     from vines.stages._finding import find_logs
     from vines.stages._found import found
+    from vines.stages._keeping import Difference, clean, declaration_schema, diff, graph
     from vines.stages._kinds import register_kinds
     from vines.stages._running import compile_if_cold, list_pipelines, load_pipeline, open_store, run, status, warm_up
     from vines.stages._study import init_study
 
 __all__ = [
+    "Difference",
     "checks",
+    "clean",
     "compile_if_cold",
+    "declaration_schema",
+    "diff",
     "find_logs",
     "found",
+    "graph",
     "init_study",
     "list_pipelines",
     "list_tables",
@@ -35,10 +41,15 @@ __all__ = [
 ]
 
 _HOME = {
+    "Difference": "_keeping",
     "checks": "_asking",
     "compile_if_cold": "_running",
+    "clean": "_keeping",
+    "declaration_schema": "_keeping",
+    "diff": "_keeping",
     "find_logs": "_finding",
     "found": "_found",
+    "graph": "_keeping",
     "init_study": "_study",
     "list_pipelines": "_running",
     "list_tables": "_asking",

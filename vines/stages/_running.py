@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
-from typing import TYPE_CHECKING, Any
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Literal
 
+from vines.errors import VinesError
 from vines.pipeline import available, find, kind, load, plan
 from vines.places import data_folder, find_root
 from vines.stages._kinds import register_kinds
+from vines.stages._sense import check_name, check_stages
 from vines.store import Store
 
 if TYPE_CHECKING:
-    from vines.pipeline import Event, Pipeline, RunSummary, StagePlan
+    from vines.pipeline import Declaration, Event, Pipeline, RunSummary, StagePlan
 
 __all__ = ["compile_if_cold", "list_pipelines", "load_pipeline", "open_store", "run", "status", "warm_up"]
 
@@ -21,8 +24,8 @@ def open_store() -> Store:
     return Store(data_folder())
 
 
-def load_pipeline(name: str, overrides: Mapping[str, Any] | None = None) -> Pipeline:
-    """Read the declaration of a pipeline, by name or by the path of its file.
+def load_pipeline(name: str | Declaration, overrides: Mapping[str, Any] | None = None) -> Pipeline:
+    """Read the declaration of a pipeline, by name, by the path of its file, or as it was made in Python.
 
     Raises
     ------
@@ -31,15 +34,26 @@ def load_pipeline(name: str, overrides: Mapping[str, Any] | None = None) -> Pipe
     """
     register_kinds()
     root = find_root()
-    return load(find(name, root), overrides, root=root)
+    if isinstance(name, str):
+        path = find(name, root)
+        check_name(path, root)
+        pipeline = load(path, overrides, root=root)
+    else:
+        pipeline = name.load(overrides, root=root)
+    check_stages(pipeline)
+    return pipeline
 
 
 def run(
-    name: str,
+    name: str | Declaration,
     *,
     stages: Iterable[str] | None = None,
     overrides: Mapping[str, Any] | None = None,
     jobs: int | None = None,
+    engine: Literal["local", "dask"] = "local",
+    scheduler: str | None = None,
+    shard: str | None = None,
+    merge: bool = False,
     force: bool = False,
     retry_failed: bool = False,
     report: Callable[[Event], None] | None = None,
@@ -48,14 +62,22 @@ def run(
 
     Parameters
     ----------
-    name : str
-        Name of a pipeline, or the path of a declaration.
+    name : str or Declaration
+        Name of a pipeline, the path of a declaration, or one made in Python.
     stages : iterable of str, optional
         Only these stages and those they need.
     overrides : mapping, optional
         Values by dotted key that replace those of the file, such as ``{"stages.up.vary.A.count": 801}``.
     jobs : int, optional
         Number of processes; all cores if left out, one where the work is too small to pay for more.
+    engine : {"local", "dask"}
+        Processes of this machine, or a dask cluster.
+    scheduler : str, optional
+        Address of a dask scheduler, such as ``tcp://node1:8786``; without one dask gets a cluster of its own here.
+    shard : str, optional
+        ``"i/n"``: compute the i-th of n shares of the points, put no result together. Shards may run at the same time.
+    merge : bool
+        Put results together from what shards computed; compute no point.
     force : bool
         Compute everything again.
     retry_failed : bool
@@ -74,32 +96,38 @@ def run(
         Before anything is computed or written.
     RunFailed
         After the run, if points or stages failed; the rest is stored.
+    EngineError
+        If dask is not installed, or its scheduler does not answer any more; what was computed is stored.
     """
     pipeline = load_pipeline(name, overrides)
-    from vines.pipeline import run_pipeline, silent
+    from vines.pipeline import Journal, Shard, run_pipeline, silent
 
-    summary = run_pipeline(
-        pipeline,
-        open_store(),
-        stages=stages,
-        jobs=jobs,
-        force=force,
-        retry_failed=retry_failed,
-        report=report or silent,
-    )
+    store = open_store()
+    asked: dict[str, Any] = {
+        "stages": tuple(stages) if stages is not None else None,
+        "jobs": jobs,
+        "engine": engine,
+        "scheduler": scheduler,
+        "shard": Shard.read(shard) if shard is not None else None,
+        "merge": merge,
+        "force": force,
+        "retry_failed": retry_failed,
+    }
+    with Journal(store.logs, pipeline.name, {**asked, "set": overrides}, report or silent) as journal:
+        summary = run_pipeline(pipeline, store, **asked, report=journal)
     summary.check()
     return summary
 
 
 def list_pipelines() -> list[dict[str, Any]]:
     """Return name, title, source and number of stages of the pipelines of the project and of those that ship."""
-    import tomllib
+    from vines.pipeline import with_included
 
     rows = []
     for name, path in available(find_root()).items():
         try:
-            form = tomllib.loads(path.read_text("utf-8"))
-        except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+            form = with_included(path)
+        except VinesError as error:
             rows.append({"name": name, "title": f"cannot be read: {error}", "source": "", "stages": 0})
             continue
         stages = form.get("stages")
@@ -115,7 +143,7 @@ def list_pipelines() -> list[dict[str, Any]]:
 
 
 def status(
-    name: str, *, stages: Iterable[str] | None = None, overrides: Mapping[str, Any] | None = None
+    name: str | Declaration, *, stages: Iterable[str] | None = None, overrides: Mapping[str, Any] | None = None
 ) -> list[StagePlan]:
     """Return where each stage of a pipeline stands, with the reason why it is stale."""
     return plan(load_pipeline(name, overrides), open_store(), stages)
@@ -127,14 +155,20 @@ def warm_up(report: Callable[[str], object] = print) -> None:
 
     for room in (attractors, orbits):  # the first compiles the dynamics as well
         room.warm_up(report)
+    _compiled().touch()
 
 
 def compile_if_cold(plans: Iterable[StagePlan], report: Callable[[str], object]) -> None:
     """Compile the kernels visibly if these plans will need them and no cache of theirs exists yet."""
-    if not any(p.state != "up_to_date" and kind(p.kind).parameters for p in plans):
+    if not any(p.done < p.wanted and kind(p.kind).parameters for p in plans):
         return
-    from vines.dynamics import CACHE
-
-    if not CACHE.is_dir():
+    if not _compiled().is_file():
         report("compiling the kernels, once for this version of their sources:")
         warm_up(report)
+
+
+def _compiled() -> Path:
+    """Return the file whose presence says that a warm-up went to its end; the folder alone may hold a part."""
+    from vines.dynamics import CACHE
+
+    return CACHE / "complete"

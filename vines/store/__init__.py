@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from vines.store._parquet import TableFile, write_parquet
     from vines.store._pools import Located, Part, Pool, commit_part
     from vines.store._provenance import revision, versions
-    from vines.store._results import Result, describe_table
+    from vines.store._results import Result, describe_table, read_result
     from vines.store._store import Store
 
 __all__ = [
@@ -31,6 +31,7 @@ __all__ = [
     "describe_table",
     "find_garbage",
     "key_of",
+    "read_result",
     "remove_garbage",
     "revision",
     "versions",
@@ -52,6 +53,7 @@ _HOMES = {
     "describe_table": "vines.store._results",
     "find_garbage": "vines.store._garbage",
     "key_of": "vines.store._keys",
+    "read_result": "vines.store._results",
     "remove_garbage": "vines.store._garbage",
     "revision": "vines.store._provenance",
     "versions": "vines.store._provenance",

@@ -1,0 +1,44 @@
+"""Ctrl-C, and the SIGTERM of a batch system, end a run at once and say how to go on."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import signal
+import sys
+from collections.abc import Iterator
+from types import FrameType
+
+import click
+
+__all__ = ["stoppable"]
+
+STOPPED = 130
+"""Exit code of a shell command that SIGINT ended."""
+
+
+@contextlib.contextmanager
+def stoppable(remedy: str) -> Iterator[None]:
+    """Turn SIGTERM into the same as Ctrl-C, and end with one line instead of a traceback.
+
+    Parameters
+    ----------
+    remedy : str
+        How to go on.
+    """
+
+    def stop(number: int, frame: FrameType | None) -> None:
+        del number, frame
+        raise KeyboardInterrupt
+
+    before = signal.signal(signal.SIGTERM, stop)
+    try:
+        yield
+    except KeyboardInterrupt:
+        click.echo(f"vines: stopped; what is finished is kept, {remedy}", err=True)
+        sys.stdout.flush()
+        sys.stderr.flush()
+        # what is left are threads of executors and clusters that would take seconds to say goodbye
+        os._exit(STOPPED)
+    finally:
+        signal.signal(signal.SIGTERM, before)

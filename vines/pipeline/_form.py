@@ -1,0 +1,172 @@
+"""The form of a declaration as JSON Schema, for editors that complete and check TOML."""
+
+from __future__ import annotations
+
+import inspect
+from typing import Any
+
+import msgspec
+
+from vines import schema
+from vines.pipeline._kinds import Kind, kinds
+from vines.pipeline._names import NAME
+
+__all__ = ["json_schema"]
+
+_NUMBER = {"type": "number"}
+
+
+def json_schema() -> dict[str, Any]:
+    """Return the JSON Schema (draft 2020-12) of a declaration with the kinds that are registered.
+
+    It checks names, types and allowed words. Numbers that cannot be, and how stages hang together, are checked when the
+    declaration is read.
+    """
+    known = kinds()
+    parameters = sorted({name for each in known.values() for name in each.parameters})
+    return {
+        "$schema": "https://json-schema.org/draft/2020-12/schema",
+        "title": "A pipeline of vines",
+        "type": "object",
+        "additionalProperties": False,
+        "properties": {
+            "title": {"type": "string", "description": "What the pipeline is for"},
+            "source": {"type": "string", "description": "Figure or section that it reproduces"},
+            "include": {"type": "string", "description": "A file that this one is laid over, relative to it"},
+            "params": {
+                "type": "object",
+                "description": "Parameters of every stage that takes them",
+                "additionalProperties": False,
+                "properties": dict.fromkeys(parameters, _NUMBER),
+            },
+            "stages": {
+                "type": "object",
+                "propertyNames": {"pattern": f"^{NAME.pattern}$"},
+                "additionalProperties": {
+                    "type": "object",
+                    "required": ["kind"],
+                    "properties": {"kind": {"enum": sorted(known)}},
+                    "allOf": [
+                        {
+                            "if": {"properties": {"kind": {"const": name}}},
+                            "then": {"$ref": f"#/$defs/{name}"},
+                        }
+                        for name in sorted(known)
+                    ],
+                },
+            },
+        },
+        "$defs": {name: _stage(known[name]) for name in sorted(known)} | {"axis": _axis()},
+    }
+
+
+def _stage(spec: Kind) -> dict[str, Any]:
+    properties: dict[str, Any] = {"kind": {"const": spec.name, "description": spec.summary}}
+    axes = list(spec.parameters)
+    if spec.parameters:
+        properties["params"] = {
+            "type": "object",
+            "description": "Fixed parameters of this stage",
+            "additionalProperties": False,
+            "properties": dict.fromkeys(axes, _NUMBER),
+        }
+    if spec.vary != "none":
+        form = {"$ref": "#/$defs/axis"} if spec.vary == "grid" else _range(("from", "to"))
+        properties["vary"] = {
+            "type": "object",
+            "description": "Parameters that vary",
+            "additionalProperties": False,
+            "properties": dict.fromkeys(axes, form),
+        }
+    if spec.vary == "grid":
+        names = {"type": "array", "items": {"enum": axes}, "minItems": 2}
+        properties["zip"] = {
+            "description": "Axes that run together",
+            "anyOf": [names, {"type": "array", "items": names, "minItems": 1}],
+        }
+        properties["refine"] = _refine(spec)
+    if spec.carry:
+        properties["carry"] = _carry(axes)
+    if spec.needs:
+        properties["needs"] = {
+            "type": "array",
+            "description": "Stages whose results it takes",
+            "items": {"type": "string", "pattern": f"^{NAME.pattern}$"},
+            "uniqueItems": True,
+        }
+    properties |= _options(spec)
+    return {
+        "type": "object",
+        "description": inspect.getdoc(spec.options) or spec.summary,
+        "additionalProperties": False,
+        "properties": properties,
+    }
+
+
+def _options(spec: Kind) -> dict[str, Any]:
+    """Return the options of a kind; structs inside them stand where they are used."""
+    (reference,), parts = msgspec.json.schema_components([spec.options], ref_template="{name}")
+    return {
+        name: _inlined(form, parts) for name, form in parts[reference["$ref"]]["properties"].items() if name != "kind"
+    }
+
+
+def _inlined(form: Any, parts: dict[str, Any]) -> Any:
+    if isinstance(form, dict):
+        if "$ref" in form:
+            return _inlined(parts[form["$ref"]], parts)
+        return {key: _inlined(value, parts) for key, value in form.items()}
+    return [_inlined(each, parts) for each in form] if isinstance(form, list) else form
+
+
+def _range(keys: tuple[str, ...]) -> dict[str, Any]:
+    whole = {"type": "integer", "minimum": 1}
+    forms = {"from": _NUMBER, "to": _NUMBER, "count": whole, "step": _NUMBER, "log": {"type": "boolean"}}
+    return {
+        "type": "object",
+        "additionalProperties": False,
+        "required": ["from", "to"],
+        "properties": {key: forms[key] for key in keys},
+    }
+
+
+def _axis() -> dict[str, Any]:
+    values = {"type": "array", "items": _NUMBER, "minItems": 1}
+    return {
+        "description": "A list, or an evenly spaced range with either count or step",
+        "anyOf": [values, _range(("from", "to", "count", "step", "log"))],
+    }
+
+
+def _refine(spec: Kind) -> dict[str, Any]:
+    columns = [column.name for column in schema.table(spec.tables[0]).columns if not column.dtype.startswith("list")]
+    jumps = {"type": "object", "additionalProperties": _NUMBER}
+    return {
+        "type": "object",
+        "description": "More points where a watched column changes or jumps",
+        "additionalProperties": False,
+        "required": ["on", "tolerance"],
+        "properties": {
+            "on": {"type": "array", "items": {"enum": columns}, "minItems": 1},
+            "along": {"enum": list(spec.parameters)},
+            "tolerance": {"type": "number", "exclusiveMinimum": 0},
+            "jump": {"anyOf": [{"type": "number", "exclusiveMinimum": 0}, jumps]},
+            "most": {"type": "integer", "minimum": 1},
+        },
+    }
+
+
+def _carry(axes: list[str]) -> dict[str, Any]:
+    start = {
+        "type": "object",
+        "additionalProperties": False,
+        "required": ["from"],
+        "properties": {"from": {"type": "string"}, "at": {"type": "object", "additionalProperties": _NUMBER}},
+    }
+    table = {
+        "type": "object",
+        "additionalProperties": False,
+        "required": ["axis"],
+        "properties": {"axis": {"enum": axes}, "direction": {"enum": ["up", "down"]}, "start": start},
+    }
+    return {"description": "Each point starts where the one before it ended", "anyOf": [{"enum": axes}, table]}

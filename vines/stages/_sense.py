@@ -1,0 +1,83 @@
+"""What a declaration must fulfil beyond its form, seen before anything is computed.
+
+The form (keys, types, names, ranges of parameters) is checked where declarations are read; here is what concerns a
+stage together with those it needs.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+from vines.errors import DeclarationError, nearest
+from vines.pipeline import Pipeline, Stage, available
+
+__all__ = ["check_name", "check_stages"]
+
+
+def check_name(path: Path, root: Path) -> None:
+    """Refuse a file that would take the name, and so the results, of a pipeline that the project has.
+
+    Raises
+    ------
+    DeclarationError
+        If the file is not that pipeline's own.
+    """
+    known = available(root).get(path.stem)
+    if known is not None and known.resolve() != path.resolve():
+        raise DeclarationError(f"{path}: the pipeline {path.stem!r} is declared in {known} already; rename this file")
+
+
+def check_stages(pipeline: Pipeline) -> None:
+    """Check each stage together with those that it needs.
+
+    Raises
+    ------
+    DeclarationError
+        One line with the file, the stage, what is wrong and the remedy.
+    """
+    for stage in pipeline.stages.values():
+        check = {"branch": _branch, "figure": _figure, "check": _check}.get(stage.kind.name)
+        if check is not None:
+            check(stage, pipeline)
+
+
+def _refuse(stage: Stage, pipeline: Pipeline, text: str) -> DeclarationError:
+    return DeclarationError(f"{pipeline.path}: stages.{stage.name}: {text}")
+
+
+def _branch(stage: Stage, pipeline: Pipeline) -> None:
+    if len(stage.axes) != 1:
+        names = ", ".join(axis.name for axis in stage.axes) or "nothing"
+        raise _refuse(
+            stage, pipeline, f"a branch is followed in one parameter, this one varies {names}; give one vary.X"
+        )
+
+
+def _figure(stage: Stage, pipeline: Pipeline) -> None:
+    if not stage.needs:
+        raise _refuse(stage, pipeline, "a figure draws other stages; name them, needs = [...]")
+    options: Any = stage.options
+    if options.width <= 0:
+        raise _refuse(stage, pipeline, f"width is {options.width:g} inch, allowed is width > 0")
+    if options.plot != "bifurcation":
+        return
+    axes = {name: tuple(axis.name for axis in pipeline.stages[name].axes) for name in stage.needs}
+    if len(set(axes.values())) != 1 or len(next(iter(axes.values()))) != 1:
+        listed = ", ".join(f"{name} varies {' and '.join(varied) or 'nothing'}" for name, varied in axes.items())
+        raise _refuse(
+            stage, pipeline, f"a bifurcation diagram needs stages that vary one and the same parameter; {listed}"
+        )
+
+
+def _check(stage: Stage, pipeline: Pipeline) -> None:
+    from vines.stages._claims import read_claims
+
+    if not stage.needs:
+        raise _refuse(stage, pipeline, "a check compares with other stages; name them, needs = [...]")
+    options: Any = stage.options
+    files = stage.kind.files(stage.options, pipeline.root) if stage.kind.files is not None else ()
+    known = {name for file in files for name in read_claims(file)}
+    for name in options.claims:
+        if name not in known:
+            raise _refuse(stage, pipeline, f"unknown claim {name!r}: {nearest(name, known)}")
