@@ -1,4 +1,4 @@
-"""Runs in the Rerun viewer: a recording, a picture, or a window.
+"""Runs in the Rerun viewer: a recording, a picture, a window, a page, or a catalogue of many.
 
 Importing this room loads no rerun: each function does when it is called.
 """
@@ -7,12 +7,24 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from vines.viewer._show import save_rrd, screenshot, view
+from vines.viewer._browse import browse, catalogue_of
+from vines.viewer._cache import cached_rrd
+from vines.viewer._show import save_rrd, screenshot, view, web
 
 if TYPE_CHECKING:
     from vines.viewer._layout import Shown, blueprint
 
-__all__ = ["Shown", "blueprint", "save_rrd", "screenshot", "view"]
+__all__ = [
+    "Shown",
+    "blueprint",
+    "browse",
+    "cached_rrd",
+    "catalogue_of",
+    "save_rrd",
+    "screenshot",
+    "view",
+    "web",
+]
 
 
 def __getattr__(name: str) -> Any:

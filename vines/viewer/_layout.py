@@ -8,7 +8,8 @@ from dataclasses import dataclass
 import rerun.blueprint as rrb
 from rerun.blueprint.encodings import TimelineColumn
 
-from vines.viewer._clock import CYCLE, SIM_TIME
+from vines.viewer._clock import CYCLE, IMPACT, SIM_TIME
+from vines.viewer._impacts import DIAL_BOUNDS, LANES
 from vines.viewer._scene import CAVITY_BOUNDS, PHASE_BOUNDS
 from vines.viewer._style import CAVITY
 
@@ -37,6 +38,10 @@ class Shown:
         First and last time, 1/omega0.
     period : float
         Forcing period, 1/omega0.
+    kind : str
+        ``"run"``, ``"orbit"`` or ``"rig"``.
+    parts : tuple of str
+        Of a rig, the curves that there are.
     """
 
     root: str
@@ -44,6 +49,8 @@ class Shown:
     start: float
     end: float
     period: float
+    kind: str = "run"
+    parts: tuple[str, ...] = ()
 
 
 def blueprint(runs: Sequence[Shown], *, still: bool = False) -> rrb.Blueprint:
@@ -56,36 +63,58 @@ def blueprint(runs: Sequence[Shown], *, still: bool = False) -> rrb.Blueprint:
     still : bool
         For a picture that nobody can pan: curves leave room for their legends, the top bar is hidden.
     """
+    # One period of an orbit is there to be watched going round.
+    looping = not still and all(run.kind == "orbit" for run in runs)
     panel = rrb.TimePanel(
-        state="collapsed", timeline=SIM_TIME, play_state="paused", loop_mode="all", playback_speed=2.0
+        state="collapsed",
+        timeline=SIM_TIME,
+        play_state="playing" if looping else "paused",
+        loop_mode="all",
+        playback_speed=1.0 if looping else 2.0,
     )
     if len(runs) == 1:
-        (run,) = runs
-        body = rrb.Horizontal(
-            rrb.Vertical(
-                _cavity(run), _ends(run, still), _gap(run, still), _rate(run, still), row_shares=[2.75, 2.5, 2.0, 2.0]
-            ),
-            rrb.Vertical(_phase(run), _energy(run, still), _balance(run, still), row_shares=[4.4, 2.4, 2.4]),
-            rrb.Vertical(_about(run), _impacts(run), row_shares=[4.6, 4.6]),
-            column_shares=[4.6, 3.6, 2.6],
-        )
+        body = _measured(runs[0], still) if runs[0].kind == "rig" else _alone(runs[0], still)
     else:
-        body = rrb.Horizontal(*(_column(run, still) for run in runs))
+        body = rrb.Horizontal(*(_measured(run, still) if run.kind == "rig" else _column(run, still) for run in runs))
     parts = (body, panel, rrb.TopPanel(state="hidden")) if still else (body, panel)
     return rrb.Blueprint(*parts, collapse_panels=True)
 
 
+def _alone(run: Shown, still: bool) -> rrb.Horizontal:
+    """Return the views of one run."""
+    return rrb.Horizontal(
+        rrb.Vertical(
+            _cavity(run),
+            _ends(run, still),
+            _gap(run, still),
+            _rate(run, still),
+            _lanes(run, still),
+            row_shares=[2.7, 2.3, 1.8, 1.8, 1.3],
+        ),
+        rrb.Vertical(_phase(run), _energy(run, still), _balance(run, still), row_shares=[4.4, 2.6, 2.6]),
+        rrb.Vertical(_dial(run), _about(run), _impacts(run), row_shares=[3.4, 3.3, 3.0]),
+        column_shares=[4.6, 3.6, 2.6],
+    )
+
+
 def _column(run: Shown, still: bool) -> rrb.Vertical:
     """Return one of several runs beside each other."""
-    more = rrb.Tabs(_impacts(run), _about(run), _energy(run, still), _balance(run, still))
+    more = rrb.Tabs(_dial(run), _impacts(run), _about(run), _energy(run, still), _balance(run, still))
     return rrb.Vertical(
         _cavity(run),
         _phase(run),
         _gap(run, still),
         _rate(run, still),
+        _lanes(run, still),
         more,
-        row_shares=[2.7, 3.6, 1.7, 1.9, 1.9],
+        row_shares=[2.5, 3.2, 1.6, 1.6, 1.2, 2.6],
     )
+
+
+def _measured(run: Shown, still: bool) -> rrb.Horizontal:
+    """Return the views of a run of a rig: a curve a sensor."""
+    curves = [_series(run, part, part.replace("_", " "), still) for part in run.parts]
+    return rrb.Horizontal(rrb.Vertical(*curves), _about(run), column_shares=[4.0, 1.4])
 
 
 def _cavity(run: Shown) -> rrb.Spatial2DView:
@@ -100,7 +129,7 @@ def _cavity(run: Shown) -> rrb.Spatial2DView:
 
 def _phase(run: Shown) -> rrb.Spatial2DView:
     (left, right), (top, bottom) = PHASE_BOUNDS
-    back = {SIM_TIME: _TRAIL * run.period, CYCLE: _TRAIL}
+    back = {SIM_TIME: _TRAIL * run.period, CYCLE: _TRAIL, IMPACT: 1.0}
     return rrb.Spatial2DView(
         origin=f"{run.root}/phase",
         name="Phase plane: w across, w' up, trail of a quarter cycle",
@@ -117,16 +146,18 @@ def _phase(run: Shown) -> rrb.Spatial2DView:
     )
 
 
-def _series(run: Shown, part: str, name: str, still: bool, legend: bool = True) -> rrb.TimeSeriesView:
-    span = run.end - run.start
+def _series(
+    run: Shown, part: str, name: str, still: bool, legend: bool = True, span: tuple[float, float] | None = None
+) -> rrb.TimeSeriesView:
+    length = run.end - run.start
     boundary = rrb.TimeRangeBoundary
-    if span > _WINDOW * run.period:
+    if run.kind != "rig" and length > _WINDOW * run.period:
         reach = _WINDOW * run.period
         start = boundary.cursor_relative(seconds=-0.6 * reach)
         end = boundary.cursor_relative(seconds=0.4 * reach)
     elif still:
         start = boundary.absolute(seconds=run.start)
-        end = boundary.absolute(seconds=run.end + _LEGEND * span)
+        end = boundary.absolute(seconds=run.end + _LEGEND * length)
     else:
         # Without numbers, since they would be those of one timeline only.
         start, end = boundary.infinite(), boundary.infinite()
@@ -134,6 +165,7 @@ def _series(run: Shown, part: str, name: str, still: bool, legend: bool = True) 
         origin=f"{run.root}/{part}",
         name=name,
         axis_x=rrb.TimeAxis(view_range=rrb.TimeRange(start=start, end=end)),
+        axis_y=None if span is None else rrb.ScalarAxis(range=span),
         plot_legend=rrb.PlotLegend(corner=rrb.Corner2D.RightTop, visible=legend),
     )
 
@@ -150,6 +182,21 @@ def _rate(run: Shown, still: bool) -> rrb.TimeSeriesView:
     return _series(run, "w_dot", "Rate of the gap w', marked just before impacts on L (red) and R (blue)", still, False)
 
 
+def _lanes(run: Shown, still: bool) -> rrb.TimeSeriesView:
+    name = "Impacts on L (above) and R (below); bars: the ball sticks"
+    return _series(run, "lanes", name, still, legend=False, span=LANES)
+
+
+def _dial(run: Shown) -> rrb.Spatial2DView:
+    (left, right), (top, bottom) = DIAL_BOUNDS
+    return rrb.Spatial2DView(
+        origin=f"{run.root}/dial",
+        name="Phase of the forcing at impacts: L outside, R inside",
+        background=_DARK,
+        visual_bounds=rrb.VisualBounds2D(x_range=(left, right), y_range=(top, bottom)),
+    )
+
+
 def _energy(run: Shown, still: bool) -> rrb.TimeSeriesView:
     return _series(run, "energy", "Energy", still)
 
@@ -159,7 +206,7 @@ def _balance(run: Shown, still: bool) -> rrb.TimeSeriesView:
 
 
 def _impacts(run: Shown) -> rrb.TextLogView:
-    hidden = [TimelineColumn(timeline, visible=False) for timeline in (SIM_TIME, CYCLE)]
+    hidden = [TimelineColumn(timeline, visible=False) for timeline in (SIM_TIME, CYCLE, IMPACT)]
     return rrb.TextLogView(
         origin=f"{run.root}/impacts",
         name="Impacts",

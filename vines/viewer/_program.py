@@ -9,10 +9,11 @@ import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from importlib.util import find_spec
 from pathlib import Path
 from typing import IO, TYPE_CHECKING
+from urllib.parse import quote
 
 from vines.errors import ViewerError
 from vines.viewer._style import CAVITY
@@ -20,7 +21,7 @@ from vines.viewer._style import CAVITY
 if TYPE_CHECKING:
     from rerun.experimental import ViewerClient
 
-__all__ = ["headless", "native"]
+__all__ = ["catalogue", "headless", "native", "native_url", "served"]
 
 _START_SECONDS = 60.0
 _NO_VULKAN = ("Failed to get render context", "No graphics adapter", "No suitable graphics adapter")
@@ -28,14 +29,19 @@ _NO_VULKAN = ("Failed to get render context", "No graphics adapter", "No suitabl
 _VULKAN = "on Debian: apt-get install mesa-vulkan-drivers libvulkan1"
 
 
-def _command(file: Path, port: int) -> list[str]:
-    """Return the command line that both ways of starting share: it listens on this machine only."""
+def _program() -> str:
+    """Return the path of the viewer's program."""
     spec = find_spec("rerun_cli")
     folder = Path(spec.origin).parent if spec and spec.origin else None
     name = "rerun.exe" if sys.platform == "win32" else "rerun"
     if folder is None or not (folder / name).is_file():
         raise ViewerError("the Rerun viewer is not installed; pip install rerun-sdk")
-    return [str(folder / name), str(file), "--bind", "127.0.0.1", "--port", str(port), "--hide-welcome-screen"]
+    return str(folder / name)
+
+
+def _command(what: Path | str, port: int) -> list[str]:
+    """Return the command line that all ways of showing share: it listens on this machine only."""
+    return [_program(), str(what), "--bind", "127.0.0.1", "--port", str(port), "--hide-welcome-screen"]
 
 
 def _environment(**more: str) -> dict[str, str]:
@@ -61,16 +67,117 @@ def native(file: Path) -> None:
     ViewerError
         If there is no display, or the viewer cannot start.
     """
+    _shown(file)
+
+
+def native_url(address: str) -> None:
+    """Show what a server offers in a window and wait until it is closed; errors as :func:`native`."""
+    _shown(address)
+
+
+def _shown(what: Path | str) -> None:
     if sys.platform.startswith("linux") and not (os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")):
         raise ViewerError(
             "the viewer needs a display and none is set (DISPLAY, WAYLAND_DISPLAY); "
-            "write a picture with --png FILE or a recording with --save FILE.rrd"
+            "serve a page with --web, write a picture with --png FILE or a recording with --save FILE.rrd"
         )
     with tempfile.TemporaryFile() as said:
-        command = _command(file, _free_port())
+        command = _command(what, _free_port())
         status = subprocess.run(command, env=_environment(), stdout=said, stderr=said, check=False).returncode
         if status != 0:
             raise ViewerError(_why(said, status))
+
+
+@contextlib.contextmanager
+def served(what: Path | str) -> Iterator[tuple[str, Callable[[], None]]]:
+    """Serve the web viewer on 127.0.0.1, offline; it ends with the context.
+
+    Parameters
+    ----------
+    what : Path or str
+        A recording, or the address of a catalogue.
+
+    Yields
+    ------
+    tuple of (str, callable)
+        The page to open, and a function that waits until the server ends or is interrupted.
+
+    Raises
+    ------
+    ViewerError
+        If the server cannot start.
+    """
+    page, data = _free_port(), _free_port()
+    command = [*_command(what, data), "--serve-web", "--web-viewer-port", str(page)]
+    recording = isinstance(what, Path)
+    with _running(command, [page, data] if recording else [page]) as process:
+        source = f"rerun+http://127.0.0.1:{data}/proxy" if recording else what
+        yield f"http://127.0.0.1:{page}/?url={quote(str(source), safe='')}", lambda: _wait(process)
+
+
+@contextlib.contextmanager
+def catalogue(folder: Path) -> Iterator[str]:
+    """Run Rerun's catalogue server on 127.0.0.1 over a folder of recordings; it ends with the context.
+
+    Parameters
+    ----------
+    folder : Path
+        The recordings; its name is that of the dataset.
+
+    Yields
+    ------
+    str
+        The server's address.
+
+    Raises
+    ------
+    ViewerError
+        If the server cannot start.
+    """
+    port = _free_port()
+    where = f"{folder.name}={folder}"
+    command = [_program(), "server", "--host", "127.0.0.1", "--port", str(port), "--dataset", where]
+    with _running(command, [port]):
+        yield f"rerun+http://127.0.0.1:{port}"
+
+
+@contextlib.contextmanager
+def _running(command: list[str], ports: list[int]) -> Iterator[subprocess.Popen[bytes]]:
+    """Start a server, wait until it answers on all ports, and end it with the context."""
+    with tempfile.TemporaryFile() as said:
+        process = subprocess.Popen(command, env=_environment(), stdout=said, stderr=said)
+        try:
+            deadline = time.monotonic() + _START_SECONDS
+            while not all(_answers(port) for port in ports):
+                if process.poll() is not None:
+                    raise ViewerError(_why(said, process.returncode))
+                if time.monotonic() > deadline:
+                    raise ViewerError(f"the server did not start within {_START_SECONDS:g} s; try again")
+                time.sleep(0.1)
+            yield process
+        finally:
+            _end(process)
+
+
+def _answers(port: int) -> bool:
+    with socket.socket() as probe:
+        probe.settimeout(1.0)
+        return probe.connect_ex(("127.0.0.1", port)) == 0
+
+
+def _wait(process: subprocess.Popen[bytes]) -> None:
+    """Wait until a server ends; Ctrl-C ends it."""
+    with contextlib.suppress(KeyboardInterrupt):
+        process.wait()
+
+
+def _end(process: subprocess.Popen[bytes]) -> None:
+    process.terminate()
+    try:
+        process.wait(timeout=10)
+    except subprocess.TimeoutExpired:
+        process.kill()
+        process.wait()
 
 
 @contextlib.contextmanager
@@ -116,20 +223,13 @@ def headless(file: Path, size: tuple[int, int]) -> Iterator[ViewerClient]:
             said_so = " ".join(str(lost).split())
             raise ViewerError(f"the viewer stopped answering ({said_so}); try again on an idle machine") from lost
         finally:
-            process.terminate()
-            try:
-                process.wait(timeout=10)
-            except subprocess.TimeoutExpired:
-                process.kill()
-                process.wait()
+            _end(process)
 
 
 def _loaded(kind: type[ViewerClient], port: int) -> ViewerClient | None:
     """Return a client once the viewer answers and has its recording and its views, else None."""
-    with socket.socket() as probe:
-        probe.settimeout(1.0)
-        if probe.connect_ex(("127.0.0.1", port)) != 0:
-            return None
+    if not _answers(port):
+        return None
     try:
         client = kind.connect(f"rerun+http://127.0.0.1:{port}/proxy")
         state = client.get_state()

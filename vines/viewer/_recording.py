@@ -17,7 +17,9 @@ from vines.errors import ViewerError
 from vines.logs import Log
 from vines.viewer._clock import Clock
 from vines.viewer._curves import curves
+from vines.viewer._impacts import dial, lanes
 from vines.viewer._layout import Shown, blueprint
+from vines.viewer._rig import send_rig, shown_rig
 from vines.viewer._scene import cavity, phase_plane
 from vines.viewer._text import about, send_impact_log
 
@@ -49,11 +51,7 @@ def write_recording(logs: Sequence[Log], out: Path, *, still: bool = False) -> N
     roots = _roots([log.name for log in logs])
     shown: list[Shown] = []
     for root, log in zip(roots, logs, strict=True):
-        if not log.states.num_rows:
-            raise ViewerError(f"{log.path} holds no states, so there is nothing to show; record the run with samples")
-        times = log.states["t"].to_numpy()
-        period = 2 * math.pi / log.parameters.get("Omega", 1.0)
-        shown.append(Shown(root, log.name, float(times[0]), float(times[-1]), period))
+        shown.append(_shown(root, log))
     rec = rr.RecordingStream(APPLICATION, recording_id=_identity(logs), send_properties=False)
     rec.save(out, default_blueprint=blueprint(shown, still=still))
     rec.send_recording_name(", ".join(log.name for log in logs))
@@ -64,15 +62,36 @@ def write_recording(logs: Sequence[Log], out: Path, *, still: bool = False) -> N
     rec.disconnect()
 
 
+def _shown(root: str, log: Log) -> Shown:
+    """Return what the layout must know of a log."""
+    if log.kind == "rig":
+        return shown_rig(root, log)
+    if not log.states.num_rows:
+        raise ViewerError(f"{log.path} holds no states, so there is nothing to show; record the run with samples")
+    times = log.states["t"].to_numpy()
+    period = 2 * math.pi / log.parameters.get("Omega", 1.0)
+    return Shown(root, _title(log), float(times[0]), float(times[-1]), period, log.kind)
+
+
+def _title(log: Log) -> str:
+    return f"{log.name} ({log.word})" if log.word else log.name
+
+
 def _send(rec: rr.RecordingStream, root: str, log: Log) -> None:
     """Send one run."""
+    rec.log(f"{root}/about", rr.TextDocument(about(log), media_type=rr.MediaType.MARKDOWN), static=True)
+    if log.kind == "rig":
+        send_rig(rec, root, log)
+        return
     states, impacts = _columns(log.states), _columns(log.impacts)
-    clock = Clock(float(states["t"][0]), float(states["phase"][0]), log.parameters.get("Omega"))
+    start, end = float(states["t"][0]), float(states["t"][-1])
+    clock = Clock(start, float(states["phase"][0]), log.parameters.get("Omega"), impacts["t"], end)
     cavity(rec, f"{root}/cavity", states, clock)
     phase_plane(rec, f"{root}/phase", states, impacts, clock)
     curves(rec, root, states, impacts, clock)
+    dial(rec, f"{root}/dial", states, impacts, clock)
+    lanes(rec, f"{root}/lanes", states, impacts, clock)
     send_impact_log(rec, f"{root}/impacts", impacts, clock)
-    rec.log(f"{root}/about", rr.TextDocument(about(log), media_type=rr.MediaType.MARKDOWN), static=True)
 
 
 def _columns(table: pa.Table) -> dict[str, np.ndarray]:
@@ -102,14 +121,19 @@ def _identity(logs: Sequence[Log]) -> str:
     """Return an id that is the same for the same logs, so that opening them twice shows them once."""
     digest = hashlib.sha256()
     for log in logs:
-        digest.update(repr((log.name, log.provenance, log.parameters, log.states.num_rows)).encode())
-        digest.update(log.states["w"].to_numpy().tobytes())
+        digest.update(log.sha256.encode())
     return digest.hexdigest()[:32]
 
 
 def _properties(logs: Sequence[Log]) -> rr.AnyValues:
     """Return what a catalogue of recordings shows as columns: names, parameters and provenance."""
-    properties: dict[str, Any] = {"name": [log.name for log in logs]}
+    properties: dict[str, Any] = {
+        "name": [log.name for log in logs],
+        "kind": [log.kind for log in logs],
+        "impacts": [log.impacts.num_rows for log in logs],
+        "sticks": [log.sticks.num_rows for log in logs],
+        "log": [log.path.name for log in logs],
+    }
     for key in dict.fromkeys(key for log in logs for key in log.parameters):
         properties[key] = [log.parameters.get(key, math.nan) for log in logs]
     for key in dict.fromkeys(key for log in logs for key in log.provenance):

@@ -13,7 +13,7 @@ import rerun as rr
 from vines.viewer._clock import Clock
 from vines.viewer._style import BALL, BASE, GRID, LEFT, LINE, MASS, RIGHT, SPRING, TRAIL
 
-__all__ = ["CAVITY_BOUNDS", "PHASE_BOUNDS", "cavity", "phase_plane"]
+__all__ = ["CAVITY_BOUNDS", "PHASE_BOUNDS", "cavity", "phase_plane", "write"]
 
 _RADIUS = 0.09
 _WALL = 0.07
@@ -56,7 +56,7 @@ def cavity(rec: rr.RecordingStream, root: str, states: dict[str, np.ndarray], cl
         )
     shell = [[(-outer, y), (outer, y)] for y in (-_HEIGHT - 0.04, _HEIGHT + 0.04)]
     rec.log(f"{root}/mass/shell", rr.LineStrips2D(shell, radii=0.04, colors=MASS), static=True)
-    _write(rec, f"{root}/mass/names", [(-inner - _WALL, -0.64), (inner + _WALL, -0.64)], ["L", "R"])
+    write(rec, f"{root}/mass/names", [(-inner - _WALL, -0.64), (inner + _WALL, -0.64)], ["L", "R"])
     _move(rec, f"{root}/mass", indexes, x1)
 
     rec.log(f"{root}/ball", rr.Points2D([(0.0, 0.0)], radii=_RADIUS, colors=BALL, draw_order=40.0), static=True)
@@ -77,7 +77,7 @@ def cavity(rec: rr.RecordingStream, root: str, states: dict[str, np.ndarray], cl
     ticks = np.arange(-reach, reach + 0.5)
     strips = [[(-reach, _FLOOR), (reach, _FLOOR)], *([(x, _FLOOR), (x, _FLOOR + 0.06)] for x in ticks)]
     rec.log(f"{root}/ruler", rr.LineStrips2D(strips, radii=rr.Radius.ui_points(0.8), colors=GRID), static=True)
-    _write(rec, f"{root}/ruler/scale", [(x, _FLOOR + 0.2) for x in ticks], [f"{x:g}" for x in ticks])
+    write(rec, f"{root}/ruler/scale", [(x, _FLOOR + 0.2) for x in ticks], [f"{x:g}" for x in ticks])
 
 
 def phase_plane(
@@ -155,8 +155,8 @@ def phase_plane(
     )
     step = _step(fastest)
     marks = np.arange(-np.floor(fastest / step), np.floor(fastest / step) + 0.5) * step
-    _write(rec, f"{root}/frame/w_dot", [(-1.18, v) for v in marks], [f"{v:.3g}" for v in marks])
-    _write(rec, f"{root}/frame/w", [(x, -top * 1.13) for x in (-1.0, 0.0, 1.0)], ["R  w = −1", "0", "L  w = +1"])
+    write(rec, f"{root}/frame/w_dot", [(-1.18, v) for v in marks], [f"{v:.3g}" for v in marks])
+    write(rec, f"{root}/frame/w", [(x, -top * 1.13) for x in (-1.0, 0.0, 1.0)], ["R  w = −1", "0", "L  w = +1"])
 
 
 def _move(
@@ -178,7 +178,7 @@ def _move(
     rec.send_columns(path, indexes=indexes, columns=columns)
 
 
-def _write(rec: rr.RecordingStream, path: str, places: list[tuple[float, float]], texts: list[str]) -> None:
+def write(rec: rr.RecordingStream, path: str, places: list[tuple[float, float]], texts: list[str]) -> None:
     """Write labels without marks."""
     rec.log(
         path,

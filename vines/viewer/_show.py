@@ -6,18 +6,19 @@ import os
 import secrets
 import tempfile
 import time
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from vines.errors import FileMissingError, ViewerError
 from vines.logs import Log, read
+from vines.viewer._cache import cached_rrd
 
 if TYPE_CHECKING:
     from rerun.experimental import ViewerClient
 
-__all__ = ["save_rrd", "screenshot", "view"]
+__all__ = ["save_rrd", "screenshot", "view", "web"]
 
 _SETTLE_SECONDS = 30.0
 _PAUSE_SECONDS = 0.4
@@ -112,13 +113,15 @@ def screenshot(
     return Path(out)
 
 
-def view(logs: Sequence[str | os.PathLike[str] | Log]) -> None:
+def view(logs: Sequence[str | os.PathLike[str] | Log], *, cache: Path | None = None) -> None:
     """Show runs in the viewer and wait until its window is closed.
 
     Parameters
     ----------
     logs : sequence of path-like or Log
         One run, or several side by side.
+    cache : Path, optional
+        Folder where their recording is kept for the next time; paths are needed then.
 
     Raises
     ------
@@ -131,10 +134,54 @@ def view(logs: Sequence[str | os.PathLike[str] | Log]) -> None:
     """
     from vines.viewer._program import native
 
+    with _recorded(logs, cache) as recording:
+        native(recording)
+
+
+def web(
+    logs: Sequence[str | os.PathLike[str] | Log],
+    *,
+    cache: Path | None = None,
+    tell: Callable[[str], object] = print,
+) -> None:
+    """Serve runs in the web viewer, offline and on 127.0.0.1 only, until Ctrl-C.
+
+    Parameters
+    ----------
+    logs : sequence of path-like or Log
+        One run, or several side by side.
+    cache : Path, optional
+        Folder where their recording is kept for the next time; paths are needed then.
+    tell : callable
+        Called with the line that names the page.
+
+    Raises
+    ------
+    FileMissingError
+        If a log does not exist.
+    LogError
+        If a log is damaged or incomplete.
+    ViewerError
+        If the server cannot start.
+    """
+    from vines.viewer._program import served
+
+    with _recorded(logs, cache) as recording, served(recording) as (url, wait):
+        tell(f"open {url} in a browser; Ctrl-C ends it")
+        wait()
+
+
+@contextmanager
+def _recorded(logs: Sequence[str | os.PathLike[str] | Log], cache: Path | None) -> Iterator[Path]:
+    """Give a recording of runs, from the cache if there is one."""
+    paths = [log for log in logs if not isinstance(log, Log)]
+    if cache is not None and len(paths) == len(logs):
+        yield cached_rrd(paths, cache)
+        return
     with tempfile.TemporaryDirectory() as folder:
         recording = Path(folder) / "vines.rrd"
         _record(logs, recording)
-        native(recording)
+        yield recording
 
 
 def _logs(logs: Sequence[str | os.PathLike[str] | Log]) -> list[Log]:
@@ -164,6 +211,8 @@ def _replacing(target: Path) -> Iterator[Path]:
 
 def _moment(log: Log) -> float:
     """Return a time at which a picture shows something: a tenth of a cycle after an impact past the middle."""
+    if not log.states.num_rows:
+        return 0.0
     times = log.states["t"].to_numpy()
     middle = float(times[0] + 0.55 * (times[-1] - times[0]))
     later = [t for t in log.impacts["t"].to_pylist() if t > middle]

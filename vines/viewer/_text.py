@@ -52,16 +52,33 @@ def send_impact_log(rec: rr.RecordingStream, path: str, impacts: dict[str, np.nd
 
 def about(log: Log) -> str:
     """Return a run's parameters, counts and provenance as Markdown."""
+    rows = [(_named(name), f"{value:.10g}") for name, value in log.parameters.items()]
+    if log.word:
+        rows.append(("word", log.word))
+    for orbit in log.orbits.to_pylist():
+        size = np.hypot(orbit["multiplier_1_re"], orbit["multiplier_1_im"])
+        rows.append(("orbit", "stable" if orbit["stable"] else "unstable"))
+        rows.append(("largest multiplier", f"{size:.6g}"))
+        rows.append(("period", f"{orbit['period']:.8g}"))
+    if log.states.num_rows:
+        rows += _counts(log)
+    for name, samples in log.sensors.items():
+        rows.append((name, f"{samples.num_rows} samples"))
+    if log.recovered:
+        rows.append(("**recovered**, lost", _short(log.recovered.get("lost", ""), 80)))
+    rows += [(name, _short(text)) for name, text in log.provenance.items() if text not in _EMPTY]
+    return "\n".join([f"### {log.name}", "", "| | |", "|---|---|", *(f"| {name} | {text} |" for name, text in rows)])
+
+
+def _counts(log: Log) -> list[tuple[str, str]]:
     sides = log.impacts["side"].to_numpy()
     times = log.states["t"].to_numpy()
-    rows = [(_named(name), f"{value:.10g}") for name, value in log.parameters.items()]
-    rows.append(("time t", f"{times[0]:.6g} to {times[-1]:.6g}"))
+    rows = [("time t", f"{times[0]:.6g} to {times[-1]:.6g}")]
     if "Omega" in log.parameters:
         rows.append(("forcing cycles", f"{(times[-1] - times[0]) * log.parameters['Omega'] / (2 * np.pi):.4g}"))
     rows.append(("impacts on L and R", f"{(sides == 1).sum()} and {(sides == -1).sum()}"))
     rows.append(("sticks", str(log.sticks.num_rows)))
-    rows += [(name, _short(text)) for name, text in log.provenance.items() if text not in _EMPTY]
-    return "\n".join([f"### {log.name}", "", "| | |", "|---|---|", *(f"| {name} | {text} |" for name, text in rows)])
+    return rows
 
 
 def _named(symbol: str) -> str:

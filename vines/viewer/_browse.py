@@ -1,0 +1,79 @@
+"""Many logs in Rerun's own catalogue: one row a log, its parameters and attractor as columns."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import tempfile
+from collections.abc import Callable, Iterator, Sequence
+from pathlib import Path
+
+from vines.errors import ViewerError
+from vines.viewer._cache import cached_rrd
+from vines.viewer._program import catalogue, native_url, served
+
+__all__ = ["browse", "catalogue_of"]
+
+
+@contextlib.contextmanager
+def catalogue_of(logs: Sequence[str | os.PathLike[str]], cache: Path) -> Iterator[str]:
+    """Run Rerun's catalogue server on 127.0.0.1 over logs and give its address; it ends with the context.
+
+    Parameters
+    ----------
+    logs : sequence of path-like
+        At least one; each becomes a row of the dataset ``runs``.
+    cache : Path
+        Where the recordings of the logs are kept.
+
+    Raises
+    ------
+    LogError
+        If a log is damaged or incomplete.
+    ViewerError
+        If there is no log, or the server cannot start.
+    """
+    if not logs:
+        raise ViewerError("there are no logs to browse; `vines run quickstart` makes some")
+    recordings = [cached_rrd([log], cache) for log in dict.fromkeys(Path(log).resolve() for log in logs)]
+    # The server shows a folder: one that holds these recordings and no others.
+    with tempfile.TemporaryDirectory(prefix="vines-browse-") as name:
+        folder = Path(name) / "runs"
+        folder.mkdir()
+        for recording in recordings:
+            (folder / recording.name).symlink_to(recording.resolve())
+        with catalogue(folder) as address:
+            yield address
+
+
+def browse(
+    logs: Sequence[str | os.PathLike[str]], cache: Path, *, web: bool = False, tell: Callable[[str], object] = print
+) -> None:
+    """Show many logs in the viewer as a table whose rows open as runs, until it is closed (or Ctrl-C).
+
+    Parameters
+    ----------
+    logs : sequence of path-like
+        The logs.
+    cache : Path
+        Where the recordings of the logs are kept.
+    web : bool
+        Serve the web viewer instead of opening a window.
+    tell : callable
+        Called with the addresses.
+
+    Raises
+    ------
+    LogError
+        If a log is damaged or incomplete.
+    ViewerError
+        If there is no log, no display, or a program cannot start.
+    """
+    with catalogue_of(logs, cache) as address:
+        tell(f"catalogue of {len(logs)} logs: {address}")
+        if web:
+            with served(address) as (url, wait):
+                tell(f"open {url} in a browser; Ctrl-C ends it")
+                wait()
+        else:
+            native_url(address)

@@ -1,0 +1,65 @@
+"""Recordings that are kept between calls: made again when a log, the layout or Rerun changes, never the only copy."""
+
+from __future__ import annotations
+
+import hashlib
+import os
+from collections.abc import Sequence
+from importlib.metadata import version
+from pathlib import Path
+
+from vines.errors import FileMissingError
+from vines.logs import read
+
+__all__ = ["cached_rrd"]
+
+
+def cached_rrd(logs: Sequence[str | os.PathLike[str]], folder: Path) -> Path:
+    """Return a recording of logs from a folder, made if the logs or the layout have changed since.
+
+    A recording is named by the places of its logs and by a digest of their bytes, the modules that draw them and the
+    version of Rerun. Those of the same logs that are out of date are removed. The folder may be deleted at any time.
+
+    Parameters
+    ----------
+    logs : sequence of path-like
+        One run, or several to be shown side by side.
+    folder : Path
+        Where recordings are kept; made if it is missing.
+
+    Raises
+    ------
+    FileMissingError
+        If a log does not exist.
+    LogError
+        If a log is damaged or incomplete.
+    ViewerError
+        If there is nothing to show.
+    """
+    paths = [Path(log).resolve() for log in logs]
+    missing = [path for path in paths if not path.is_file()]
+    if missing:
+        raise FileMissingError(f"{missing[0]}: there is no such file")
+    place = hashlib.sha256("\0".join(map(str, paths)).encode()).hexdigest()[:12]
+    content = hashlib.sha256(f"{version('rerun-sdk')} {_drawing()}".encode())
+    for path in paths:
+        content.update(hashlib.sha256(path.read_bytes()).digest())
+    target = folder / f"{place}-{content.hexdigest()[:20]}.rrd"
+    if target.is_file():
+        return target
+    from vines.viewer._show import save_rrd
+
+    folder.mkdir(parents=True, exist_ok=True)
+    save_rrd([read(path) for path in paths], target)
+    for other in folder.glob(f"{place}-*.rrd"):
+        if other != target:
+            other.unlink(missing_ok=True)
+    return target
+
+
+def _drawing() -> str:
+    """Return a digest of the modules that decide what a recording looks like."""
+    digest = hashlib.sha256()
+    for file in sorted(Path(__file__).parent.glob("*.py")):
+        digest.update(file.name.encode() + file.read_bytes())
+    return digest.hexdigest()
