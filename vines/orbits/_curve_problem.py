@@ -10,7 +10,7 @@ from vines.dynamics._jit import njit
 from vines.model import PARAMETER_NAMES, Params
 from vines.orbits._assemble import assemble
 from vines.orbits._closed_form import family_of, impact_states
-from vines.orbits._defining import FLIP, FOLD, GRAZE, STOP, TORUS, condition_kernel, turnings_kernel
+from vines.orbits._defining import FLIP, FOLD, GRAZE, STOP, TORUS, condition_kernel, gap_kernel, turnings_kernel
 from vines.orbits._family import closing_at
 from vines.orbits._orbit import Orbit
 from vines.orbits._values import values_of
@@ -108,10 +108,8 @@ class CurveProblem:
 
     def bend(self, y: Floats) -> float:
         """Return w'' at the turning point that touches the wall, negative where it touches L."""
-        orbit = self.orbit(y)
-        rows = turnings_kernel(constants(orbit.params), orbit.period, orbit.t, orbit.states)
-        mine = rows[rows[:, 0] == self.place]
-        return float(mine[np.argmin(np.abs(mine[:, 1] - y[-3])), 4])
+        values, t, states = self._closed(y)
+        return float(gap_kernel(values, t, states, self.place, y[-3])[2])
 
     def _params(self, y: Floats) -> Params:
         return self._fixed.replace(**dict(zip(self.names, (float(y[-2]), float(y[-1])), strict=True)))
@@ -151,10 +149,13 @@ class CurveProblem:
 
     def orbit(self, y: Floats) -> Orbit:
         """Return the orbit of a solution."""
+        _, t, states = self._closed(y)
+        return assemble(self.word, self._params(y), t, states)
+
+    def _closed(self, y: Floats) -> tuple[Floats, Floats, Floats]:
+        """Return parameter values, impact times and states of a solution."""
         values = self._values.copy()
         values[list(self._index)] = y[-2:]
         if self._explicit:
-            _, t, states = self._impacts(values, float(y[0]))
-        else:
-            _, _, t, states = closing_at(values, self.word.p, self._side, y[: self._n])
-        return assemble(self.word, self._params(y), t, states)
+            return values, *self._impacts(values, float(y[0]))[1:]
+        return values, *closing_at(values, self.word.p, self._side, y[: self._n])[2:]

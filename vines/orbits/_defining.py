@@ -16,7 +16,7 @@ from vines.dynamics._saltation import jacobian_kernel
 from vines.orbits._turning import turning_points_kernel
 from vines.orbits._values import essentials
 
-__all__ = ["FLIP", "FOLD", "GRAZE", "STOP", "TORUS", "condition_kernel", "turnings_kernel"]
+__all__ = ["FLIP", "FOLD", "GRAZE", "STOP", "TORUS", "condition_kernel", "gap_kernel", "turnings_kernel"]
 
 FOLD, FLIP, TORUS, GRAZE, STOP = range(5)
 """Codes of the defining equations: a multiplier +1, -1, a pair of product 1, a turning point on a wall, w' = 0."""
@@ -51,8 +51,8 @@ def _without_pair(M):
 
 
 @njit
-def _gap(values, side, t, states, flight, tau):
-    """Return w and w' at time tau of a flight."""
+def gap_kernel(values, t, states, flight, tau):
+    """Return w, w' and w'' at time tau of a flight."""
     c = essentials(values)
     x1, v1, x2, v2 = states[flight, 0], states[flight, 1], states[flight, 2], states[flight, 3]
     mu, r = values[0], values[3]
@@ -60,8 +60,8 @@ def _gap(values, side, t, states, flight, tau):
     ball = ((1.0 + r) * v1 + (mu - r) * v2) / (1.0 + mu)
     zr, zi, qr, qi = phasors(c.free, c.Omega, x1, after, (c.Omega * t[flight]) % (2.0 * math.pi))
     zr, zi, qr, qi = turn(c.free, c.Omega, zr, zi, qr, qi, tau)
-    x, v, _, _, _ = derivatives(c.free, c.Omega, zr, zi, qr, qi)
-    return x - x2 - ball * tau, v - ball
+    x, v, a, _, _ = derivatives(c.free, c.Omega, zr, zi, qr, qi)
+    return x - x2 - ball * tau, v - ball, a
 
 
 @njit
@@ -86,7 +86,7 @@ def condition_kernel(kind, values, p, side, t, states, half, place, wall, tau):
         Time since the start of the flight at which it turns (GRAZE).
     """
     if kind == GRAZE:
-        w, speed = _gap(values, side, t, states, place, tau)
+        w, speed, _ = gap_kernel(values, t, states, place, tau)
         return w - wall, speed
     if kind == STOP:
         return states[place, 1] - states[place, 3], 0.0

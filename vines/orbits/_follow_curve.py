@@ -213,10 +213,10 @@ class _Way:
     def _cusp(self, here: Point, there: Point) -> tuple[float, str, Point] | None:
         """Return the cusp between two points: the parameters turn back though the curve goes on."""
         along = here.tangent[-2:]
-        if along @ there.tangent[-2:] >= 0:
+        if self.problem.kind != "fold" or along @ there.tangent[-2:] >= 0:
             return None
         found = self._root(lambda point: float(along @ point.tangent[-2:]), here, there)
-        if found is None or np.linalg.norm(found[1].tangent[-2:]) > 0.1 * np.linalg.norm(along):
+        if found is None or np.linalg.norm(found[1].tangent[-2:]) > 1e-4 * np.linalg.norm(along):
             return None
         return found[0], "cusp", found[1]
 
