@@ -31,6 +31,8 @@ COMMANDS = {
     "check": ("vines.cli._check", "Do the results reproduce the published values?"),
     "solve": ("vines.cli._solve", "Print the periodic orbit of a word of impacts."),
     "view": ("vines.cli._view", "Look at logged runs in the Rerun viewer."),
+    "browse": ("vines.cli._browse", "Browse all logs as a table in the Rerun viewer."),
+    "recover": ("vines.cli._recover", "Save what is intact in a damaged log."),
     "diff": ("vines.cli._diff", "Compare two results, parameters and values."),
     "gc": ("vines.cli._gc", "Remove results that nothing refers to."),
     "warm-up": ("vines.cli._warm_up", "Compile the kernels now, not at the first run."),

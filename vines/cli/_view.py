@@ -6,18 +6,17 @@ from pathlib import Path
 
 import click
 
+_FILE = click.Path(dir_okay=False, path_type=Path)
+
 
 @click.command("view")
 @click.argument("logs", nargs=-1, required=True, metavar="LOG...")
-@click.option("--png", type=click.Path(dir_okay=False, path_type=Path), help="Draw a picture without any screen.")
-@click.option(
-    "--save",
-    type=click.Path(dir_okay=False, path_type=Path),
-    help="Write a recording (.rrd) with its blueprint.",
-)
-@click.option("--at", type=float, help="Simulation time that the picture shows; a moment near the end if left out.")
-def command(logs: tuple[str, ...], png: Path | None, save: Path | None, at: float | None) -> None:
-    """Look at logged runs in the Rerun viewer.
+@click.option("--web", is_flag=True, help="Serve the web viewer on 127.0.0.1 and print its page; needs no network.")
+@click.option("--png", type=_FILE, help="Draw a picture without any screen.")
+@click.option("--save", type=_FILE, help="Write a recording (.rrd) with its blueprint.")
+@click.option("--at", type=float, help="Simulation time that the picture shows; a moment past the middle if left out.")
+def command(logs: tuple[str, ...], web: bool, png: Path | None, save: Path | None, at: float | None) -> None:
+    """Look at logged runs in the Rerun viewer, several side by side.
 
     LOG is <pipeline>.<stage>, <pipeline>.<stage>/<point>, a log id, or the path of an MCAP file.
 
@@ -25,16 +24,21 @@ def command(logs: tuple[str, ...], png: Path | None, save: Path | None, at: floa
     vines view quickstart.asymmetric_run
     vines view quickstart.doubled_run --png doubled.png
     """  # noqa: D301
-    from vines.stages import find_logs
-    from vines.viewer import save_rrd, screenshot, view
+    from vines import viewer
+    from vines.stages import find_logs, recordings_folder
 
+    if web and (png is not None or save is not None):
+        raise click.UsageError("--web serves until Ctrl-C and goes with neither --png nor --save; give one of them")
+    if at is not None and png is None:
+        raise click.UsageError("--at is the time of a picture; give --png FILE too")
     paths = [path for name in logs for path in find_logs(name)]
-    if png is None and save is None:
-        view(paths)
-        return
     if save is not None:
-        save_rrd(paths, save)
+        viewer.save_rrd(paths, save)
         click.echo(f"wrote {save}")
     if png is not None:
-        screenshot(paths, png, at=at)
+        viewer.screenshot(paths, png, at=at)
         click.echo(f"wrote {png}")
+    if web:
+        viewer.web(paths, cache=recordings_folder(), tell=click.echo)
+    elif png is None and save is None:
+        viewer.view(paths, cache=recordings_folder())

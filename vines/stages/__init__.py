@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from vines.stages._asking import checks, list_tables, query, rows_of, save_query, table
-    from vines.stages._finding import find_logs
+    from vines.stages._finding import all_logs, find_logs, recordings_folder
     from vines.stages._found import found
     from vines.stages._keeping import Difference, clean, declaration_schema, diff, graph
     from vines.stages._kinds import register_kinds
@@ -17,6 +17,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "Difference",
+    "all_logs",
     "checks",
     "clean",
     "compile_if_cold",
@@ -30,7 +31,9 @@ __all__ = [
     "list_tables",
     "load_pipeline",
     "open_store",
+    "orbit_log",
     "query",
+    "recordings_folder",
     "register_kinds",
     "rows_of",
     "run",
@@ -41,6 +44,9 @@ __all__ = [
 ]
 
 _HOME = {
+    "all_logs": "_finding",
+    "orbit_log": "_orbit_log",
+    "recordings_folder": "_finding",
     "Difference": "_keeping",
     "checks": "_asking",
     "compile_if_cold": "_running",

@@ -1,13 +1,44 @@
-"""From the name of a log to its file."""
+"""From the name of a log to its file, and where recordings of logs are kept."""
 
 from __future__ import annotations
 
 from pathlib import Path
 
 from vines.errors import FileMissingError, UnknownNameError, nearest
+from vines.places import cache_folder
 from vines.stages._running import open_store
 
-__all__ = ["find_logs"]
+__all__ = ["all_logs", "find_logs", "recordings_folder"]
+
+
+def recordings_folder() -> Path:
+    """Return the folder of recordings (.rrd) that can be made again from their logs."""
+    return cache_folder() / "rrd"
+
+
+def all_logs() -> list[Path]:
+    """Return the MCAP files of all logs of the catalogue.
+
+    Raises
+    ------
+    UnknownNameError
+        If nothing with logs has been run.
+    """
+    found = [path for logs in _pinned().values() for path in logs.values()]
+    if not found:
+        raise UnknownNameError("there are no logs: nothing with logs has been run here; try 'vines run quickstart'")
+    return list(dict.fromkeys(found))
+
+
+def _pinned() -> dict[str, dict[str, Path]]:
+    """Return for each stage that is pinned its logs by their points."""
+    store = open_store()
+    return {
+        f"{pipeline}.{stage}": store.result(pin["result"]).logs
+        for pipeline, stages in store.pinned().items()
+        for stage, pin in stages.items()
+        if store.has(pin["result"]) and store.result(pin["result"]).logs
+    }
 
 
 def find_logs(name: str) -> list[Path]:
@@ -32,13 +63,7 @@ def find_logs(name: str) -> list[Path]:
                 f"{name}: there is no such file; 'vines query \"select * from logs\"' lists the logs"
             )
         return [path]
-    store = open_store()
-    logs = {
-        f"{pipeline}.{stage}": store.result(pin["result"]).logs
-        for pipeline, stages in store.pinned().items()
-        for stage, pin in stages.items()
-        if store.has(pin["result"]) and store.result(pin["result"]).logs
-    }
+    logs = _pinned()
     stage, _, point = name.partition("/")
     if stage in logs:
         if not point:

@@ -39,12 +39,16 @@ class Start(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 
 class TrajectoryOptions(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """One run of the simulator: `settle` periods unrecorded, then `record` periods into an MCAP log."""
+    """One run of the simulator: `settle` periods unrecorded, then `record` periods into an MCAP log.
+
+    With `bare` the log also carries what a viewer without vines understands (docs/logs.md).
+    """
 
     start: Start = msgspec.field(default_factory=Start)
     settle: int = 400
     record: int = 10
     per_period: int = 200
+    bare: bool = True
 
 
 class SweepOptions(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
