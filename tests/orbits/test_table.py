@@ -7,6 +7,7 @@ from vines.dynamics._constants import constants
 from vines.errors import ParameterError
 from vines.model import Params
 from vines.orbits import symmetric_orbits, symmetric_table
+from vines.orbits._eigenvalues import eigenvalues_kernel
 from vines.orbits._table import constants_kernel
 
 
@@ -32,6 +33,19 @@ def test_it_is_the_closed_form_at_random_points():
                 assert row["min_clearance"] == pytest.approx(orbit.min_clearance, abs=1e-12)
                 for z in row["half_multipliers"] ** 2:
                     assert np.abs(orbit.multipliers - z).min() < 1e-10 * max(1, orbit.max_multiplier)
+
+
+def test_its_eigenvalues_have_a_backward_error_of_rounding():
+    rng = np.random.default_rng(0)
+    matrices = [rng.normal(size=(4, 4)) * 10 ** rng.uniform(-2, 2, size=(4, 1)) for _ in range(200)]
+    shift = np.roll(np.eye(4), 1, axis=0)
+    for M in (*matrices, shift, np.triu(matrices[0]), np.zeros((4, 4)), np.eye(4), np.round(matrices[1])):
+        values = np.empty(4, dtype=complex)
+        eigenvalues_kernel(M.astype(complex), values)
+        size = np.linalg.norm(M) + 1e-300
+        assert abs(values.sum() - np.trace(M)) <= 2e-14 * size
+        for z in values:
+            assert np.linalg.svd(M - z * np.eye(4))[1][-1] <= 2e-14 * size
 
 
 def test_its_constants_are_those_of_the_dynamics():

@@ -15,6 +15,7 @@ from vines.dynamics._saltation import jacobian_kernel
 from vines.errors import ParameterError
 from vines.model import Params
 from vines.model._params import LAM_TABLE_1
+from vines.orbits._eigenvalues import eigenvalues_kernel
 from vines.orbits._survey import inspect_flight
 
 __all__ = ["constants_kernel", "symmetric_table"]
@@ -142,6 +143,7 @@ def constants_kernel(mu, A, Omega, r, lam):
 def _table_kernel(points, period, out):
     """Fill the table: the closed form of docs/orbits.md, then one flight of each orbit, the other being its mirror."""
     H = np.empty((4, 4), dtype=np.complex128)
+    multipliers = np.empty(4, dtype=np.complex128)
     for i in range(points.shape[0]):
         mu, A, Omega, r, lam = points[i, 0], points[i, 1], points[i, 2], points[i, 3], points[i, 4]
         c = constants_kernel(mu, A, Omega, r, lam)
@@ -180,7 +182,7 @@ def _table_kernel(points, period, out):
             for j in range(4):
                 for k in range(4):
                     H[j, k] = J[j, k] if j == 3 else -J[j, k]
-            multipliers = np.linalg.eigvals(H)
+            eigenvalues_kernel(H, multipliers)
             largest = 0.0
             for k in range(4):
                 row.half_multipliers[k] = multipliers[k]

@@ -10,6 +10,7 @@ from vines.orbits._continuation import continue_orbit
 from vines.orbits._find import find_orbit
 from vines.orbits._follow_curve import follow_curve
 from vines.orbits._general import refine
+from vines.orbits._table import symmetric_table
 
 __all__ = ["warm_up"]
 
@@ -32,6 +33,7 @@ def warm_up(report: Callable[[str], object] = print) -> None:
     began = time.perf_counter()
     orbit = find_orbit("LR", Params(mu=0.01, A=0.017))
     refine(orbit.word, orbit.params, orbit)
+    symmetric_table(orbit.params.mu, orbit.params.A)
     branch = continue_orbit(find_orbit("LLR", Params(mu=0.01, A=0.0213)), "A", 0.0212)
     follow_curve(branch.bifurcations[0], box={"A": (0.02, 0.022), "mu": (0.0099, 0.0101)})
     report(f"  periodic orbits, families, curves: {time.perf_counter() - began:.1f} s")
