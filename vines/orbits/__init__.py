@@ -8,6 +8,8 @@ from vines.orbits._curve import Curve, SpecialPoint, curve_rows
 from vines.orbits._find import find_orbit
 from vines.orbits._follow_curve import follow_curve
 from vines.orbits._joined import mirror_image
+from vines.orbits._margins import Margin
+from vines.orbits._optimum import Optimum, optimise
 from vines.orbits._orbit import Orbit
 from vines.orbits._reduced import Reduced, manifold_amplitude, manifold_range, reduced_orbits, reduced_range
 from vines.orbits._rows import bifurcation_row, branch_row, orbit_row
@@ -20,6 +22,8 @@ __all__ = [
     "Bifurcation",
     "Branch",
     "Curve",
+    "Margin",
+    "Optimum",
     "Orbit",
     "Orbits",
     "Reduced",
@@ -35,6 +39,7 @@ __all__ = [
     "manifold_amplitude",
     "manifold_range",
     "mirror_image",
+    "optimise",
     "orbit_row",
     "reduced_orbits",
     "reduced_range",

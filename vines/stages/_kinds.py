@@ -19,6 +19,7 @@ __all__ = [
     "BranchOptions",
     "CheckOptions",
     "FigureOptions",
+    "OptimumOptions",
     "ReducedOptions",
     "Start",
     "SweepOptions",
@@ -78,6 +79,17 @@ class ReducedOptions(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """The multiple-scales approximation of the symmetric 1:1 response beside the exact orbit; nothing to choose."""
 
 
+class OptimumOptions(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """The stable orbit of a word with least max|x1| or largest K2/K1 over the varied parameters.
+
+    `largest_multiplier` keeps the Floquet multipliers inside that radius.
+    """
+
+    word: str
+    objective: Literal["max_abs_x1", "kinetic_ratio"]
+    largest_multiplier: float = 1.0
+
+
 class FigureOptions(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """A picture of the needed stages; `panels` are the quantities shown, by default those of the plot."""
 
@@ -109,6 +121,19 @@ def _check_simulation(params: dict[str, float], options: Any) -> None:
 def _check_model(params: dict[str, float], options: Any) -> None:
     del options
     Params(**params)
+
+
+def _check_optimum(params: dict[str, float], options: Any) -> None:
+    from vines.model import Word
+
+    Params(**{name: value for name, value in params.items() if name != "b"})
+    Word(options.word)
+    if not params["b"] > 0:
+        raise ParameterError(f"b is {params['b']:g}, allowed is b > 0: it is the half length of the cavity")
+    if not 0 < options.largest_multiplier <= 1:
+        raise ParameterError(
+            f"largest_multiplier is {options.largest_multiplier:g}, allowed is 0 < largest_multiplier <= 1"
+        )
 
 
 def _check_branch(params: dict[str, float], options: Any) -> None:
@@ -182,6 +207,19 @@ def register_kinds() -> None:
             parameters=PARAMETERS,
             vary="grid",
             check=_check_model,
+        )
+    )
+    register(
+        Kind(
+            name="optimum",
+            summary="the stable orbit with least max|x1| or largest K2/K1, and its distance to bifurcations",
+            shape="whole",
+            options=OptimumOptions,
+            body="vines.stages._optimum:compute",
+            tables=("optima", "orbits"),
+            parameters={**PARAMETERS, "b": 1.0},
+            vary="range",
+            check=_check_optimum,
         )
     )
     register(
