@@ -6,13 +6,12 @@ BIN := $(VENV)/bin
 STAMP := $(VENV)/.installed
 export RERUN_ANALYTICS = 0
 
-.PHONY: run test install lint types rooms acceptance system lock clean help
+.PHONY: run test install lint types rooms acceptance system lock clean clean-results help
 
 help:            ## list the targets
-	@grep -hE '^[a-z]+:.*##' Makefile | sed 's/:.*##/\t/'
+	@grep -hE '^[a-z-]+:.*##' Makefile | sed 's/:.*##/\t/'
 
 run: install     ## install, compile the kernels, run the pipeline quickstart
-	@"$(BIN)/vines" warm-up
 	@"$(BIN)/vines" run quickstart
 
 test: install    ## install, then run the tests
@@ -52,5 +51,8 @@ lock:            ## renew requirements.lock
 	@"$(BIN)/pip-compile" --quiet --upgrade --generate-hashes --allow-unsafe --strip-extras --extra dev \
 	  --no-emit-index-url --no-emit-find-links --output-file=requirements.lock pyproject.toml
 
-clean:           ## remove the virtual environment and all results
-	rm -rf "$(VENV)" data/results data/points data/pipelines data/cache
+clean:           ## remove the virtual environment and what can be made again; results stay
+	rm -rf "$(VENV)" data/cache
+
+clean-results:   ## remove all results
+	rm -rf data/results data/points data/pipelines data/staging

@@ -14,7 +14,7 @@ __all__ = ["cache_folder", "data_folder", "find_root", "shipped"]
 
 
 def find_root(start: Path | None = None) -> Path:
-    """Return the root of the project: ``VINES_ROOT``, or the nearest parent with a folder ``pipelines/``.
+    """Return the root of the project: ``VINES_ROOT``, or the nearest parent with declarations in ``pipelines/``.
 
     Where there is none, the folder itself is the root: an installed vines works in any folder with the pipelines that
     ship with it.
@@ -37,9 +37,14 @@ def find_root(start: Path | None = None) -> Path:
         return root.resolve()
     here = (start or Path.cwd()).resolve()
     for folder in (here, *here.parents):
-        if (folder / "pipelines").is_dir():
+        if _declares(folder):
             return folder
     return here
+
+
+def _declares(folder: Path) -> bool:
+    """Return whether a folder is a project: other repositories have folders of that name too, but no TOML in them."""
+    return any((folder / "pipelines").glob("*.toml"))
 
 
 def data_folder(root: Path | None = None) -> Path:
@@ -56,7 +61,7 @@ def cache_folder() -> Path:
     A project is recognised by ``VINES_DATA``, ``VINES_ROOT`` or a folder ``pipelines/`` above the current one.
     Elsewhere (a notebook in any folder) nothing is written beside the user's files.
     """
-    if os.environ.get("VINES_DATA") or os.environ.get("VINES_ROOT") or (find_root() / "pipelines").is_dir():
+    if os.environ.get("VINES_DATA") or os.environ.get("VINES_ROOT") or _declares(find_root()):
         return data_folder() / "cache"
     base = os.environ.get("XDG_CACHE_HOME") or str(Path.home() / ".cache")
     return Path(base) / "vines"

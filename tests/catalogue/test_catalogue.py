@@ -76,7 +76,7 @@ def test_columns_that_an_older_result_lacks_are_null(store, monkeypatch):
         ("select kinetic_rati from points", "kinetic_ratio"),
         ("selec * from points", "syntax error"),
         ("select 1/'x'", "Could not convert"),
-        ("", "asks for nothing"),
+        ("", "is not one query"),
     ],
 )
 def test_a_bad_query_is_one_line(store, sql, words):

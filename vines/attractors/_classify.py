@@ -109,7 +109,9 @@ def classify(recording: Recording, tolerance: float) -> Verdict:
         match = _match(recording.rows, kept, p, p * recording.params.period, scale)
         if match is None:
             continue
-        if match.blocks[-1] <= tolerance:
+        # A run within the tolerance of its orbit repeats to twice that, and to less after 2 p periods where a multiplier
+        # is near -1: with a tighter bound here the orbit would be named with twice its period.
+        if match.blocks[-1] <= 2.5 * tolerance:
             return _periodic(recording, kept, match, scale, tolerance)
         if best is None or match.blocks[-1] < 0.5 * best.blocks[-1]:
             best = match
@@ -150,8 +152,8 @@ def _periodic(
         found.remaining = match.p * math.log(NEAR / max(last, 1e-15)) / math.log(largest)
         found.reason = f"on an unstable periodic orbit: its largest multiplier is {largest:.6g}"
         return found
-    # The difference of one repetition is (1 - multiplier) of the distance that is left.
-    distance = last / (1.0 - largest) if largest < 1.0 else math.inf
+    # The difference of one repetition is |1 - multiplier| of the distance that is left.
+    distance = last / float(np.min(np.abs(1.0 - multipliers))) if largest < 1.0 else math.inf
     if distance > tolerance and last > 1e-12:
         found.regime, found.settled = "unsettled", False
         found.remaining = (

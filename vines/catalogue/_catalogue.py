@@ -52,14 +52,14 @@ class Catalogue:
         self._connection.close()
 
     def query(self, sql: str) -> pa.Table:
-        """Answer a query with an Arrow table.
+        """Answer a query with an Arrow table; columns that keep the name of a stored one keep its unit.
 
         Raises
         ------
         QueryError
             If the query cannot be answered; one line, with the nearest table if one was misspelt.
         """
-        return self._run(sql, lambda relation: relation.to_arrow_table())
+        return _with_units(self._run(sql, lambda relation: relation.to_arrow_table()))
 
     def fetch(self, sql: str) -> tuple[list[str], list[tuple[Any, ...]]]:
         """Answer a query with the names of the columns and the rows; quicker than Arrow for what is only shown.
@@ -79,14 +79,12 @@ class Catalogue:
         QueryError
             As :meth:`query`.
         """
+        if form == "csv":
+            self._run(sql, lambda relation: relation.write_csv(str(path)))
+            return
+        import pyarrow.parquet as pq
 
-        def take(relation: Any) -> None:
-            if form == "csv":
-                relation.write_csv(str(path))
-            else:
-                relation.write_parquet(str(path), compression="zstd")
-
-        self._run(sql, take)
+        pq.write_table(self.query(sql), path, compression="zstd")
 
     def count(self, name: str) -> int:
         """Return the number of rows of a view."""
@@ -114,10 +112,14 @@ class Catalogue:
         import duckdb
 
         try:
-            relation = self._connection.sql(sql)
-            if relation is None:
-                raise QueryError(f"{sql.strip()[:60]!r} asks for nothing; write a query such as 'select * from points'")
-            return take(relation)
+            statements = duckdb.extract_statements(sql)
+            if len(statements) != 1 or statements[0].type not in (
+                duckdb.StatementType.SELECT,
+                duckdb.StatementType.EXPLAIN,
+            ):
+                shown = " ".join(sql.split())[:60]
+                raise QueryError(f"{shown!r} is not one query; the catalogue is read only, ask with a single select")
+            return take(self._connection.sql(sql))
         except duckdb.Error as error:
             raise QueryError(self._say(str(error))) from None
 
@@ -137,6 +139,19 @@ class Catalogue:
 
 def _column_names() -> set[str]:
     return {name for spec in schema.tables().values() for name in spec.names}
+
+
+def _with_units(table: pa.Table) -> pa.Table:
+    """Return the table with the unit of each column whose name means the same in all stored tables."""
+    units: dict[str, set[str]] = {}
+    for spec in schema.tables().values():
+        for column in spec.columns:
+            units.setdefault(column.name, set()).add(column.unit)
+    for i, field in enumerate(table.schema):
+        told = units.get(field.name, set())
+        if len(told) == 1 and (unit := next(iter(told))):
+            table = table.set_column(i, field.with_metadata({"unit": unit}), table.column(i))
+    return table
 
 
 def connect(store: Store) -> Catalogue:

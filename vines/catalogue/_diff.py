@@ -111,7 +111,7 @@ def _table(
         if column.dtype in ("float64", "int8", "int64"):
             largest = f"max(abs({one} - {other}))"
         count, most, first = connection.execute(
-            f"select count(*), {largest}, arg_min(place, at) from pairs where {differ}"
+            f"select count(*), {largest}, arg_min(place, nth) from pairs where {differ}"
         ).fetchone()
         if count:
             found.append(ColumnDifference(column.name, count, None if most is None else float(most), first))

@@ -102,16 +102,13 @@ def main() -> None:
     except VinesError as error:
         click.echo(f"vines: {error}", err=True)
         code = error.exit_code
-    except PermissionError as error:
-        click.echo(f"vines: {error.filename}: {error.strerror}; choose a folder that may be written", err=True)
-        code = 2
-    except (NotADirectoryError, FileExistsError) as error:
-        click.echo(
-            f"vines: {error.filename}: {error.strerror}; VINES_DATA, VINES_ROOT and --root name folders", err=True
-        )
-        code = 2
     except BrokenPipeError:
         # The reader of our output went away (`vines query … | head`); nothing is wrong.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         code = 0
+    except OSError as error:
+        # A folder that cannot be made or a full disk: ours to tell in a line, not to trace.
+        place = f"{error.filename}: " if error.filename else ""
+        click.echo(f"vines: {place}{error.strerror or error}; VINES_DATA, VINES_ROOT and --root name folders", err=True)
+        code = 2
     sys.exit(code if isinstance(code, int) else 0)

@@ -33,6 +33,11 @@ def command(sql: str, form: str | None, out: Path | None) -> None:
     """  # noqa: D301
     from vines.stages import rows_of, save_query
 
+    if form is None and out is not None and out.suffix not in {*SUFFIXES, ".txt"}:
+        allowed = ".csv, .json, .parquet, .txt"
+        raise QueryError(
+            f"--out {out}: the suffix {out.suffix!r} names no format; allowed: {allowed}; or give --format"
+        )
     form = form or (SUFFIXES.get(out.suffix, "table") if out is not None else "table")
     match form:
         case "csv" | "parquet" if out is not None:

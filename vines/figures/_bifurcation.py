@@ -43,6 +43,7 @@ MARKS = {
     "fold": ("D", "fold"),
     "neimark_sacker": ("^", "Neimark–Sacker"),
     "grazing": ("v", "grazing"),
+    "pair_turns_real": ("|", "a pair of multipliers turns real"),
 }
 
 
@@ -58,11 +59,14 @@ class ImpactDots:
         +1 on the left end, -1 on the right.
     values : dict of str to (n,) array
         What the panels show, by the names of :data:`PANELS`; ``dt`` in forcing periods.
+    label : str
+        For the legend.
     """
 
     x: Floats
     side: npt.NDArray[np.integer[Any]]
     values: dict[str, Floats]
+    label: str = "simulation"
 
 
 @dataclass(frozen=True)
@@ -140,6 +144,7 @@ def bifurcation_figure(
         for letter, panel, ax in zip("abcdefgh", panels, axes, strict=False):
             _draw(ax, panel, dots, lines, markers)
             ax.set_ylabel(PANELS[panel])
+            _widen(ax)
             ax.text(-0.082, 1.0, f"({letter})", transform=ax.transAxes, va="top", fontweight="bold")
         axes[-1].set_xlabel(f"{NAMES.get(axis, axis)}  ${SYMBOLS.get(axis, axis)}$")
         everything = [group.x for group in (*dots, *lines) if len(group.x)]
@@ -170,7 +175,9 @@ def _draw(
                 zorder=1,
             )
     for line in lines:
-        colour = COLOURS["L" if line.side == 1 else "R"]
+        # Where left and right coincide, as the flight times of a symmetric orbit do, neither colour would be true.
+        twin = any(o is not line and o.side != line.side and _coincide(o, line, panel) for o in lines)
+        colour = COLOURS["ink" if twin else "L" if line.side == 1 else "R"]
         for start, stop, stable in runs(line.stable):
             # One point is shared with the next run, so that the line has no gap where stability changes.
             part = slice(start, min(stop + 1, len(line.x)))
@@ -198,15 +205,29 @@ def _draw(
         )
 
 
+def _widen(ax: Axes) -> None:
+    """Keep an axis from magnifying rounding noise into structure."""
+    ax.ticklabel_format(axis="y", useOffset=False)
+    low, high = ax.get_ylim()
+    middle, least = (low + high) / 2, 1e-6 * max(abs(low), abs(high), 1e-6)
+    if high - low < least:
+        ax.set_ylim(middle - least / 2, middle + least / 2)
+
+
+def _coincide(one: BranchLine, other: BranchLine, panel: str) -> bool:
+    a, b = one.values[panel], other.values[panel]
+    return len(a) == len(b) and np.array_equal(one.x, other.x) and np.allclose(a, b, rtol=1e-9, atol=1e-12)
+
+
 def _legend(figure: Figure, dots: Sequence[ImpactDots], lines: Sequence[BranchLine], markers: Sequence[Marker]) -> None:
     from matplotlib.lines import Line2D
 
     entries: list[Line2D] = []
-    if dots:
+    for label in dict.fromkeys(group.label for group in dots):
         for name, word in (("L", "left"), ("R", "right")):
             entries.append(
                 Line2D([], [], linestyle="none", marker=".", markersize=6, markeredgewidth=0,
-                       color=COLOURS[f"{name} light"], label=f"simulation, {word} end")
+                       color=COLOURS[f"{name} light"], label=f"{label}, {word} end")
             )  # fmt: skip
     for label in dict.fromkeys(line.label for line in lines):
         mine = [line for line in lines if line.label == label]

@@ -54,7 +54,7 @@ class Params:
 
     def __post_init__(self) -> None:
         for name in PARAMETER_NAMES:
-            object.__setattr__(self, name, _number(name, getattr(self, name)))
+            object.__setattr__(self, name, finite(name, getattr(self, name)))
         _require("mu", self.mu, self.mu > 0, "mu > 0", "mu is the mass ratio m/M")
         _require("A", self.A, self.A >= 0, "A >= 0", "a negative amplitude is a phase shift of half a period")
         _require("Omega", self.Omega, self.Omega > 0, "Omega > 0", "Omega is the frequency ratio omega/omega0")
@@ -99,12 +99,15 @@ class Params:
         return ", ".join(f"{f.name} = {getattr(self, f.name):.6g}" for f in fields(self)) + " (dimensionless)"
 
 
-def _number(name: str, value: object) -> float:
-    if isinstance(value, bool) or not hasattr(value, "__float__"):
-        raise ParameterError(f"{name} is {value!r}, which is not a number; give a finite number")
-    number = float(value)  # pyright: ignore[reportArgumentType]
+def finite(name: str, value: object, unit: str = "") -> float:
+    """Return a value as a float, or raise `ParameterError` if it is not a finite number."""
+    try:
+        number = math.nan if isinstance(value, bool | str) else float(value)  # pyright: ignore[reportArgumentType]
+    except (TypeError, ValueError):
+        number = math.nan
     if not math.isfinite(number):
-        raise ParameterError(f"{name} is {number!r}; give a finite number")
+        shown = " ".join(repr(value).split())
+        raise ParameterError(f"{name} is {shown}; give a finite number{unit and f' in {unit}'}")
     return number
 
 

@@ -6,11 +6,11 @@ import math
 from dataclasses import dataclass, fields
 
 from vines.errors import ParameterError
-from vines.model._params import Params
+from vines.model._params import Params, finite
 
 __all__ = ["PhysicalParams"]
 
-UNITS = {"M": "kg", "c": "N s/m", "k": "N/m", "b": "m", "r": "1"}
+UNITS = {"M": "kg", "c": "N s/m", "k": "N/m", "b": "m", "r": ""}
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,10 +55,7 @@ class PhysicalParams:
 
     def __post_init__(self) -> None:
         for field in fields(self):
-            value = getattr(self, field.name)
-            if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
-                raise ParameterError(f"{field.name} is {value!r}; give a finite number in {UNITS[field.name]}")
-            object.__setattr__(self, field.name, float(value))
+            object.__setattr__(self, field.name, finite(field.name, getattr(self, field.name), UNITS[field.name]))
         for name in ("M", "k", "b"):
             if getattr(self, name) <= 0:
                 raise ParameterError(f"{name} is {getattr(self, name):g} {UNITS[name]}, allowed is {name} > 0")
@@ -66,6 +63,11 @@ class PhysicalParams:
             raise ParameterError(f"c is {self.c:g} N s/m, allowed is c >= 0")
         if not 0 <= self.r <= 1:
             raise ParameterError(f"r is {self.r:g}, allowed is 0 <= r <= 1: r is the coefficient of restitution")
+        if self.lam >= 2:
+            most = 2 * math.sqrt(self.k * self.M)
+            raise ParameterError(
+                f"c is {self.c:g} N s/m, allowed is c < {most:g} N s/m: the oscillator must be underdamped"
+            )
 
     @property
     def omega0(self) -> float:
@@ -94,6 +96,12 @@ class PhysicalParams:
         ParameterError
             If a dimensionless parameter comes out of its range.
         """
+        E, omega, m = finite("E", E, "m"), finite("omega", omega, "rad/s"), finite("m", m, "kg")
+        for name, value, unit in (("omega", omega, "rad/s"), ("m", m, "kg")):
+            if value <= 0:
+                raise ParameterError(f"{name} is {value:g} {unit}, allowed is {name} > 0")
+        if E < 0:
+            raise ParameterError(f"E is {E:g} m, allowed is E >= 0")
         return Params(mu=m / self.M, A=E / self.b, Omega=omega / self.omega0, r=self.r, lam=self.lam)
 
     def physical(self, p: Params) -> dict[str, float]:
@@ -129,7 +137,7 @@ class PhysicalParams:
 
     def __str__(self) -> str:
         listed = ", ".join(
-            f"{f.name} = {getattr(self, f.name):g}" + (f" {UNITS[f.name]}" if UNITS[f.name] != "1" else "")
+            f"{f.name} = {getattr(self, f.name):g}" + (f" {UNITS[f.name]}" if UNITS[f.name] else "")
             for f in fields(self)
         )
         return f"{listed}; omega0 = {self.omega0:.4f} rad/s"

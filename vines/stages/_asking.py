@@ -20,22 +20,45 @@ __all__ = ["checks", "list_tables", "query", "rows_of", "save_query", "table"]
 
 
 def query(sql: str) -> pa.Table:
-    """Ask the catalogue in SQL (DuckDB's dialect) and return an Arrow table.
+    """Ask the catalogue in SQL.
 
-    The views are described in docs/tables.md: one a table over all pinned results, and one a stage, named
-    ``"<pipeline>.<stage>"``.
+    Parameters
+    ----------
+    sql : str
+        One query in DuckDB's dialect over the views of docs/tables.md: one a table over all pinned results, and one a
+        stage, named ``"<pipeline>.<stage>"``.
+
+    Returns
+    -------
+    pyarrow.Table
+        With the units of the columns that keep their name; ``.to_pandas()`` makes a data frame.
 
     Raises
     ------
     QueryError
-        If DuckDB cannot answer; one line.
+        If DuckDB cannot answer, or if it is not a single query; one line.
+
+    Examples
+    --------
+    >>> query("select 1 + 1 as two").to_pylist()
+    [{'two': 2}]
     """
     with connect(open_store()) as catalogue:
         return catalogue.query(sql)
 
 
 def table(name: str) -> pa.Table:
-    """Return a view of the catalogue, such as ``orbits``, as an Arrow table.
+    """Return all rows of a view of the catalogue.
+
+    Parameters
+    ----------
+    name : str
+        A table such as ``orbits``, or a stage such as ``quickstart.up``.
+
+    Returns
+    -------
+    pyarrow.Table
+        With units as field metadata.
 
     Raises
     ------
@@ -87,14 +110,25 @@ def save_query(sql: str, out: Path, form: Literal["csv", "parquet"]) -> None:
 
 
 def checks(name: str | None = None) -> list[dict[str, Any]]:
-    """Return the rows of the check table, of one pipeline or of all that were run.
+    """Return what the checks of published values gave.
+
+    Parameters
+    ----------
+    name : str, optional
+        A pipeline; all that were run if left out.
+
+    Returns
+    -------
+    list of dict
+        The rows of the table ``checks``.
 
     Raises
     ------
     UnknownNameError
         If there is no such pipeline, or if nothing was checked yet.
     """
-    if name is not None and name not in (known := available(find_root())):
+    known = {*available(find_root()), *open_store().pinned()}
+    if name is not None and name not in known:
         raise UnknownNameError(f"unknown pipeline {name!r}: {nearest(name, known)}")
     where = "" if name is None else f"where pipeline = '{name}'"
     rows = query(f"select * from checks {where} order by pipeline, stage, point_id").to_pylist()

@@ -2,47 +2,17 @@
 
 from __future__ import annotations
 
-import tomllib
-from pathlib import Path
 from typing import Any
-
-import msgspec
 
 from vines.catalogue import connect_tables
 from vines.errors import DeclarationError, nearest
 from vines.pipeline import Batch, Input, WholeJob
+from vines.stages._claims import Claim, read_claims
 
-__all__ = ["Claim", "compute", "read_claims", "verdict"]
-
-
-class Claim(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """A published value and the query that finds ours.
-
-    `tolerance` is the precision of the print; texts have none. `remark` explains a known difference.
-    `not_reproducible` says why no value of ours can exist.
-    """
-
-    source: str
-    statement: str
-    published: float | str
-    ours: str
-    tolerance: float | None = None
-    remark: str = ""
-    not_reproducible: str = ""
+__all__ = ["compute", "verdict"]
 
 
-def read_claims(file: Path) -> dict[str, Claim]:
-    """Read published values.
-
-    Raises
-    ------
-    DeclarationError
-        If the file is not TOML or an entry is not a claim.
-    """
-    try:
-        return msgspec.convert(tomllib.loads(file.read_text(encoding="utf-8")), dict[str, Claim])
-    except (tomllib.TOMLDecodeError, msgspec.ValidationError) as error:
-        raise DeclarationError(f"{file.name}: {error}; see docs/tables.md for the form of a claim") from None
+NO_VALUE = "no value of ours: the query of the claim gave no row"
 
 
 def compute(job: WholeJob) -> Batch:
@@ -79,7 +49,7 @@ def _row(name: str, claim: Claim, query: Any) -> dict[str, Any]:
         "our_value": float(value) if number and value is not None else None,
         "tolerance": claim.tolerance,
         "verdict": verdict(claim, value),
-        "remark": claim.not_reproducible or claim.remark,
+        "remark": claim.not_reproducible or (claim.remark if value is not None else NO_VALUE),
     }
 
 

@@ -41,7 +41,8 @@ def found(name: str) -> list[str]:
 
 
 def _cached(store: Store, pipeline: str, results: dict[str, Result]) -> list[str]:
-    identity = hashlib.sha256(json.dumps({stage: r.key for stage, r in results.items()}).encode()).hexdigest()[:20]
+    source = {"results": {stage: r.key for stage, r in results.items()}, "text": Path(__file__).read_text("utf-8")}
+    identity = hashlib.sha256(json.dumps(source).encode()).hexdigest()[:20]
     file = store.cache / "found" / f"{pipeline}-{identity}.json"
     try:
         return json.loads(file.read_text("utf-8"))
@@ -79,11 +80,15 @@ def _attractors(rows: list[dict[str, Any]]) -> str:
         (row,) = rows
         side = "" if row["symmetric"] is None else ("symmetric " if row["symmetric"] else "asymmetric ")
         alias = f" (the paper's {row['alias']})" if row["alias"] != row["name"] else ""
-        return (
-            f"A = {row['A']:g}: {side}{next(iter(kinds))}{alias}, max|x1| {row['reduction']:.3g} of that with no ball"
-        )
+        bought = "" if row["reduction"] is None else f", max|x1| {row['reduction']:.3g} of that with no ball"
+        return f"{side}{next(iter(kinds))}{alias} at {_place(row)}{bought}"
     listed = ", ".join(f"{count} {kind}" for kind, count in kinds.most_common(6))
     return f"{len(rows)} points: {listed}"
+
+
+def _place(row: dict[str, Any]) -> str:
+    """Return the parameters that a reader tells runs apart by."""
+    return f"mu = {row['mu']:g}, A = {row['A']:g}, Omega = {row['Omega']:g}"
 
 
 def _files(store: Store, results: dict[str, Result]) -> Iterable[str]:

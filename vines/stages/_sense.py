@@ -60,6 +60,13 @@ def _figure(stage: Stage, pipeline: Pipeline) -> None:
     options: Any = stage.options
     if options.width <= 0:
         raise _refuse(stage, pipeline, f"width is {options.width:g} inch, allowed is width > 0")
+    if options.panels:
+        from vines.figures import ERRORS, PANELS
+
+        known = PANELS if options.plot == "bifurcation" else ERRORS
+        for panel in options.panels:
+            if panel not in known:
+                raise _refuse(stage, pipeline, f"unknown panel {panel!r}: {nearest(panel, known)}")
     if options.plot != "bifurcation":
         return
     axes = {name: tuple(axis.name for axis in pipeline.stages[name].axes) for name in stage.needs}

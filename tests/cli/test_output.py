@@ -1,0 +1,129 @@
+"""What the commands print and write when all is well."""
+
+import csv
+import io
+import json
+import signal
+import subprocess
+import sys
+
+import pyarrow.parquet as pq
+import pytest
+
+
+def test_list_and_status(quickstart):
+    assert "quickstart" in quickstart.vines("list").stdout
+    shown = quickstart.vines("status", "quickstart").stdout.splitlines()
+    assert shown[0].split() == ["stage", "kind", "state", "points", "failed", "why"]
+    assert all("up to date" in line for line in shown[1:])
+    assert "quickstart" in quickstart.vines("status").stdout
+
+
+def test_tables_and_schema(quickstart):
+    rows = {row["view"]: row["rows"] for row in json.loads(quickstart.vines("tables", "--json").stdout)}
+    assert rows["points"] == 185
+    assert rows["quickstart.up"] == 181
+    assert "Mass ratio m/M" in quickstart.vines("schema", "points").stdout
+
+
+def test_query_in_every_form(quickstart, tmp_path):
+    assert quickstart.vines("query", "select 1 as one, null as none").stdout == "one  none\n1\n"
+    sql = "select A, name from points where stage = 'up' order by A limit 2"
+    assert quickstart.vines("query", sql).stdout.splitlines()[1].split() == ["0.015", "1:1"]
+    assert json.loads(quickstart.vines("query", sql, "--format", "json").stdout)[0] == {"A": 0.015, "name": "1:1"}
+    rows = list(csv.DictReader(io.StringIO(quickstart.vines("query", sql, "--format", "csv").stdout)))
+    assert rows[0] == {"A": "0.015", "name": "1:1"}
+    for suffix in ("csv", "json", "parquet", "txt"):
+        quickstart.vines("query", sql, "--out", tmp_path / f"answer.{suffix}")
+    kept = pq.read_table(tmp_path / "answer.parquet")
+    assert kept.num_rows == 2
+    assert kept.schema.field("A").metadata == {b"unit": b"1"}
+    assert (tmp_path / "answer.txt").read_text().startswith("A")
+    assert {path.suffix for path in tmp_path.iterdir()} == {".csv", ".json", ".parquet", ".txt"}
+
+
+@pytest.mark.parametrize("sql", ["create table x as select 1", "copy (select 1) to 'evil.csv'", "select 1; select 2"])
+def test_the_catalogue_is_read_only(quickstart, sql):
+    done = quickstart.vines("query", sql, check=False)
+    assert (done.returncode, done.stderr.count("\n")) == (2, 1)
+    assert "single select" in done.stderr
+    assert not (quickstart.root / "evil.csv").exists()
+
+
+def test_init_and_its_next_step(project, tmp_path):
+    folder = tmp_path / "my study"
+    shown = project.vines("init", folder).stdout
+    assert f"cd '{folder}'" in shown
+    assert (folder / "pipelines" / "quickstart.toml").is_file()
+
+
+def test_dry_run_and_force(quickstart):
+    shown = quickstart.vines("run", "quickstart", "--set", "stages.up.vary.A.to=0.03", "--dry-run").stdout
+    assert "120 of 301" in shown
+    assert "181 of 181" in quickstart.vines("run", "quickstart", "--force", "--dry-run").stdout
+
+
+def test_no_forcing_at_all_is_a_run_too(project):
+    (project.root / "pipelines" / "still.toml").write_text(
+        'title = "still"\n[params]\nmu = 0.01\nA = 0.0\n[stages.run]\nkind = "trajectory"\nsettle = 20\nrecord = 2\n'
+    )
+    shown = project.vines("run", "still").stdout
+    assert "at mu = 0.01, A = 0, Omega = 1  (run)" in shown
+
+
+def test_a_file_cannot_take_the_name_of_a_pipeline(project, tmp_path):
+    other = tmp_path / "elsewhere" / "quickstart.toml"
+    other.parent.mkdir()
+    other.write_text((project.root / "pipelines" / "quickstart.toml").read_text())
+    done = project.vines("run", other, check=False)
+    assert (done.returncode, done.stderr.count("\n")) == (2, 1)
+    assert "rename this file" in done.stderr
+
+
+SENSELESS = {
+    "a figure of nothing": ('kind = "figure"\nplot = "bifurcation"\n', "needs"),
+    "a figure without an axis": (
+        'kind = "figure"\nplot = "bifurcation"\nneeds = ["symmetric_run"]\n',
+        "varies nothing",
+    ),
+    "no width": ('kind = "figure"\nplot = "bifurcation"\nneeds = ["up"]\nwidth = -1\n', "width > 0"),
+    "an unknown panel": ('kind = "figure"\nplot = "bifurcation"\nneeds = ["up"]\npanels = ["w_dott"]\n', "'w_dot'"),
+    "an unknown claim": ('kind = "check"\nneeds = ["up"]\nclaims = ["fig2_x"]\n', "'fig2_"),
+    "a branch of nothing": ('kind = "branch"\nword = "LR"\nparams.A = 0.02\n', "vary.X"),
+    "a record too short": ('kind = "sweep"\nvary.A = [0.015]\nrecord = 1\n', "record >= 2"),
+}
+
+
+@pytest.mark.parametrize("case", SENSELESS)
+def test_senseless_stages_are_seen_before_anything_is_computed(project, case):
+    text, expected = SENSELESS[case]
+    declared = (project.root / "pipelines" / "quickstart.toml").read_text()
+    (project.root / "pipelines" / "mine.toml").write_text(f"{declared}\n[stages.mine]\n{text}")
+    done = project.vines("run", "mine", check=False)
+    assert (done.returncode, done.stderr.count("\n"), done.stdout) == (2, 1, ""), done.stderr
+    assert expected in done.stderr
+    assert not (project.data / "results").exists()
+
+
+def test_data_that_cannot_be_written(project, monkeypatch):
+    monkeypatch.setenv("VINES_DATA", "/proc/nothing")
+    done = project.vines("run", "quickstart", check=False)
+    assert "Traceback" not in done.stderr
+    assert (done.returncode, done.stderr.count("\n")) == (2, 1)
+
+
+def test_interrupted_run_says_how_to_go_on(project):
+    (project.root / "pipelines" / "long.toml").write_text(
+        'title = "long"\n[params]\nmu = 0.01\n[stages.up]\nkind = "sweep"\n'
+        "vary.A = { from = 0.015, to = 0.024, count = 20001 }\n"
+    )
+    running = subprocess.Popen(
+        [sys.executable, "-m", "vines.cli", "run", "long"], cwd=project.root, stderr=subprocess.PIPE, text=True
+    )
+    while not any(project.data.glob("points/*/0*")) and running.poll() is None:
+        pass
+    running.send_signal(signal.SIGINT)
+    _, told = running.communicate(timeout=60)
+    assert running.returncode not in (0, 1)
+    assert "Traceback" not in told
+    assert "vines run long" in told
