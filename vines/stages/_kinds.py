@@ -107,7 +107,7 @@ class CheckOptions(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 def _check_simulation(params: dict[str, float], options: Any) -> None:
     Params(**params)
-    for name, least in (("settle", 0), ("record", 1), ("per_period", 2), ("keep", 1)):
+    for name, least in (("settle", 0), ("record", 2), ("per_period", 2), ("keep", 1)):
         value = getattr(options, name, least)
         if value < least:
             raise ParameterError(f"{name} is {value}, allowed is {name} >= {least}")
