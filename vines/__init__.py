@@ -24,6 +24,9 @@ _HOME = {
     "Trajectory": "vines.dynamics",
     "ball_locked": "vines.dynamics",
     "no_ball": "vines.dynamics",
+    "Ensemble": "vines.dynamics",
+    "Scatter": "vines.dynamics",
+    "ensemble": "vines.dynamics",
     "simulate": "vines.dynamics",
     "Attractor": "vines.attractors",
     "settle": "vines.attractors",
@@ -42,10 +45,12 @@ _HOME = {
 __all__ = [
     "Attractor",
     "Branch",
+    "Ensemble",
     "Orbit",
     "OrbitNotFound",
     "Params",
     "PhysicalParams",
+    "Scatter",
     "Trajectory",
     "VinesError",
     "Word",
@@ -53,6 +58,7 @@ __all__ = [
     "all_orbits",
     "ball_locked",
     "continue_orbit",
+    "ensemble",
     "find_orbit",
     "no_ball",
     "query",
@@ -65,8 +71,11 @@ __all__ = [
 if TYPE_CHECKING:
     from vines.attractors import Attractor as Attractor
     from vines.attractors import settle as settle
+    from vines.dynamics import Ensemble as Ensemble
+    from vines.dynamics import Scatter as Scatter
     from vines.dynamics import Trajectory as Trajectory
     from vines.dynamics import ball_locked as ball_locked
+    from vines.dynamics import ensemble as ensemble
     from vines.dynamics import no_ball as no_ball
     from vines.dynamics import simulate as simulate
     from vines.errors import OrbitNotFound as OrbitNotFound

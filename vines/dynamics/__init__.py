@@ -4,10 +4,12 @@ Flight, impact and sticking in closed form, events found for certain, and what f
 tangent maps. Importing this room loads numba but compiles nothing.
 """
 
+from vines.dynamics._ensemble import Ensemble, ensemble
 from vines.dynamics._jit import CACHE
 from vines.dynamics._maps import P1, P2, P3, P4, Mapped, impact_map
 from vines.dynamics._measures import Measures
 from vines.dynamics._saltation import jacobian
+from vines.dynamics._scatter import Scatter
 from vines.dynamics._simulate import simulate
 from vines.dynamics._tangent import lyapunov_spectrum, tangent_map
 from vines.dynamics._trajectory import Trajectory
@@ -20,10 +22,13 @@ __all__ = [
     "P2",
     "P3",
     "P4",
+    "Ensemble",
     "Mapped",
     "Measures",
+    "Scatter",
     "Trajectory",
     "ball_locked",
+    "ensemble",
     "impact_map",
     "jacobian",
     "lyapunov_spectrum",

@@ -8,7 +8,7 @@ from vines.dynamics._flight import derivatives, fourth_bound, turn
 from vines.dynamics._jit import njit
 from vines.dynamics._steps import leaving_step, quartic_root, safe_step
 
-__all__ = ["CONTACT", "NO_CONTACT", "STEP_CAP", "next_contact"]
+__all__ = ["CONTACT", "NO_CONTACT", "STEP_CAP", "first_step", "next_contact"]
 
 CONTACT = 1
 NO_CONTACT = 0
@@ -32,7 +32,7 @@ def _wall_step(gap, slope, second, third, bound, window):
 
 
 @njit
-def _first_step(c, zr, zi, qr, qi, v2, wall, released):
+def first_step(c, zr, zi, qr, qi, v2, wall, released):
     """Return the certified step from the wall just left, where the gap is 0 exactly.
 
     After a release w' = w'' = 0 exactly, too.
@@ -99,7 +99,7 @@ def next_contact(c, zr, zi, qr, qi, x2, v2, wall, released, tau, stop):
     """
     o = c.free
     if tau == 0.0 and wall != 0:
-        h = _first_step(c, zr, zi, qr, qi, v2, wall, released)
+        h = first_step(c, zr, zi, qr, qi, v2, wall, released)
         if h > stop:
             return NO_CONTACT, 0.0, 0, 0.0, 0.0
         tau = h

@@ -20,7 +20,7 @@ from vines.dynamics._sincos import sincos
 from vines.dynamics._trajectory import Trajectory
 from vines.errors import StateError
 
-__all__ = ["lyapunov_blocks", "lyapunov_spectrum", "tangent_map", "tangent_product"]
+__all__ = ["carry_basis", "lyapunov_blocks", "lyapunov_spectrum", "tangent_map", "tangent_product"]
 
 
 @njit
@@ -105,6 +105,18 @@ def _orthonormalise(Y, gains):
         scale = 1.0 / length if length > 1e-150 else 0.0
         for i in range(4):
             Y[i, j] *= scale
+
+
+@njit
+def carry_basis(c, mode, row, tau, Y, growth):
+    """Carry orthonormal disturbances to just after a row, a time tau on, and add up their growth and the time."""
+    gains = np.empty(4)
+    _flow(c, mode, tau, Y)
+    _event(c, row, Y)
+    _orthonormalise(Y, gains)
+    for j in range(4):
+        growth[j] += math.log(gains[j]) if gains[j] > 1e-150 else -math.inf
+    growth[4] += tau
 
 
 @njit

@@ -1,0 +1,389 @@
+"""Many trajectories at once: many parameter points, many starts, or both."""
+
+from __future__ import annotations
+
+import math
+import os
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass, field
+from typing import Literal
+
+import numpy as np
+import numpy.typing as npt
+
+from vines.dynamics import _advance as col
+from vines.dynamics import _lane_run as lanes
+from vines.dynamics import _totals as entry
+from vines.dynamics._scatter import Scatter, scatter_block
+from vines.dynamics._simulate import EVENTS_PER_PERIOD
+from vines.dynamics._start import SLACK
+from vines.dynamics._trajectory import IMPACT
+from vines.errors import ParameterError, StateError, nearest
+from vines.model import PARAMETER_NAMES, Params
+
+__all__ = ["FINAL", "MEASURES", "STATUS_NAMES", "Ensemble", "ensemble", "threads_allowed"]
+
+Floats = npt.NDArray[np.float64]
+
+STATUS_NAMES = ("complete", "impact_cap", "step_limit")
+START_NAMES = ("x1", "v1", "x2", "v2", "phase")
+START_DEFAULTS = (0.0, 0.0, 0.0, 0.1, 0.0)
+
+FINAL = np.dtype([(name, "f8") for name in START_NAMES] + [("stuck", "i1")])
+"""State at the end; `stuck` is 0 in flight, else the wall that the ball rides on."""
+
+MEASURES = np.dtype(
+    [
+        (name, "f8")
+        for name in (
+            "duration",
+            "kinetic_1",
+            "kinetic_2",
+            "kinetic_ratio",
+            "max_abs_x1",
+            "t_max_abs_x1",
+            "rms_x1",
+            "base_work",
+            "damper_loss",
+            "impact_loss_left",
+            "impact_loss_right",
+            "energy_change",
+        )
+    ]
+    + [(name, "i8") for name in ("impacts_left", "impacts_right", "sticks_left", "sticks_right")]
+)
+"""As `Measures`, one row a trajectory, times counted from the start of the recording."""
+
+RUN_IMPACT = np.dtype([("run", "i8"), *((name, IMPACT[name]) for name in IMPACT.names or ())])
+
+BLOCK = 4096
+"""Most trajectories in one call of the kernel; a thread takes one block after the other."""
+
+
+@dataclass(frozen=True)
+class Ensemble:
+    """What became of many trajectories; row k of every array belongs to trajectory k.
+
+    Attributes
+    ----------
+    parameters : ndarray, shape (n, 5)
+        mu, A, Omega, r, lam.
+    starts : ndarray, shape (n, 5)
+        x1, v1, x2, v2 and phase [rad].
+    final : structured ndarray, dtype FINAL
+        State at the end; that of the last event where the status is not ``complete``.
+    counts : ndarray of int, shape (n,)
+        Impacts in all, those before the recording included.
+    codes : ndarray of int, shape (n,)
+        0 ``complete``, 1 ``impact_cap``, 2 ``step_limit``; see `status`.
+    measures : structured ndarray, dtype MEASURES, or None
+        Over the recorded time.
+    impacts : structured ndarray or None
+        Recorded impacts as `Trajectory.impacts`, with the column `run` first; sorted by run and time.
+    exponents : ndarray, shape (n, 4), or None
+        Lyapunov exponents over the recorded time, in descending order, -inf for directions that sticking removes.
+    scatter : Scatter or None
+        What was drawn at random, with its seed.
+    """
+
+    parameters: Floats
+    starts: Floats
+    final: npt.NDArray[np.void]
+    counts: npt.NDArray[np.int64]
+    codes: npt.NDArray[np.int64]
+    measures: npt.NDArray[np.void] | None = None
+    impacts: npt.NDArray[np.void] | None = field(default=None, repr=False)
+    exponents: Floats | None = None
+    scatter: Scatter | None = None
+
+    def __len__(self) -> int:
+        return len(self.counts)
+
+    @property
+    def status(self) -> npt.NDArray[np.str_]:
+        """``complete``, ``impact_cap`` or ``step_limit`` for each trajectory."""
+        return np.array(STATUS_NAMES)[self.codes]
+
+
+def ensemble(
+    params: Params | Sequence[Params] | Mapping[str, npt.ArrayLike],
+    starts: Mapping[str, npt.ArrayLike] | None = None,
+    *,
+    periods: float = 500,
+    settle: float = 0,
+    record: Literal["final", "measures", "impacts"] = "final",
+    lyapunov: bool = False,
+    scatter: Scatter | None = None,
+    max_impacts_per_period: int = EVENTS_PER_PERIOD,
+    threads: int | None = None,
+) -> Ensemble:
+    """Run many trajectories, in lanes and on all cores.
+
+    Parameters
+    ----------
+    params : Params, sequence of Params, or mapping of arrays
+        One for all, one for each, or arrays by name (``{"mu": .01, "A": np.linspace(.01, .1, 100)}``; Omega, r, lam may
+        be left out).
+    starts : mapping of arrays, optional
+        x1, v1, x2, v2, phase [rad]; what is left out is as in `simulate`. Broadcast against `params`.
+    periods : float
+        Forcing periods to record, > 0.
+    settle : float
+        Forcing periods to run first, of which nothing is kept.
+    record : {"final", "measures", "impacts"}
+        ``final`` keeps states at the end only; ``measures`` energy measures too; ``impacts`` every impact too.
+    lyapunov : bool
+        Whether to give Lyapunov exponents over the recorded time.
+    scatter : Scatter, optional
+        Restitution that varies from impact to impact, noise and a second harmonic of the base.
+    max_impacts_per_period : int
+        Cap on events in one forcing period; a trajectory that passes it ends there, its status says so.
+    threads : int, optional
+        Cores to use; all of this process's if left out, one in a worker process. Results do not depend on it.
+
+    Returns
+    -------
+    Ensemble
+
+    Raises
+    ------
+    ParameterError, StateError
+        If a parameter or start is not allowed; the message gives the first one.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> p = Params(mu=0.01, A=0.015)
+    >>> many = ensemble(p, {"v2": np.linspace(0.05, 0.15, 5)}, settle=300, periods=10, record="measures")
+    >>> many.measures["impacts_left"]
+    array([10, 10, 10, 10, 10])
+    """
+    table = _parameters(params)
+    begin = _starts(starts)
+    n = np.broadcast_shapes(table.shape[:1], begin.shape[:1])[0]
+    table = np.ascontiguousarray(np.broadcast_to(table, (n, 5)))
+    begin = np.ascontiguousarray(np.broadcast_to(begin, (n, 5)))
+    for name, value, positive in (("periods", periods, True), ("settle", settle, False)):
+        if not (math.isfinite(value) and (value > 0 if positive else value >= 0)):
+            raise StateError(f"{name} is {value!r}; give a finite number {'> 0' if positive else '>= 0'}")
+    if max_impacts_per_period < 1:
+        raise StateError(f"max_impacts_per_period is {max_impacts_per_period!r}; give an integer >= 1")
+    if record not in ("final", "measures", "impacts"):
+        raise StateError(f"record is {record!r}: {nearest(str(record), ('final', 'measures', 'impacts'))}")
+    if scatter is not None and lyapunov:
+        raise StateError("lyapunov is not defined for runs with scatter; leave one of them out")
+    what = {"final": lanes.FINAL, "measures": lanes.WITH_MEASURES, "impacts": lanes.WITH_IMPACTS}[record]
+    what += lanes.WITH_EXPONENTS if lyapunov else 0
+    work = _Work(table, begin, periods, settle, max_impacts_per_period, what, scatter)
+    cores = threads_allowed() if threads is None else max(1, threads)
+    size = min(BLOCK, max(lanes.LANES, -(-n // (4 * cores))))
+    blocks = [slice(k, min(k + size, n)) for k in range(0, n, size)]
+    each_thread(work.run, blocks, cores)
+    return work.result()
+
+
+def threads_allowed() -> int:
+    """Return how many threads this process may use: its cores, one in a worker process of a pipeline."""
+    named = os.environ.get("NUMBA_NUM_THREADS", "")
+    cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+    return min(int(named), cores) if named.isdigit() and int(named) > 0 else cores
+
+
+def each_thread(work: Callable[[slice], object], blocks: Iterable[slice], cores: int) -> None:
+    """Do the work of every block on so many threads; kernels release the interpreter's lock."""
+    blocks = list(blocks)
+    if cores == 1 or len(blocks) == 1:
+        for block in blocks:
+            work(block)
+        return
+    # The first block alone compiles or loads the kernel, once.
+    work(blocks[0])
+    with ThreadPoolExecutor(cores) as pool:
+        for _ in pool.map(work, blocks[1:]):
+            pass
+
+
+class _Work:
+    """The arrays of an ensemble, filled block by block."""
+
+    def __init__(
+        self, table: Floats, begin: Floats, periods: float, settle: float, cap: int, what: int, scatter: Scatter | None
+    ) -> None:
+        n = len(table)
+        self.table, self.begin, self.cap, self.what, self.scatter = table, begin, cap, what, scatter
+        span = 2.0 * math.pi / table[:, 2]
+        self.periods, self.settle = periods, settle
+        self.first, self.lengths = settle * span, periods * span
+        self.finals = np.zeros((n, 6))
+        self.totals = np.zeros((n, entry.TOTALS)) if what & lanes.WITH_MEASURES else None
+        self.growths = np.zeros((n, 5)) if what & lanes.WITH_EXPONENTS else None
+        self.counts = np.zeros(n, dtype=np.int64)
+        self.codes = np.zeros(n, dtype=np.int64)
+        self.events: dict[int, Floats] = {}
+
+    def run(self, block: slice) -> None:
+        """Run a block; its events get more room until they fit."""
+        n = block.stop - block.start
+        totals = np.zeros((0, entry.TOTALS)) if self.totals is None else self.totals[block]
+        growths = np.zeros((0, 5)) if self.growths is None else self.growths[block]
+        room = int(n * (4 * self.periods + 64)) if self.what & lanes.WITH_IMPACTS else 0
+        while True:
+            events = np.empty((room, col.ROW + 1))
+            common = (self.cap, self.what, self.finals[block], totals)
+            rest = (self.counts[block], self.codes[block], events)
+            runs = (self.table[block], self.begin[block], self.first[block], self.lengths[block])
+            if self.scatter is None:
+                filled = lanes.run_block(*runs, *common, growths, *rest)
+            else:
+                filled = scatter_block(*runs, *common, *rest, self.scatter.numbers(), block.start)
+            if not np.any(self.codes[block] == lanes.OVERFLOW):
+                break
+            room *= 2
+        if self.what & lanes.WITH_IMPACTS:
+            kept = events[:filled]
+            self.events[block.start] = kept[kept[:, col.KIND] == col.IMPACT]
+
+    def result(self) -> Ensemble:
+        """Put the arrays together."""
+        final = np.empty(len(self.finals), dtype=FINAL)
+        for k, name in enumerate(FINAL.names or ()):
+            final[name] = self.finals[:, k]
+        exponents = None
+        if self.growths is not None:
+            exponents = -np.sort(-self.growths[:, :4] / self.growths[:, 4:], axis=1)
+        return Ensemble(
+            parameters=self.table,
+            starts=self.begin,
+            final=final,
+            counts=self.counts,
+            codes=self.codes,
+            measures=None if self.totals is None else _measures(self.table[:, 0], self.totals),
+            impacts=self._impacts() if self.what & lanes.WITH_IMPACTS else None,
+            exponents=exponents,
+            scatter=self.scatter,
+        )
+
+    def _impacts(self) -> npt.NDArray[np.void]:
+        parts = []
+        for start in sorted(self.events):
+            rows = self.events.pop(start)
+            order = np.argsort(rows[:, col.ROW], kind="stable")
+            rows = rows[order]
+            out = np.empty(len(rows), dtype=RUN_IMPACT)
+            out["run"] = rows[:, col.ROW] + start
+            for name, column in _COLUMNS.items():
+                out[name] = rows[:, column]
+            out["w_dot"] = out["v1"] - out["v2"]
+            begins = np.flatnonzero(np.diff(out["run"], prepend=-1))
+            out["index"] = np.arange(len(out)) - np.repeat(begins, np.diff(begins, append=len(out)))
+            parts.append(out)
+        return np.concatenate(parts)
+
+
+_COLUMNS = {
+    "side": col.SIDE,
+    "t": col.TIME,
+    "phase": col.PHASE,
+    "x1": col.X1,
+    "v1": col.V1,
+    "x2": col.X2,
+    "v2": col.V2,
+    "v1_after": col.A_V1,
+    "v2_after": col.A_V2,
+}
+
+
+def _measures(mu: Floats, totals: Floats) -> npt.NDArray[np.void]:
+    out = np.empty(len(totals), dtype=MEASURES)
+    duration = totals[:, entry.DURATION]
+    v1, v2 = totals[:, entry.V1_SQUARE], totals[:, entry.V2_SQUARE]
+    with np.errstate(divide="ignore", invalid="ignore"):
+        out["duration"] = duration
+        out["kinetic_1"] = 0.5 * v1 / duration
+        out["kinetic_2"] = 0.5 * mu * v2 / duration
+        out["kinetic_ratio"] = np.where(v1 > 0, mu * v2 / v1, np.nan)
+        out["rms_x1"] = np.sqrt(np.maximum(totals[:, entry.X1_SQUARE], 0.0) / duration)
+    for name, column in (
+        ("max_abs_x1", entry.MAX_ABS_X1),
+        ("t_max_abs_x1", entry.T_MAX_ABS_X1),
+        ("base_work", entry.BASE_WORK),
+        ("damper_loss", entry.DAMPER_LOSS),
+        ("impact_loss_left", entry.LOSS_LEFT),
+        ("impact_loss_right", entry.LOSS_RIGHT),
+        ("energy_change", entry.ENERGY_CHANGE),
+        ("impacts_left", entry.IMPACTS_LEFT),
+        ("impacts_right", entry.IMPACTS_RIGHT),
+        ("sticks_left", entry.STICKS_LEFT),
+        ("sticks_right", entry.STICKS_RIGHT),
+    ):
+        out[name] = totals[:, column]
+    return out
+
+
+def _parameters(params: Params | Sequence[Params] | Mapping[str, npt.ArrayLike]) -> Floats:
+    if isinstance(params, Params):
+        return np.array([[getattr(params, name) for name in PARAMETER_NAMES]])
+    if isinstance(params, Mapping):
+        return _check_parameters(_columns(params, PARAMETER_NAMES, _defaults(), ParameterError, "parameter"))
+    table = np.array([[getattr(p, name) for name in PARAMETER_NAMES] for p in params])
+    if not len(table):
+        raise ParameterError("params is empty; give at least one point")
+    return table
+
+
+def _defaults() -> tuple[float | None, ...]:
+    p = Params(mu=1.0, A=0.0)
+    return (None, None, p.Omega, p.r, p.lam)
+
+
+def _columns(
+    given: Mapping[str, npt.ArrayLike],
+    names: tuple[str, ...],
+    defaults: tuple[float | None, ...],
+    error: type[Exception],
+    kind: str,
+) -> Floats:
+    for name in given:
+        if name not in names:
+            raise error(f"unknown {kind} {name!r}: {nearest(name, names)}")
+    arrays = []
+    for name, default in zip(names, defaults, strict=True):
+        value = given.get(name, default)
+        if value is None:
+            raise error(f"{kind} {name!r} is missing; give a number or an array")
+        try:
+            arrays.append(np.atleast_1d(np.asarray(value, dtype=np.float64)).ravel())
+        except (TypeError, ValueError):
+            raise error(f"{name} is {value!r}; give a number or an array of numbers") from None
+    try:
+        return np.stack(np.broadcast_arrays(*arrays), axis=1)
+    except ValueError:
+        sizes = ", ".join(f"{name} {len(a)}" for name, a in zip(names, arrays, strict=True) if len(a) > 1)
+        raise error(f"arrays of different lengths ({sizes}); give one length, or single numbers") from None
+
+
+def _check_parameters(table: Floats) -> Floats:
+    mu, A, Omega, r, lam = table.T
+    good = np.isfinite(table).all(axis=1) & (mu > 0) & (A >= 0) & (Omega > 0) & (r >= 0) & (r <= 1)
+    good &= (lam >= 0) & (lam < 2)
+    if not good.all():
+        # The first bad point says in the words of Params what is wrong.
+        k = int(np.flatnonzero(~good)[0])
+        Params(**dict(zip(PARAMETER_NAMES, table[k].tolist(), strict=True)))
+    return table
+
+
+def _starts(starts: Mapping[str, npt.ArrayLike] | None) -> Floats:
+    table = _columns(starts or {}, START_NAMES, START_DEFAULTS, StateError, "start")
+    bad = ~np.isfinite(table).all(axis=1)
+    if bad.any():
+        raise StateError(f"start {int(np.flatnonzero(bad)[0])} is not finite; give finite numbers")
+    w = table[:, 0] - table[:, 2]
+    outside = np.abs(w) > 1.0 + SLACK
+    if outside.any():
+        k = int(np.flatnonzero(outside)[0])
+        raise StateError(
+            f"the gap w = x1 - x2 is {w[k]:g} at start {k}; allowed is |w| <= 1: the ball is in the cavity"
+        )
+    return table
