@@ -62,6 +62,13 @@ def points(job):
     return Batch(tables={"points": rows, "impacts": impacts}, logs=logs)
 
 
+def bare(job):
+    A = job.points.column("A")
+    rows = {"point_id": job.points.ids, "A": A, "mu": job.points.column("mu"), "end_x1": law(1.0, 2.0) * A}
+    time.sleep(job.options.wait * len(A))
+    return Batch(tables={"points": {**rows, "status": ["ok"] * len(A)}})
+
+
 def whole(job):
     total = sum(x or 0.0 for table in job.inputs.values() for x in table.table().column("end_x1").to_pylist())
     if job.options.label == "broken":
@@ -112,6 +119,18 @@ class Lab:
                 vary="grid",
                 carry=True,
                 logs=True,
+            )
+        )
+        register(
+            Kind(
+                name="bare",
+                summary="points of a straight line, as columns, without logs",
+                shape="points",
+                options=bodies.ToyOptions,
+                body="toylab.bodies:bare",
+                tables=("points",),
+                parameters={"A": None, "mu": 0.1},
+                vary="grid",
             )
         )
         register(

@@ -5,7 +5,8 @@ from __future__ import annotations
 import contextlib
 import os
 import signal
-import sys
+import threading
+import time
 from collections.abc import Iterator
 from types import FrameType
 
@@ -15,6 +16,17 @@ __all__ = ["stoppable"]
 
 STOPPED = 130
 """Exit code of a shell command that SIGINT ended."""
+_PATIENCE = 0.6
+
+
+def _leave_soon() -> None:
+    """End the process even if threads of executors and clusters would take seconds to say goodbye."""
+
+    def leave() -> None:
+        time.sleep(_PATIENCE)
+        os._exit(STOPPED)
+
+    threading.Thread(target=leave, daemon=True).start()
 
 
 @contextlib.contextmanager
@@ -36,9 +48,7 @@ def stoppable(remedy: str) -> Iterator[None]:
         yield
     except KeyboardInterrupt:
         click.echo(f"vines: stopped; what is finished is kept, {remedy}", err=True)
-        sys.stdout.flush()
-        sys.stderr.flush()
-        # what is left are threads of executors and clusters that would take seconds to say goodbye
-        os._exit(STOPPED)
+        _leave_soon()
+        raise SystemExit(STOPPED) from None
     finally:
         signal.signal(signal.SIGTERM, before)

@@ -101,7 +101,8 @@ class Dask:
                 "--engine dask needs the package distributed; install vines with the extra 'dask'"
             ) from None
         # what it says of lost connections is said in one line here
-        logging.getLogger("distributed").setLevel(logging.CRITICAL)
+        for name in [name for name in logging.root.manager.loggerDict if name.partition(".")[0] == "distributed"]:
+            logging.getLogger(name).setLevel(logging.CRITICAL)
         if self._address is None:
             self._before = set(multiprocessing.active_children())
             self._cluster = distributed.LocalCluster(

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 __all__ = ["Gathered", "put_together"]
 
-_BLOCK = 2**16
+_BLOCK = 2**15
 _KEPT_ROWS = 4 * _BLOCK
 
 
@@ -104,7 +104,7 @@ class _Tables:
         """Return the table of a part."""
         table = self.kept.pop(number, None)
         if table is None:
-            table = self.parts[number].table(self.name)
+            table = self.parts[number].stored(self.name)
         self.kept[number] = table
         while len(self.kept) > 1 and sum(each.num_rows for each in self.kept.values()) > _KEPT_ROWS:
             del self.kept[next(iter(self.kept))]
@@ -135,7 +135,7 @@ def _blocks(pool: Pool, located: Located, name: str) -> Iterator[pa.Table]:
                 mine = mine[mine >= 0]
             pieces.append(table)
             ranks.append(mine)
-        whole = pa.concat_tables(pieces)
+        whole = pa.concat_tables(pieces, promote_options="default")
         order = np.concatenate(ranks)
         if (np.diff(order) < 0).any():
             whole = whole.take(pa.array(np.argsort(order, kind="stable")))

@@ -56,5 +56,5 @@ class Shard:
         """Return for each of so many points, or chains, whether it belongs to this share."""
         import numpy as np
 
-        stripes = max(1, min(total, _STRIPES * self.count))
-        return np.arange(total) * stripes // max(total, 1) % self.count == self.number - 1
+        length = max(1, total // (_STRIPES * self.count))
+        return np.arange(total) // length % self.count == self.number - 1

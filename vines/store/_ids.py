@@ -14,6 +14,7 @@ if TYPE_CHECKING:
 __all__ = ["BYTES", "Ids"]
 
 BYTES = 10
+_BLOCK = 2**16
 DIGITS = 2 * BYTES
 
 
@@ -82,12 +83,16 @@ class Ids:
         >>> ids.locate(Ids.of(["bb" * 10, "cc" * 10, "aa" * 10])).tolist()
         [1, -1, 2]
         """
-        if not len(self):
-            return np.full(len(wanted), -1, dtype=np.int64)
+        found = np.full(len(wanted), -1, dtype=np.int32)
+        for start in range(0, len(wanted) if len(self) else 0, _BLOCK):
+            found[start : start + _BLOCK] = self._locate(wanted.take(slice(start, start + _BLOCK)))
+        return found
+
+    def _locate(self, wanted: Ids) -> np.ndarray:
         order, heads = self._sorted
         sought, rest = wanted._heads, wanted._tails
         at = np.searchsorted(heads, sought, side="right") - 1
-        found = np.full(len(wanted), -1, dtype=np.int64)
+        found = np.full(len(wanted), -1, dtype=np.int32)
         open_ends = np.arange(len(wanted))
         tails = self._tails
         # ids that agree in the first eight bytes and differ in the last two are passed by, one a turn
@@ -105,12 +110,12 @@ class Ids:
     def _heads(self) -> np.ndarray:
         return np.ascontiguousarray(self.raw[:, :8]).view(np.uint64).ravel()
 
-    @property
+    @cached_property
     def _tails(self) -> np.ndarray:
         return np.ascontiguousarray(self.raw[:, 8:]).view(np.uint16).ravel()
 
     @cached_property
     def _sorted(self) -> tuple[np.ndarray, np.ndarray]:
         heads = self._heads
-        order = np.argsort(heads, kind="stable")
+        order = np.argsort(heads, kind="stable").astype(np.int32)
         return order, heads[order]

@@ -94,9 +94,11 @@ class TableFile:
         self._writer.close()
 
     def add(self, data: pa.Table | Sequence[Mapping[str, Any]]) -> None:
-        """Add rows at the end; full row groups are written at once."""
-        table = schema.cast(self._name, data).select(self._schema.names)
-        self._waiting.append(table.replace_schema_metadata(self._schema.metadata))
+        """Add rows at the end; full row groups are written at once. Columns that a table lacks are empty."""
+        import pyarrow as pa
+
+        table: Any = data if isinstance(data, pa.Table) else schema.cast(self._name, data)
+        self._waiting.append(table)
         self._count += table.num_rows
         self.rows += table.num_rows
         self._write(self._count - self._count % ROW_GROUP)
@@ -106,13 +108,15 @@ class TableFile:
 
         if not rows:
             return
-        # one array a column: pages are cut the same whatever the pieces were
-        whole: Any = pa.concat_tables(self._waiting).combine_chunks()
+        whole: Any = pa.concat_tables(self._waiting, promote_options="default")
         self._waiting = [whole.slice(rows)]
         self._count -= rows
         try:
             for start in range(0, rows, ROW_GROUP):
-                group = whole.slice(start, min(ROW_GROUP, rows - start)).combine_chunks()
+                # one array a column: pages are cut the same whatever the pieces were
+                group: Any = whole.slice(start, min(ROW_GROUP, rows - start)).combine_chunks()
+                group = schema.cast(self._name, group).select(self._schema.names).combine_chunks()
+                group = group.replace_schema_metadata(self._schema.metadata)
                 self._writer.write_table(group, row_group_size=ROW_GROUP)
         except pa.ArrowException as error:
             raise OSError(f"{self._path}: {error}") from error

@@ -50,10 +50,14 @@ class Part:
 
     def table(self, name: str) -> pa.Table:
         """Return the rows of a table; columns that are empty throughout are not stored and come back empty."""
+        return schema.cast(name, self.stored(name))
+
+    def stored(self, name: str) -> pa.Table:
+        """Return the rows of a table with the columns that are stored."""
         import pyarrow.parquet as pq
 
-        stored: Any = pq.read_table(self.folder / f"{name}.parquet")
-        return schema.cast(name, stored.replace_schema_metadata(None))
+        found: Any = pq.read_table(self.folder / f"{name}.parquet")
+        return found.replace_schema_metadata(None)
 
 
 @dataclass(frozen=True, slots=True)
