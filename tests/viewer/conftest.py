@@ -20,6 +20,7 @@ def write(path, run, **changes):
         provenance={"stage": f"quickstart.{path.stem}", "key": "0f"},
         parameters=run.params.as_dict(),
         name=f"quickstart.{path.stem}",
+        attractor={"settled": "1:1"}.get(path.stem),
     )
 
 

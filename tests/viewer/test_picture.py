@@ -42,19 +42,45 @@ def test_views_draw_without_errors(recording):
         state = client.get_state()
         assert sorted((view.view_class, view.origin.rsplit("/", 1)[-1]) for view in state.views) == [
             ("2D", "cavity"),
+            ("2D", "dial"),
             ("2D", "phase"),
             ("TextDocument", "about"),
             ("TextLog", "impacts"),
             ("TimeSeries", "balance"),
             ("TimeSeries", "ends"),
             ("TimeSeries", "energy"),
+            ("TimeSeries", "lanes"),
             ("TimeSeries", "w"),
             ("TimeSeries", "w_dot"),
         ]
         assert all(view.visible for view in state.views)
         assert [report for view in state.views for report in view.reports] == []
         kinds = {line.name: line.time_type for line in state.recordings[0].timelines}
-        assert kinds["sim_time"] == kinds["cycle"] == "duration"
+        assert kinds["sim_time"] == kinds["cycle"] == kinds["impact"] == "duration"
+
+
+def test_bare_rerun_shows_a_log_that_explains_itself(settled):
+    """Without our layout: the viewer makes its own from the channels that it understands."""
+    with headless(settled, (1200, 800), laid_out=False) as client:
+        _at_rest(client)
+        state = client.get_state()
+    kinds = [(view.view_class, view.origin) for view in state.views]
+    assert ("3D", "/") in kinds
+    assert sum(kind == "TimeSeries" for kind, _ in kinds) >= 3
+    assert any(kind == "TextLog" for kind, _ in kinds)
+    assert [report for view in state.views for report in view.reports] == []
+
+
+def test_side_by_side_views_draw_without_errors(settled, chatter, tmp_path):
+    both = viewer.save_rrd([settled, chatter], tmp_path / "both.rrd")
+    with headless(both, (1200, 800)) as client:
+        _at_rest(client)
+        views = client.get_state().views
+    origins = [view.origin for view in views]
+    for root in ("/quickstart_settled", "/quickstart_chatter"):
+        for part in ("cavity", "phase", "w", "w_dot", "lanes", "dial"):
+            assert f"{root}/{part}" in origins
+    assert [report for view in views for report in view.reports] == []
 
 
 def test_listens_on_this_machine_only(recording):

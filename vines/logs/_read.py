@@ -86,6 +86,8 @@ class Log:
         The parameters of the model.
     word : str
         The word of an orbit, else empty.
+    attractor : str
+        What the run settles to, if its writer knew.
     declaration : str or None
         The TOML text that declared the run.
     status : str
@@ -110,6 +112,7 @@ class Log:
     provenance: dict[str, str]
     parameters: dict[str, float]
     word: str
+    attractor: str
     declaration: str | None
     status: str
     recovered: dict[str, str]
@@ -314,6 +317,7 @@ def _assemble(file: Path, found: _Found, data: bytes) -> Log:
         provenance=found.metadata.get(PROVENANCE, {}),
         parameters=parameters,
         word=about.get("word", ""),
+        attractor=about.get("attractor", ""),
         declaration=None if declaration is None else declaration.decode(),
         status=status["status"],
         recovered=found.metadata.get(RECOVERED, {}),

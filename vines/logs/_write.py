@@ -33,6 +33,7 @@ def write_run(
     declaration: str | None = None,
     orbit: np.ndarray | None = None,
     word: str | None = None,
+    attractor: str | None = None,
     bare: bool = True,
 ) -> Path:
     """Write a run as an MCAP log, whole or not at all; the same input gives the same bytes.
@@ -56,6 +57,8 @@ def write_run(
         The fields of ``vines.v1.Orbit`` if the run is one period of a periodic orbit.
     word : str, optional
         Its word.
+    attractor : str, optional
+        What the run settles to, such as ``"1:1"`` or ``"chaotic"``.
     bare : bool
         Whether the log also carries the channels with which it explains itself in a viewer without vines.
 
@@ -77,6 +80,8 @@ def write_run(
     if orbit is not None:
         rows.append(as_rows(orbit, ORBIT))
         about |= {"kind": "orbit", "word": word or ""}
+    if attractor is not None:
+        about["attractor"] = attractor
     if bare:
         rows += bare_rows(*(each.values for each in rows[:3]), name, parameters)
     return write_rows(path, rows, about, provenance, parameters, declaration)

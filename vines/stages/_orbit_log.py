@@ -100,6 +100,7 @@ def orbit_log(orbit: Orbit, path: str | os.PathLike[str], *, per_period: int = 6
         name=orbit.name,
         orbit=_row(orbit, t),
         word=str(orbit.word),
+        attractor=orbit.name if orbit.stable else None,
         bare=bare,
     )
 

@@ -49,6 +49,8 @@ def compute(job: Job) -> Batch:
             provenance=job.provenance,
             parameters=p.as_dict(),
             name=f"{attractor.name or attractor.regime}, A = {p.A:g}",
+            attractor=attractor.name or attractor.regime,
+            bare=options.bare,
         )
     columns = {name: np.concatenate([part[name] for part in impacts]) for name in impacts[0]}
     return Batch(tables={"points": rows, "impacts": pa.table(columns)}, logs=logs)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import os
+import shutil
 import tempfile
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
@@ -36,14 +37,31 @@ def catalogue_of(logs: Sequence[str | os.PathLike[str]], cache: Path) -> Iterato
     if not logs:
         raise ViewerError("there are no logs to browse; `vines run quickstart` makes some")
     recordings = [cached_rrd([log], cache) for log in dict.fromkeys(Path(log).resolve() for log in logs)]
-    # The server shows a folder: one that holds these recordings and no others.
-    with tempfile.TemporaryDirectory(prefix="vines-browse-") as name:
+    # The server shows a folder: one that holds these recordings and no others. It passes symbolic links over.
+    with tempfile.TemporaryDirectory(dir=cache, prefix="browse-") as name:
         folder = Path(name) / "runs"
         folder.mkdir()
         for recording in recordings:
-            (folder / recording.name).symlink_to(recording.resolve())
+            try:
+                os.link(recording, folder / recording.name)
+            except OSError:
+                shutil.copyfile(recording, folder / recording.name)
         with catalogue(folder) as address:
-            yield address
+            yield _table(address, folder.name)
+
+
+def _table(address: str, dataset: str) -> str:
+    """Return the address at which the table itself opens.
+
+    The client that knows it is an extra of rerun-sdk; without it the viewer opens one click above the table.
+    """
+    try:
+        from rerun.catalog import CatalogClient
+
+        entry = CatalogClient(address).get_dataset(name=dataset).id
+    except ImportError:
+        return address
+    return f"{address}/entry/{entry}"
 
 
 def browse(

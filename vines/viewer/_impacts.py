@@ -11,7 +11,7 @@ from vines.viewer._style import BALL, GRID, LEFT, RIGHT
 
 __all__ = ["DIAL_BOUNDS", "LANES", "dial", "lanes"]
 
-DIAL_BOUNDS = ((-1.75, 1.75), (-1.45, 1.45))
+DIAL_BOUNDS = ((-1.75, 1.75), (-1.62, 1.62))
 """What the view of the dial shows; its circle has radius 1."""
 LANES = (-1.7, 1.7)
 """Range of the view of the lanes: L at +1, R at -1, as the gap at their impacts."""
@@ -69,7 +69,7 @@ def dial(
         marks = radius * np.column_stack([np.cos(angle), np.sin(angle)])
         rec.log(
             f"{root}/impacts/{name}",
-            rr.Points2D(marks, radii=rr.Radius.ui_points(3.0), colors=(*colour, 150), draw_order=20.0),
+            rr.Points2D(marks, radii=rr.Radius.ui_points(3.5), colors=(*colour, 190), draw_order=20.0),
             static=True,
         )
         latest = f"{root}/latest/{name}"

@@ -10,7 +10,7 @@ from rerun.blueprint.encodings import TimelineColumn
 
 from vines.viewer._clock import CYCLE, IMPACT, SIM_TIME
 from vines.viewer._impacts import DIAL_BOUNDS, LANES
-from vines.viewer._scene import CAVITY_BOUNDS, PHASE_BOUNDS
+from vines.viewer._scene import PHASE_BOUNDS, cavity_bounds
 from vines.viewer._style import CAVITY
 
 __all__ = ["Shown", "blueprint"]
@@ -38,6 +38,8 @@ class Shown:
         First and last time, 1/omega0.
     period : float
         Forcing period, 1/omega0.
+    reach : float
+        Largest displacement of the mass, b.
     kind : str
         ``"run"``, ``"orbit"`` or ``"rig"``.
     parts : tuple of str
@@ -49,6 +51,7 @@ class Shown:
     start: float
     end: float
     period: float
+    reach: float = 1.0
     kind: str = "run"
     parts: tuple[str, ...] = ()
 
@@ -92,7 +95,7 @@ def _alone(run: Shown, still: bool) -> rrb.Horizontal:
             row_shares=[2.7, 2.3, 1.8, 1.8, 1.3],
         ),
         rrb.Vertical(_phase(run), _energy(run, still), _balance(run, still), row_shares=[4.4, 2.6, 2.6]),
-        rrb.Vertical(_dial(run), _about(run), _impacts(run), row_shares=[3.4, 3.3, 3.0]),
+        rrb.Vertical(_dial(run), _about(run), _impacts(run), row_shares=[3.4, 3.9, 2.6]),
         column_shares=[4.6, 3.6, 2.6],
     )
 
@@ -118,7 +121,7 @@ def _measured(run: Shown, still: bool) -> rrb.Horizontal:
 
 
 def _cavity(run: Shown) -> rrb.Spatial2DView:
-    (left, right), (top, bottom) = CAVITY_BOUNDS
+    (left, right), (top, bottom) = cavity_bounds(run.reach)
     return rrb.Spatial2DView(
         origin=f"{run.root}/cavity",
         name=f"{CAVITY}: {run.name}",
@@ -191,7 +194,7 @@ def _dial(run: Shown) -> rrb.Spatial2DView:
     (left, right), (top, bottom) = DIAL_BOUNDS
     return rrb.Spatial2DView(
         origin=f"{run.root}/dial",
-        name="Phase of the forcing at impacts: L outside, R inside",
+        name="Phase at impacts: L outside, R inside",
         background=_DARK,
         visual_bounds=rrb.VisualBounds2D(x_range=(left, right), y_range=(top, bottom)),
     )

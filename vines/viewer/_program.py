@@ -16,6 +16,7 @@ from typing import IO, TYPE_CHECKING
 from urllib.parse import quote
 
 from vines.errors import ViewerError
+from vines.viewer._page import guarded
 from vines.viewer._style import CAVITY
 
 if TYPE_CHECKING:
@@ -110,9 +111,9 @@ def served(what: Path | str) -> Iterator[tuple[str, Callable[[], None]]]:
     page, data = _free_port(), _free_port()
     command = [*_command(what, data), "--serve-web", "--web-viewer-port", str(page)]
     recording = isinstance(what, Path)
-    with _running(command, [page, data] if recording else [page]) as process:
+    with _running(command, [page, data] if recording else [page]) as process, guarded(page) as port:
         source = f"rerun+http://127.0.0.1:{data}/proxy" if recording else what
-        yield f"http://127.0.0.1:{page}/?url={quote(str(source), safe='')}", lambda: _wait(process)
+        yield f"http://127.0.0.1:{port}/?url={quote(str(source), safe='')}&theme=dark", lambda: _wait(process)
 
 
 @contextlib.contextmanager
@@ -181,7 +182,7 @@ def _end(process: subprocess.Popen[bytes]) -> None:
 
 
 @contextlib.contextmanager
-def headless(file: Path, size: tuple[int, int]) -> Iterator[ViewerClient]:
+def headless(file: Path, size: tuple[int, int], *, laid_out: bool = True) -> Iterator[ViewerClient]:
     """Run the viewer without a window on a recording, loaded; it ends with the context.
 
     Parameters
@@ -190,6 +191,8 @@ def headless(file: Path, size: tuple[int, int]) -> Iterator[ViewerClient]:
         The .rrd file.
     size : tuple of int
         Width and height of what is drawn, in points.
+    laid_out : bool
+        Whether the recording brings a layout of vines, which is then waited for. A log opened bare does not.
 
     Raises
     ------
@@ -215,7 +218,7 @@ def headless(file: Path, size: tuple[int, int]) -> Iterator[ViewerClient]:
                 if time.monotonic() > deadline:
                     raise ViewerError(f"the viewer did not load {file.name} within {_START_SECONDS:g} s; try again")
                 time.sleep(0.2)
-                client = _loaded(ViewerClient, port)
+                client = _loaded(ViewerClient, port, laid_out)
             yield client
         except (RuntimeError, ConnectionError) as lost:
             if isinstance(lost, ViewerError):
@@ -226,7 +229,7 @@ def headless(file: Path, size: tuple[int, int]) -> Iterator[ViewerClient]:
             _end(process)
 
 
-def _loaded(kind: type[ViewerClient], port: int) -> ViewerClient | None:
+def _loaded(kind: type[ViewerClient], port: int, laid_out: bool) -> ViewerClient | None:
     """Return a client once the viewer answers and has its recording and its views, else None."""
     if not _answers(port):
         return None
@@ -236,8 +239,9 @@ def _loaded(kind: type[ViewerClient], port: int) -> ViewerClient | None:
     except (RuntimeError, ConnectionError, ValueError):
         return None
     # Until the layout of the recording is in force, the viewer shows views that it made up.
-    laid_out = any(view.name.startswith(CAVITY) for view in state.views)
-    return client if laid_out and state.recordings[0].timelines and not state.loading else None
+    shown = any(view.name.startswith(CAVITY) for view in state.views) if laid_out else bool(state.views)
+    there = bool(state.recordings) and bool(state.recordings[0].timelines)
+    return client if shown and there and not state.loading else None
 
 
 def _why(said: IO[bytes], status: int) -> str:

@@ -70,7 +70,8 @@ def _shown(root: str, log: Log) -> Shown:
         raise ViewerError(f"{log.path} holds no states, so there is nothing to show; record the run with samples")
     times = log.states["t"].to_numpy()
     period = 2 * math.pi / log.parameters.get("Omega", 1.0)
-    return Shown(root, _title(log), float(times[0]), float(times[-1]), period, log.kind)
+    reach = float(np.abs(log.states["x1"].to_numpy()).max())
+    return Shown(root, _title(log), float(times[0]), float(times[-1]), period, reach, log.kind)
 
 
 def _title(log: Log) -> str:
@@ -129,6 +130,7 @@ def _properties(logs: Sequence[Log]) -> rr.AnyValues:
     """Return what a catalogue of recordings shows as columns: names, parameters and provenance."""
     properties: dict[str, Any] = {
         "name": [log.name for log in logs],
+        "attractor": [log.attractor for log in logs],
         "kind": [log.kind for log in logs],
         "impacts": [log.impacts.num_rows for log in logs],
         "sticks": [log.sticks.num_rows for log in logs],

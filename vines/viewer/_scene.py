@@ -13,20 +13,35 @@ import rerun as rr
 from vines.viewer._clock import Clock
 from vines.viewer._style import BALL, BASE, GRID, LEFT, LINE, MASS, RIGHT, SPRING, TRAIL
 
-__all__ = ["CAVITY_BOUNDS", "PHASE_BOUNDS", "cavity", "phase_plane", "write"]
+__all__ = ["PHASE_BOUNDS", "cavity", "cavity_bounds", "phase_plane", "write"]
 
 _RADIUS = 0.09
 _WALL = 0.07
 _HEIGHT = 0.34
-_MOUNT = -2.9
-"""Where the shaken base is drawn, in b left of the middle; only its displacement is to scale."""
+_MOUNT = 1.9
+"""Where the shaken base is drawn, in b left of where the mass turns; only its displacement is to scale."""
 _FLOOR = 0.62
-CAVITY_BOUNDS = ((-3.2, 2.4), (-0.85, 1.05))
-"""What the view of the cavity shows, x and y, unless a run moves further."""
+_CAVITY_HEIGHT = (-0.85, 1.05)
+"""What the view of the cavity shows in y."""
 PHASE_BOUNDS = ((-1.4, 1.2), (-0.9, 1.13))
 """What the view of the phase plane shows, in the units in which w is drawn."""
 _HIGHEST = 0.75
 """Height in the phase plane at which the largest ``|w'|`` of a run is drawn."""
+
+
+def cavity_bounds(reach: float) -> tuple[tuple[float, float], tuple[float, float]]:
+    """Return what the view of the cavity shows, x and y, of a run whose mass moves no further than `reach` (in b).
+
+    Examples
+    --------
+    >>> cavity_bounds(1.0)
+    ((-3.2, 2.4), (-0.85, 1.05))
+    """
+    return (-_mount(reach) - 0.3, reach + 1.4), _CAVITY_HEIGHT
+
+
+def _mount(reach: float) -> float:
+    return reach + _MOUNT
 
 
 def cavity(rec: rr.RecordingStream, root: str, states: dict[str, np.ndarray], clock: Clock) -> None:
@@ -44,6 +59,7 @@ def cavity(rec: rr.RecordingStream, root: str, states: dict[str, np.ndarray], cl
         Gives rows their times.
     """
     x1, x2, base = states["x1"], states["x2"], states["base"]
+    mount = -_mount(float(np.abs(x1).max()))
     indexes = clock.columns(states["t"])
     inner = 1.0 + _RADIUS
     outer = inner + 2 * _WALL
@@ -64,14 +80,14 @@ def cavity(rec: rr.RecordingStream, root: str, states: dict[str, np.ndarray], cl
 
     wall = [[(0.0, -_HEIGHT - 0.1), (0.0, _HEIGHT + 0.1)]]
     rec.log(f"{root}/base", rr.LineStrips2D(wall, radii=0.05, colors=BASE), static=True)
-    _move(rec, f"{root}/base", indexes, _MOUNT + base)
+    _move(rec, f"{root}/base", indexes, mount + base)
 
     turns = np.concatenate([[0.0, 0.12], np.linspace(0.16, 0.84, 13), [0.88, 1.0]])
     sway = np.concatenate([[0.0, 0.0], 0.14 * (-1.0) ** np.arange(13), [0.0, 0.0]])
     coil = np.column_stack([turns, sway])
     rec.log(f"{root}/spring", rr.LineStrips2D([coil], radii=rr.Radius.ui_points(1.2), colors=SPRING), static=True)
-    length = x1 - outer - (_MOUNT + base)
-    _move(rec, f"{root}/spring", indexes, _MOUNT + base, scale=length)
+    length = x1 - outer - (mount + base)
+    _move(rec, f"{root}/spring", indexes, mount + base, scale=length)
 
     reach = max(2.0, float(np.ceil(np.abs(np.concatenate([x1, x2])).max())))
     ticks = np.arange(-reach, reach + 0.5)

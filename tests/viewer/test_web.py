@@ -1,0 +1,105 @@
+"""The web viewer in a real browser, and the catalogue of many logs: offline, on this machine only, and shown."""
+
+import os
+import shutil
+import tempfile
+from pathlib import Path
+
+import matplotlib.image
+import psutil
+import pytest
+
+from tests.viewer.chromium import chromium
+from vines import viewer
+from vines.errors import ViewerError
+from vines.viewer._program import served
+
+
+@pytest.fixture(scope="module")
+def browser_program():
+    """Skip, aloud, where there is no Chromium; never on a CI machine, which must have one."""
+    program = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
+    if program is None:
+        if os.environ.get("CI"):
+            pytest.fail("Chromium is missing on a CI machine; make system installs it")
+        pytest.skip("Chromium is not installed, so the web viewer is not tried; make system installs it")
+    return program
+
+
+def listening():
+    """Return the addresses on which this process and its children listen."""
+    mine = [psutil.Process(), *psutil.Process().children(recursive=True)]
+    return {
+        each.laddr.ip
+        for process in mine
+        for each in process.net_connections("inet")
+        if each.status == psutil.CONN_LISTEN
+    }
+
+
+def test_web_viewer_in_chromium(settled, tmp_path, browser_program):
+    recording = viewer.save_rrd([settled], tmp_path / "run.rrd")
+    with served(recording) as (url, _):
+        assert url.startswith("http://127.0.0.1:")
+        assert listening() == {"127.0.0.1"}
+        with tempfile.TemporaryDirectory() as folder, chromium(browser_program, folder) as browser:
+            browser.open(url)
+            picture = browser.at_rest()
+            asked = browser.asked()
+    # Fonts, versions, examples and usage data of Rerun's makers are kept back.
+    assert [address for address in asked if not address.startswith(("http://127.0.0.1:", "data:", "blob:"))] == []
+    out = tmp_path / "web.png"
+    out.write_bytes(picture)
+    drawn = (matplotlib.image.imread(out)[..., :3] * 255).round()
+    red = (drawn[..., 0] > 200) & (drawn[..., 1] < 120) & (drawn[..., 2] < 120)
+    blue = (drawn[..., 2] > 200) & (drawn[..., 0] < 120)
+    assert min(red.sum(), blue.sum()) > 500
+
+
+def test_catalogue_has_parameters_and_attractors_as_columns(settled, chatter, tmp_path):
+    client = pytest.importorskip("rerun.catalog").CatalogClient
+    with viewer.catalogue_of([settled, chatter], tmp_path / "cache") as address:
+        assert listening() == {"127.0.0.1"}
+        root, _, entry = address.partition("/entry/")
+        dataset = client(root).get_dataset(name="runs")
+        assert str(dataset.id) == entry
+        rows = dataset.segment_table().to_pandas()
+    assert len(rows) == 2
+    one = rows.set_index(rows["property:vines:log"].map(lambda value: value[0]))
+    assert one.loc["chatter.mcap", "property:vines:mu"] == [0.0084]
+    assert one.loc["settled.mcap", "property:vines:attractor"] == ["1:1"]
+    assert one.loc["chatter.mcap", "property:vines:sticks"][0] >= 1
+    assert [path.suffix for path in (tmp_path / "cache").iterdir()] == [".rrd", ".rrd"]
+
+
+def test_nothing_to_browse_is_said(tmp_path):
+    with pytest.raises(ViewerError, match="no logs to browse"), viewer.catalogue_of([], tmp_path):
+        pass
+
+
+def test_cache_is_made_again_when_log_or_layout_changes(settled, chatter, tmp_path, monkeypatch):
+    log, cache = tmp_path / "run.mcap", tmp_path / "cache"
+    shutil.copy(settled, log)
+    first = viewer.cached_rrd([log], cache)
+    made = first.stat().st_mtime_ns
+    assert viewer.cached_rrd([log], cache) == first
+    assert first.stat().st_mtime_ns == made
+    first.unlink()
+    assert viewer.cached_rrd([log], cache) == first
+
+    shutil.copy(chatter, log)
+    second = viewer.cached_rrd([log], cache)
+    assert second != first
+    assert list(cache.iterdir()) == [second]
+
+    monkeypatch.setattr("vines.viewer._cache._drawing", lambda: "another layout")
+    third = viewer.cached_rrd([log], cache)
+    assert list(cache.iterdir()) == [third]
+    assert third != second
+    both = viewer.cached_rrd([log, settled], cache)
+    assert sorted(cache.iterdir()) == sorted([third, both])
+
+
+def test_server_that_cannot_start_is_told(tmp_path):
+    with pytest.raises(ViewerError, match="ended with status"), served(Path(tmp_path / "none.rrd")):
+        pass
