@@ -1,0 +1,211 @@
+"""Speed and error of the simulator, with its peers in the same run: ``python -m benchmarks.dynamics [--pictures]``.
+
+Every figure is the median of five. Errors are those of |w'| at the impacts of a stable symmetric 1:1 orbit, whose closed
+form is known; all methods start on it. Times are those of the processor, so that a busy machine disturbs little.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+import shutil
+import statistics
+import subprocess
+import sys
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+from scipy.integrate import solve_ivp
+
+from benchmarks.rk4 import rk4_run
+from vines.dynamics import _lane_fields as f
+from vines.dynamics import ensemble, lyapunov_spectrum, simulate
+from vines.dynamics._jit import lanes_njit
+from vines.dynamics._lanes import half_turn, small_expm1
+from vines.model import Params
+from vines.orbits import find_orbit
+
+ORBIT = Params(mu=0.01, A=0.015)
+MIXED = Params(mu=0.01, A=0.03)
+REPEATS = 5
+
+
+def median(work: Callable[[], object]) -> float:
+    """Return the median processor time of five calls after a first one."""
+    work()
+    times = []
+    for _ in range(REPEATS):
+        begin = time.process_time()
+        work()
+        times.append(time.process_time() - begin)
+    return statistics.median(times)
+
+
+@lanes_njit
+def _floor(L, n):
+    """Four sine-cosine pairs and four exponentials in each lane, n times: what an impact cannot do without."""
+    for _ in range(n):
+        for i in range(f.LANES):
+            x = L[f.MOVE + i]
+            total = 0.0
+            s, c = half_turn(x)
+            total += s * c + small_expm1(-x)
+            s, c = half_turn(x * 0.9)
+            total += s * c + small_expm1(-x * 0.9)
+            s, c = half_turn(x * 0.8)
+            total += s * c + small_expm1(-x * 0.8)
+            s, c = half_turn(x * 0.7)
+            total += s * c + small_expm1(-x * 0.7)
+            L[f.MOVE + i] = 0.5 + 0.1 * total
+
+
+def floor() -> float:
+    """Return the floor in ns an impact."""
+    L, n = np.full(f.SIZE, 0.5), 20_000
+    return median(lambda: _floor(L, n)) / n / f.LANES * 1e9
+
+
+def start_on(p: Params) -> tuple[dict[str, float], float]:
+    """Return the state just after an impact of the symmetric 1:1 orbit, and |w'| before its impacts."""
+    orbit = find_orbit("LR", p)
+    x1, v1, x2, v2 = (float(value) for value in orbit.states[0][:4])
+    w = v1 - v2
+    v1, v2 = v1 - p.mu * (1 + p.r) / (1 + p.mu) * w, v2 + (1 + p.r) / (1 + p.mu) * w
+    return {"x1": x1, "v1": v1, "x2": x2, "v2": v2, "phase": float(orbit.phase[0])}, abs(float(orbit.w_dot[0]))
+
+
+def ours(p: Params) -> list[tuple[str, float]]:
+    """Return (what, ns an impact) for the ways to run."""
+    n = 2048
+    v2 = np.linspace(0.09, 0.11, n)
+    rows = []
+    for name, options in (
+        ("lanes, final states", {"periods": 200}),
+        ("lanes, measures", {"periods": 40, "record": "measures"}),
+        ("lanes, impacts kept", {"periods": 40, "record": "impacts"}),
+        ("lanes, Lyapunov spectrum", {"periods": 40, "lyapunov": True}),
+    ):
+        hits = int(ensemble(p, {"v2": v2}, threads=1, **options).counts.sum())
+        seconds = median(lambda options=options: ensemble(p, {"v2": v2}, threads=1, **options))
+        rows.append((name, seconds / hits * 1e9))
+    run = simulate(p, periods=5000)
+    hits = len(run.impacts)
+    rows.append(("scalar, every event kept", median(lambda: simulate(p, periods=5000)) / hits * 1e9))
+    rows.append(("scalar, measures of it", median(run.measures) / hits * 1e9))
+    rows.append(("scalar, Lyapunov spectrum of it", median(lambda: lyapunov_spectrum(run)) / hits * 1e9))
+    return rows
+
+
+def dop853(p: Params, start: dict[str, float], periods: float) -> np.ndarray:
+    """Return |w'| of the impacts by SciPy's DOP853 at 1e-9 with events for the walls."""
+    x1, v1, x2, v2 = (start[name] for name in ("x1", "v1", "x2", "v2"))
+    t, stop, speeds = 0.0, periods * p.period, []
+
+    def motion(t: float, y: np.ndarray) -> list[float]:
+        angle = p.Omega * t + start["phase"]
+        return [y[1], p.A * math.sin(angle) + p.lam * p.Omega * p.A * math.cos(angle) - p.lam * y[1] - y[0], y[3], 0.0]
+
+    def left(t: float, y: np.ndarray) -> float:
+        return y[0] - y[2] - 1.0
+
+    def right(t: float, y: np.ndarray) -> float:
+        return y[0] - y[2] + 1.0
+
+    left.terminal, left.direction = True, 1  # type: ignore[attr-defined]
+    right.terminal, right.direction = True, -1  # type: ignore[attr-defined]
+    while t < stop:
+        leg = solve_ivp(
+            motion, (t, stop), [x1, v1, x2, v2], method="DOP853", rtol=1e-9, atol=1e-12, events=(left, right)
+        )
+        if leg.status != 1:
+            break
+        t, (x1, v1, x2, v2) = float(leg.t[-1]), leg.y[:, -1]
+        w = v1 - v2
+        speeds.append(abs(w))
+        v1, v2 = v1 - p.mu * (1 + p.r) / (1 + p.mu) * w, v2 + (1 + p.r) / (1 + p.mu) * w
+        side = math.copysign(1.0, x1 - x2)
+        x2 = x1 - side * (1.0 - 1e-15)
+    return np.array(speeds)
+
+
+def siconos(p: Params, start: dict[str, float], periods: int) -> dict | None:
+    """Return what benchmarks/siconos_run.py prints, or None where no interpreter has Siconos."""
+    python = shutil.which("python3", path="/usr/bin:/usr/local/bin")
+    if python is None:
+        return None
+    # Siconos does not begin on a wall: it gets the state a little later, from the closed form.
+    state = {name: start[name] for name in ("x1", "v1", "x2", "v2")}
+    begin = simulate(p, **state, phi=start["phase"], periods=0.1).final
+    numbers = [p.mu, p.A, p.Omega, p.r, p.lam, periods, *(begin[n] for n in ("x1", "v1", "x2", "v2", "phase"))]
+    script = Path(__file__).with_name("siconos_run.py")
+    done = subprocess.run(
+        [python, str(script), *(repr(float(number)) for number in numbers)], capture_output=True, text=True, check=False, timeout=300
+    )
+    lines = [line for line in done.stdout.splitlines() if line.startswith("{")]
+    return json.loads(lines[-1]) if done.returncode == 0 and lines else None
+
+
+def peers(p: Params, periods: int) -> list[tuple[str, float, float]]:
+    """Return (method, ns an impact, largest error of |w'|) for the peers, all started on the orbit."""
+    start, speed = start_on(p)
+    state = [start[name] for name in ("x1", "v1", "x2", "v2", "phase")]
+    rows = []
+    for parts in (100, 400, 2000):
+        speeds = np.zeros(4 * periods)
+        run = lambda parts=parts, speeds=speeds: rk4_run(  # noqa: E731
+            p.mu, p.A, p.Omega, p.r, p.lam, *state, periods * p.period, parts, speeds
+        )
+        hits = run()
+        rows.append((f"RK4, h = T/{parts}, halved to 1e-9 (the paper's way)", median(run) / hits * 1e9, speeds, hits))
+    few = max(periods // 10, 2)
+    speeds = dop853(p, start, few)
+    rows.append(("SciPy DOP853, rtol 1e-9, events", median(lambda: dop853(p, start, few)) / len(speeds) * 1e9, speeds,
+                 len(speeds)))  # fmt: skip
+    told = [siconos(p, start, few) for _ in range(REPEATS)]
+    if all(told) and told[0]["impacts"]:
+        seconds = statistics.median(answer["seconds"] for answer in told)
+        speeds = np.array(told[0]["speeds"])
+        rows.append(("Siconos, event-driven", seconds / told[0]["impacts"] * 1e9, speeds, len(speeds)))
+    return [(name, ns, float(np.max(np.abs(found[:hits] - speed)))) for name, ns, found, hits in rows]
+
+
+def errors_of_ours(p: Params, periods: int) -> list[tuple[str, float]]:
+    """Return the largest error of |w'| of the scalar kernel and of the lanes."""
+    start, speed = start_on(p)
+    state = {name: start[name] for name in ("x1", "v1", "x2", "v2")}
+    hits = simulate(p, **state, phi=start["phase"], periods=periods).impacts
+    many = ensemble(p, {name: [value] for name, value in start.items()}, periods=periods, record="impacts").impacts
+    assert many is not None
+    return [(name, float(np.max(np.abs(np.abs(found["w_dot"]) - speed)))) for name, found in
+            (("scalar, every event kept", hits), ("lanes, final states", many))]  # fmt: skip
+
+
+def main() -> None:
+    """Print the table."""
+    bottom = floor()
+    print(f"floor: four sincos-exp evaluations in a lane {bottom:.1f} ns")
+    for p in (ORBIT, MIXED):
+        print(f"\n{p}")
+        for name, ns in ours(p):
+            ratio = f", {ns / bottom:.1f} floors" if name == "lanes, final states" else ""
+            print(f"  {name:36s} {ns:12.1f} ns an impact{ratio}")
+    errors = dict(errors_of_ours(ORBIT, 500))
+    base = dict(ours(ORBIT))
+    print(f"\nerror of |w'| on the 1:1 orbit of {ORBIT}, 500 periods (event solvers 50)")
+    for name in ("lanes, final states", "scalar, every event kept"):
+        print(f"  {name:52s} {base[name] / 1e3:12.4f} us an impact  error {errors[name]:.1e}")
+    for name, ns, error in peers(ORBIT, 500):
+        print(
+            f"  {name:52s} {ns / 1e3:12.4f} us an impact  error {error:.1e}  "
+            f"{ns / base['scalar, every event kept']:.0f} x scalar, {ns / base['lanes, final states']:.0f} x lanes"
+        )
+    if "--pictures" in sys.argv:
+        from benchmarks.pictures import error_against_periods
+
+        error_against_periods()
+
+
+if __name__ == "__main__":
+    main()
