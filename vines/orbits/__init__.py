@@ -5,6 +5,7 @@ from vines.orbits._branch import Bifurcation, Branch
 from vines.orbits._cascade import follow_cascade
 from vines.orbits._continuation import continue_orbit
 from vines.orbits._curve import Curve, SpecialPoint, curve_rows
+from vines.orbits._families import Families, follow_families
 from vines.orbits._find import find_orbit
 from vines.orbits._follow_curve import follow_curve
 from vines.orbits._joined import mirror_image
@@ -17,11 +18,13 @@ from vines.orbits._switch import switch_branch
 from vines.orbits._symmetric import symmetric_fold, symmetric_orbits
 from vines.orbits._table import symmetric_table
 from vines.orbits._warm_up import warm_up
+from vines.orbits._words_up_to import words_up_to
 
 __all__ = [
     "Bifurcation",
     "Branch",
     "Curve",
+    "Families",
     "Margin",
     "Optimum",
     "Orbit",
@@ -36,6 +39,7 @@ __all__ = [
     "find_orbit",
     "follow_cascade",
     "follow_curve",
+    "follow_families",
     "manifold_amplitude",
     "manifold_range",
     "mirror_image",
@@ -48,4 +52,5 @@ __all__ = [
     "symmetric_orbits",
     "symmetric_table",
     "warm_up",
+    "words_up_to",
 ]

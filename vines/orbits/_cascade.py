@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import replace
+from typing import Any
 
 from vines.errors import ParameterError
 from vines.orbits._branch import Bifurcation, Branch
@@ -12,7 +14,7 @@ from vines.orbits._joined import BRANCHING, is_joint
 from vines.orbits._orbit import Orbit
 from vines.orbits._switch import switch_branch
 
-__all__ = ["follow_cascade"]
+__all__ = ["follow_cascade", "generations"]
 
 _SAME = 1e-9
 """Relative difference of parameter values at which a family that ends does so at a branching point found before."""
@@ -25,6 +27,7 @@ def follow_cascade(
     *,
     depth: int = 4,
     within: tuple[float, float] | None = None,
+    at: Sequence[float] = (),
     step: float = 0.02,
     beyond_grazing: bool = False,
     max_points: int = 5000,
@@ -33,7 +36,7 @@ def follow_cascade(
 
     Parameters
     ----------
-    orbit, parameter, stop, within, step, beyond_grazing, max_points
+    orbit, parameter, stop, within, at, step, beyond_grazing, max_points
         As for `continue_orbit`; the largest step is halved with each generation, since cascades are.
     depth : int
         Generations after the first branch. The work grows as the cube of the number of impacts, which doubles.
@@ -67,18 +70,39 @@ def follow_cascade(
         raise ParameterError(f"depth is {depth}, allowed is depth >= 0")
     start = getattr(orbit.params, parameter, stop)
     low, high = sorted((start, stop) if within is None else within)
-    options = {"step": step, "beyond_grazing": beyond_grazing, "max_points": max_points}
-    generation = [continue_orbit(orbit, parameter, stop, within=within, **options)]
-    found = list(generation)
-    for _ in range(depth):
-        options["step"] /= 2
+    options = {"at": at, "step": step, "beyond_grazing": beyond_grazing, "max_points": max_points}
+    first = continue_orbit(orbit, parameter, stop, within=within, **options)
+    return generations([first], depth, (low, high), options)
+
+
+def generations(first: list[Branch], depth: int, within: tuple[float, float], options: dict[str, Any]) -> list[Branch]:
+    """Return branches and what comes out of them.
+
+    Parameters
+    ----------
+    first : list of Branch
+    depth : int
+        Generations after them.
+    within : tuple of float, float
+        Range of the parameter.
+    options : dict
+        Of `continue_orbit`, for the first ones; ``step`` is halved with each generation.
+
+    Raises
+    ------
+    OrbitNotFound
+        If a branch is lost.
+    """
+    generation, found = first, list(first)
+    for k in range(1, depth + 1):
+        finer = {**options, "step": options["step"] / 2**k}
         children: list[Branch] = []
         for branch in generation:
             reached: list[float] = []
             for bifurcation in branch.bifurcations:
                 if bifurcation.type not in BRANCHING or is_joint(bifurcation) or _among(bifurcation.value, reached):
                     continue
-                child = _child(bifurcation, branch.branch_id, (low, high), options)
+                child = _child(bifurcation, branch.branch_id, within, finer)
                 if child is not None:
                     children.append(child)
                     reached += [b.value for b in child.bifurcations if is_joint(b)]
@@ -87,7 +111,9 @@ def follow_cascade(
     return found
 
 
-def _child(bifurcation: Bifurcation, parent: str, within: tuple[float, float], options: dict) -> Branch | None:
+def _child(
+    bifurcation: Bifurcation, parent: str, within: tuple[float, float], options: dict[str, Any]
+) -> Branch | None:
     """Return the branch that comes out of a branching point; None if that lies beyond the range."""
     orbit = switch_branch(bifurcation)[0]
     start = getattr(orbit.params, bifurcation.parameter)

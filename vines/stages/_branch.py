@@ -1,4 +1,4 @@
-"""Body of the kind ``branch``: a family of periodic orbits, with multipliers and bifurcations."""
+"""Body of the kind ``branch``: families of periodic orbits, with multipliers and bifurcations."""
 
 from __future__ import annotations
 
@@ -6,31 +6,55 @@ from typing import Any
 
 import numpy as np
 
-from vines.errors import DeclarationError
+from vines.errors import DeclarationError, OrbitNotFound
 from vines.model import Params
-from vines.orbits import bifurcation_row, branch_row, continue_orbit, find_orbit, orbit_row
-from vines.pipeline import Batch, WholeJob
+from vines.orbits import (
+    Branch,
+    bifurcation_row,
+    branch_row,
+    find_orbit,
+    follow_cascade,
+    follow_families,
+    orbit_row,
+)
+from vines.pipeline import Batch, Range, WholeJob
 
-__all__ = ["compute"]
+__all__ = ["branch_tables", "compute"]
 
 
 def compute(job: WholeJob) -> Batch:
-    """Find the orbit at one end of the range and follow it to the other."""
-    options: Any = job.options
+    """Follow one orbit from end to end of the range, or all families, and what comes out of them."""
     if len(job.ranges) != 1:
         raise DeclarationError(f"a branch is followed in one parameter, this one varies {len(job.ranges)}")
     (axis, span), *_ = job.ranges.items()
-    start = Params(**{**job.params, axis: span.start})
+    return Batch(tables=branch_tables(_branches(job.options, job.params, axis, span)))
+
+
+def _branches(options: Any, params: dict[str, float], axis: str, span: Range) -> list[Branch]:
+    start = Params(**{**params, axis: span.start})
     at = np.linspace(span.start, span.stop, options.points).tolist()
-    branch = continue_orbit(find_orbit(options.word, start), axis, stop=span.stop, at=at)
-    row = branch_row(branch)
-    name = row["branch_id"]
-    return Batch(
-        tables={
-            "orbits": [orbit_row(orbit, branch_id=name) for orbit in branch.orbits],
-            "branches": [row],
-            "bifurcations": [
-                bifurcation_row(found, branch_id=name) for found in (*branch.bifurcations, *branch.events)
-            ],
-        }
-    )
+    if options.families == "one":
+        orbit = find_orbit(options.word, start)
+        return follow_cascade(orbit, axis, span.stop, depth=options.switch, at=at)
+    seeds = np.linspace(span.start, span.stop, options.seeds).tolist()
+    ends = (span.start, span.stop)
+    found = follow_families(options.word, start, axis, ends, seeds=seeds, depth=options.switch, at=at)
+    if not found:
+        raise OrbitNotFound(
+            f"no admissible {options.word} orbit at any of {options.seeds} values of {axis} from {span.start:g} to "
+            f"{span.stop:g}; give another range or more seeds"
+        )
+    return list(found)
+
+
+def branch_tables(branches: list[Branch]) -> dict[str, list[dict[str, Any]]]:
+    """Return the rows of ``orbits``, ``branches`` and ``bifurcations``."""
+    return {
+        "orbits": [orbit_row(orbit, branch_id=one.branch_id) for one in branches for orbit in one.orbits],
+        "branches": [branch_row(one) for one in branches],
+        "bifurcations": [
+            bifurcation_row(found, branch_id=one.branch_id)
+            for one in branches
+            for found in (*one.bifurcations, *one.events)
+        ],
+    }

@@ -16,8 +16,11 @@ from vines.pipeline import Kind, register
 from vines.places import shipped
 
 __all__ = [
+    "Amplitudes",
+    "AtlasOptions",
     "BranchOptions",
     "CheckOptions",
+    "CurveOptions",
     "FigureOptions",
     "OptimumOptions",
     "ReducedOptions",
@@ -66,13 +69,55 @@ class SweepOptions(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 
 class BranchOptions(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """A family of periodic orbits of one word, followed in the varied parameter.
+    """Families of periodic orbits of one word, followed in the varied parameter.
 
-    `points` values of the parameter, evenly spaced from end to end, are among the orbits on every sheet of the branch.
+    `points` values of the parameter, evenly spaced from end to end, are among the orbits on every sheet of a branch.
+    `families = "one"` follows the orbit that `find_orbit` chooses at the start of the range to its end, `"all"` every
+    family that is found at one of `seeds` values of the parameter. `switch` is the number of generations that are
+    followed out of them at symmetry breakings and period doublings.
     """
 
     word: str
     points: int = 400
+    families: Literal["one", "all"] = "one"
+    seeds: int = 13
+    switch: int = 0
+
+
+class CurveOptions(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """Every curve of one type of bifurcation of a word in the plane of the two varied parameters.
+
+    The bifurcations are found on the families of the word along the first parameter, at `lines` values of the second
+    and from `seeds` values of the first, and along what comes out of these families by symmetry breaking. `step` is
+    the largest step, relative to the box.
+    """
+
+    word: str
+    type: Literal["fold", "symmetry_breaking", "period_doubling", "neimark_sacker", "grazing"]
+    lines: int = 3
+    seeds: int = 9
+    step: float = 0.02
+
+
+class Amplitudes(msgspec.Struct, frozen=True, forbid_unknown_fields=True, rename={"start": "from", "stop": "to"}):
+    """Evenly spaced forcing amplitudes, ends included."""
+
+    start: float
+    stop: float
+    count: int
+
+
+class AtlasOptions(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """All orbits of all words of up to `length` impacts and `period` forcing periods over a box of parameters.
+
+    A point of the grid is a line through the box along the forcing amplitude, on which the families are followed, so
+    that each orbit knows its branch. `words` names words instead of `length` and `period`.
+    """
+
+    amplitude: Amplitudes
+    length: int = 3
+    period: int = 1
+    words: tuple[str, ...] = ()
 
 
 class ReducedOptions(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -91,12 +136,18 @@ class OptimumOptions(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 
 class FigureOptions(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """A picture of the needed stages; `panels` are the quantities shown, by default those of the plot."""
+    """A picture of the needed stages; `panels` are the quantities shown, by default those of the plot.
 
-    plot: Literal["bifurcation", "reduced"]
+    `window` is the part of the varied parameter that is shown; with `mirror` the mirror images of asymmetric orbits are
+    drawn too.
+    """
+
+    plot: Literal["bifurcation", "reduced", "multipliers", "chart"]
     panels: tuple[str, ...] = ()
     title: str = ""
     width: float = 7.0
+    window: tuple[float, float] | None = None
+    mirror: bool = False
 
 
 class CheckOptions(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -141,8 +192,41 @@ def _check_branch(params: dict[str, float], options: Any) -> None:
 
     Params(**params)
     Word(options.word)
-    if options.points < 2:
-        raise ParameterError(f"points is {options.points}, allowed is points >= 2")
+    for name, least in (("points", 2), ("seeds", 2), ("switch", 0)):
+        value = getattr(options, name)
+        if value < least:
+            raise ParameterError(f"{name} is {value}, allowed is {name} >= {least}")
+
+
+def _check_curve(params: dict[str, float], options: Any) -> None:
+    from vines.model import Word
+
+    Params(**params)
+    Word(options.word)
+    for name, least in (("lines", 1), ("seeds", 2)):
+        value = getattr(options, name)
+        if value < least:
+            raise ParameterError(f"{name} is {value}, allowed is {name} >= {least}")
+    if not 0 < options.step <= 1:
+        raise ParameterError(f"step is {options.step:g}, allowed is 0 < step <= 1")
+
+
+def _check_atlas(params: dict[str, float], options: Any) -> None:
+    from vines.model import Word
+
+    along = options.amplitude
+    for end in (along.start, along.stop):
+        Params(**params, A=end)
+    if not along.start < along.stop or along.count < 2:
+        raise ParameterError(
+            f"amplitude is {along.start:g} to {along.stop:g} in {along.count} values; allowed are from < to, count >= 2"
+        )
+    for word in options.words:
+        Word(word)
+    if not 2 <= options.length <= 12 or options.period < 1:
+        raise ParameterError(
+            f"length is {options.length} and period {options.period}, allowed are 2 <= length <= 12 and period >= 1"
+        )
 
 
 def _claims_file(options: Any, root: Path) -> tuple[Path, ...]:
@@ -194,6 +278,32 @@ def register_kinds() -> None:
             parameters=PARAMETERS,
             vary="range",
             check=_check_branch,
+        )
+    )
+    register(
+        Kind(
+            name="curve",
+            summary="a bifurcation followed in two parameters, with its special points",
+            shape="whole",
+            options=CurveOptions,
+            body="vines.stages._curve:compute",
+            tables=("curves",),
+            parameters=PARAMETERS,
+            vary="range",
+            check=_check_curve,
+        )
+    )
+    register(
+        Kind(
+            name="atlas",
+            summary="all orbits of all words up to a length over a box of parameters, linked to their branches",
+            shape="points",
+            options=AtlasOptions,
+            body="vines.stages._atlas:compute",
+            tables=("atlas", "orbits", "branches", "bifurcations"),
+            parameters={name: value for name, value in PARAMETERS.items() if name != "A"},
+            vary="grid",
+            check=_check_atlas,
         )
     )
     register(

@@ -1,0 +1,174 @@
+"""All families of a word over a range of one parameter, each followed once from end to end."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Sequence
+from dataclasses import replace
+
+from vines.errors import OrbitNotFound
+from vines.model import Params, Word
+from vines.orbits._all import all_orbits
+from vines.orbits._branch import Branch
+from vines.orbits._cascade import generations
+from vines.orbits._continuation import continue_orbit
+from vines.orbits._general import same
+from vines.orbits._joined import BRANCHING, is_joint, mirror_image
+from vines.orbits._orbit import Orbit
+
+__all__ = ["Families", "follow_families"]
+
+_FINER = (1.0, 0.25, 0.05)
+"""Steps tried, relative to the one asked for: next to a grazing a bifurcation may only be located with small ones."""
+
+
+class Families(list[Branch]):
+    """Branches of one word and those that come out of them.
+
+    Attributes
+    ----------
+    loose : list of Orbit
+        Orbits that could not be followed, of no branch.
+    complete : bool
+        Whether every orbit at every seed was searched for to the end (`Orbits.complete`). A family that lives between
+        two seeds is not seen either way.
+    """
+
+    def __init__(self, found: Iterable[Branch] = (), *, loose: list[Orbit], complete: bool) -> None:
+        super().__init__(found)
+        self.loose = loose
+        self.complete = complete
+
+
+def follow_families(
+    word: str | Word,
+    p: Params,
+    parameter: str,
+    within: tuple[float, float],
+    *,
+    seeds: Sequence[float],
+    depth: int = 0,
+    at: Sequence[float] = (),
+    step: float = 0.02,
+) -> Families:
+    """Follow every family of admissible orbits of a word through a range, both ways from where it is found.
+
+    Parameters
+    ----------
+    word : str or Word
+    p : Params
+        The other parameters.
+    parameter : str
+        mu, A, Omega, r or lam.
+    within : tuple of float, float
+        The range.
+    seeds : sequence of float
+        Values of the parameter at which all orbits are looked for.
+    depth : int
+        Generations of families that come out of them (`follow_cascade`).
+    at : sequence of float
+        Further values that are to be among the orbits, beside the seeds.
+    step : float
+        As for `continue_orbit`.
+
+    Returns
+    -------
+    Families
+        Symmetric families first. Every branch but those switched to begins at its lower end. Of an asymmetric pair
+        with one word one is followed: the other is its mirror image. ``parent`` is linked where a family comes out
+        of another of the list.
+
+    Raises
+    ------
+    OrbitNotFound
+        If a branch of a later generation is lost.
+
+    Examples
+    --------
+    >>> from vines.model import Params
+    >>> for branch in follow_families("LLR", Params(mu=0.01, A=0.02), "A", (0.0205, 0.0225), seeds=[0.021, 0.022]):
+    ...     print([(b.type, round(b.value, 5)) for b in branch.bifurcations], branch.ends)
+    [('fold', 0.02098), ('neimark_sacker', 0.02124)] ('range', 'range')
+    """
+    word = Word(word)
+    low, high = sorted(within)
+    values = sorted({*at, *seeds})
+    searched = [all_orbits(word, p.replace(**{parameter: value})) for value in seeds]
+    candidates = [orbit for orbits in searched for orbit in orbits if orbit.admissible]
+    found: list[Branch] = []
+    loose: list[Orbit] = []
+    # A symmetric family comes first, so that the asymmetric one that comes out of it is met as its child.
+    for orbit in sorted(candidates, key=lambda orbit: not orbit.symmetric):
+        if any(_lies_on(orbit, branch) for branch in found):
+            continue
+        branch = _both_ways(orbit, parameter, (low, high), values, step)
+        if branch is None:
+            loose.append(orbit)
+            continue
+        options = {"step": step, "at": values}
+        found += generations([branch], depth, (low, high), options)
+    return Families(_linked(found), loose=loose, complete=all(orbits.complete for orbits in searched))
+
+
+def _lies_on(orbit: Orbit, branch: Branch) -> bool:
+    if branch.word != orbit.word or branch.symmetric != orbit.symmetric:
+        return False
+    value = getattr(orbit.params, branch.parameter)
+    images = [orbit]
+    if not orbit.symmetric and orbit.word.mirror == orbit.word:
+        images.append(mirror_image(orbit))
+    near = [other for other in branch.orbits if getattr(other.params, branch.parameter) == value]
+    return any(same(other, image.t, image.states) for other in near for image in images)
+
+
+def _both_ways(
+    orbit: Orbit, parameter: str, within: tuple[float, float], at: Sequence[float], step: float
+) -> Branch | None:
+    """Return the branch through an orbit from its lower end to its upper one, None if it is lost."""
+    value = getattr(orbit.params, parameter)
+    for finer in _FINER:
+        try:
+            down, up = (
+                continue_orbit(orbit, parameter, stop, within=within, at=at, step=finer * step)
+                if stop != value
+                else None
+                for stop in within
+            )
+        except OrbitNotFound:
+            continue
+        return _joined(down, up)
+    return None
+
+
+def _joined(down: Branch | None, up: Branch | None) -> Branch:
+    if down is None or up is None:
+        only = up or down
+        assert only is not None
+        return only
+    return replace(
+        up,
+        orbits=(*reversed(down.orbits), *up.orbits[1:]),
+        bifurcations=(*reversed(down.bifurcations), *up.bifurcations),
+        events=(*reversed(down.events), *up.events),
+        ends=(down.ends[1], up.ends[1]),
+    )
+
+
+def _linked(found: list[Branch]) -> list[Branch]:
+    """Name the parent of every branch that ends where it comes out of another one."""
+    linked = []
+    for branch in found:
+        child = branch
+        if child.parent is None and set(BRANCHING) & set(child.ends):
+            joints = [b for b in child.bifurcations if is_joint(b)]
+            parents = [
+                other.branch_id
+                for other in found
+                for b in other.bifurcations
+                if other is not child
+                and not is_joint(b)
+                and any(j.type == b.type and math.isclose(j.value, b.value, rel_tol=1e-9) for j in joints)
+            ]
+            child = replace(branch, parent=parents[0] if parents else None)
+        linked.append(child)
+    return linked

@@ -1,0 +1,52 @@
+"""Every word up to a number of impacts and of forcing periods."""
+
+from __future__ import annotations
+
+import itertools
+
+from vines.errors import ParameterError
+from vines.model import Word
+
+__all__ = ["words_up_to"]
+
+_LONGEST = 12
+
+
+def words_up_to(length: int, period: int = 1) -> list[Word]:
+    """Return the words that orbits can have, of two mirror images one.
+
+    Parameters
+    ----------
+    length : int
+        Most impacts over the period of the orbit, 2 to 12. There are some 2^length/length words of that length.
+    period : int
+        Longest period, in forcing periods.
+
+    Returns
+    -------
+    list of Word
+        By period, number of impacts and letters; of a word and its mirror image the one with more L, else the first.
+        Words on one wall are left out: no orbit has one (docs/orbits.md, "All orbits of a word").
+
+    Raises
+    ------
+    ParameterError
+        If a number is out of its range.
+
+    Examples
+    --------
+    >>> [str(word) for word in words_up_to(4)]
+    ['LR', 'LLR', 'LLLR', 'LLRR', 'LRLR']
+    >>> [str(word) for word in words_up_to(3, period=2)]
+    ['LR', 'LLR', 'LR/2T', 'LLR/2T']
+    """
+    if not 2 <= length <= _LONGEST:
+        raise ParameterError(f"length is {length}, allowed is 2 <= length <= {_LONGEST}")
+    if period < 1:
+        raise ParameterError(f"period is {period}, allowed is period >= 1")
+    found: list[Word] = []
+    for p, n in itertools.product(range(1, period + 1), range(2, length + 1)):
+        words = {Word(f"{''.join(letters)}/{p}T") for letters in itertools.product("LR", repeat=n)}
+        kept = {min(word, word.mirror, key=lambda one: (-one.n, one.letters)) for word in words if word.n and word.m}
+        found += sorted(kept, key=lambda one: one.letters)
+    return found
