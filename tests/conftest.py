@@ -6,6 +6,7 @@ import subprocess
 import sys
 from pathlib import Path
 
+import hypothesis
 import pytest
 
 from vines.places import cache_folder
@@ -17,6 +18,10 @@ os.environ.setdefault("NUMBA_CACHE_DIR", str(cache_folder()))
 os.environ["RERUN_ANALYTICS"] = "0"
 os.environ.pop("VINES_ROOT", None)
 os.environ.pop("VINES_DATA", None)
+
+# No timed test in the suite: a busy machine must not fail a property.
+hypothesis.settings.register_profile("vines", deadline=None)
+hypothesis.settings.load_profile("vines")
 
 
 class Project:
