@@ -1,12 +1,21 @@
-"""Figures: tables in, pictures out. Imports no other room but the errors; matplotlib is loaded when one is drawn."""
+"""Figures: tables in, pictures out. Imports no other room but the errors.
 
-from vines.figures._bifurcation import PANELS, SYMBOLS, BranchLine, ImpactDots, Marker, bifurcation_figure
-from vines.figures._reduced import ERRORS, ErrorMap, reduced_figure
-from vines.figures._style import COLOURS, save
+Lazy (PEP 562): names of panels cost nothing; numpy and matplotlib are loaded when something is drawn.
+"""
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from vines.figures._bifurcation import BranchLine, ImpactDots, Marker, bifurcation_figure
+    from vines.figures._names import ERRORS, NAMES, PANELS, SYMBOLS
+    from vines.figures._reduced import ErrorMap, reduced_figure
+    from vines.figures._style import COLOURS, save
 
 __all__ = [
     "COLOURS",
     "ERRORS",
+    "NAMES",
     "PANELS",
     "SYMBOLS",
     "BranchLine",
@@ -17,3 +26,24 @@ __all__ = [
     "reduced_figure",
     "save",
 ]
+
+_HOME = {
+    "COLOURS": "_style",
+    "ERRORS": "_names",
+    "NAMES": "_names",
+    "PANELS": "_names",
+    "SYMBOLS": "_names",
+    "BranchLine": "_bifurcation",
+    "ErrorMap": "_reduced",
+    "ImpactDots": "_bifurcation",
+    "Marker": "_bifurcation",
+    "bifurcation_figure": "_bifurcation",
+    "reduced_figure": "_reduced",
+    "save": "_style",
+}
+
+
+def __getattr__(name: str) -> Any:
+    if name not in _HOME:
+        raise AttributeError(f"module 'vines.figures' has no attribute {name!r}")
+    return getattr(import_module(f"vines.figures.{_HOME[name]}"), name)

@@ -4,47 +4,28 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
 
 from vines.errors import DeclarationError, nearest
-from vines.figures._style import COLOURS, RC, new_figure
+from vines.figures._names import NAMES, PANELS, SYMBOLS
+from vines.figures._legend import add_legend, legend_entries
+from vines.figures._marks import DOTTED, mark_style
+from vines.figures._style import COLOURS, FAMILIES, RC, new_figure
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-__all__ = ["PANELS", "BranchLine", "ImpactDots", "Marker", "bifurcation_figure"]
+__all__ = ["BranchLine", "ImpactDots", "Marker", "bifurcation_figure"]
 
 Floats = npt.NDArray[np.float64]
 
-PANELS = {
-    "w_dot": r"relative impact velocity  $\dot w$",
-    "dt": r"time to next impact  $\Delta t / T$",
-    "x1": r"displacement at impact  $x_1$",
-    "phase": r"impact phase  $\psi$  [rad]",
-}
-
-SYMBOLS = {"A": "A", "mu": r"\mu", "Omega": r"\Omega", "r": "r", "lam": r"\lambda"}
-NAMES = {
-    "A": "forcing amplitude",
-    "mu": "mass ratio",
-    "Omega": "frequency ratio",
-    "r": "restitution",
-    "lam": "damping",
-}
-
-MARKS = {
-    "symmetry_breaking": ("o", "symmetry breaking"),
-    "period_doubling": ("s", "period doubling"),
-    "fold": ("D", "fold"),
-    "neimark_sacker": ("^", "Neimark–Sacker"),
-    "grazing": ("v", "grazing"),
-    "pair_turns_real": ("|", "a pair of multipliers turns real"),
-}
+_MANY = 20_000
+"""Dots beyond which they are small, translucent and drawn as pixels, so that chaos does not cover what is regular."""
 
 
 @dataclass(frozen=True)
@@ -85,6 +66,8 @@ class BranchLine:
         As in :class:`ImpactDots`.
     label : str
         For the legend, such as ``"1:1 symmetric"``.
+    family : str
+        One of :data:`FAMILIES`, for the colours.
     """
 
     x: Floats
@@ -92,6 +75,7 @@ class BranchLine:
     stable: npt.NDArray[np.bool_]
     values: dict[str, Floats]
     label: str
+    family: str = "symmetric"
 
 
 @dataclass(frozen=True)
@@ -112,6 +96,7 @@ def bifurcation_figure(
     panels: Sequence[str] = ("w_dot", "dt"),
     caption: str = "",
     width: float = 7.0,
+    window: tuple[float, float] | None = None,
 ) -> Figure:
     """Draw a bifurcation diagram with one panel a quantity, stacked over a common axis.
 
@@ -127,6 +112,8 @@ def bifurcation_figure(
         The fixed parameters, written above the first panel.
     width : float
         Width of the figure [inch].
+    window : (float, float), optional
+        The part of the varied parameter that is shown; everything by default.
 
     Raises
     ------
@@ -138,8 +125,10 @@ def bifurcation_figure(
     for panel in panels:
         if panel not in PANELS:
             raise DeclarationError(f"unknown panel {panel!r} of a bifurcation diagram: {nearest(panel, PANELS)}")
+    if window is not None:
+        dots, lines, markers = _within(window, dots, lines, markers)
     with mpl.rc_context(RC):
-        figure = new_figure(width, 0.55 + 2.55 * len(panels))
+        figure = new_figure(width, 0.75 + 2.75 * len(panels))
         axes = figure.subplots(len(panels), 1, sharex=True, squeeze=False)[:, 0]
         for letter, panel, ax in zip("abcdefgh", panels, axes, strict=False):
             _draw(ax, panel, dots, lines, markers)
@@ -148,19 +137,42 @@ def bifurcation_figure(
             ax.text(-0.082, 1.0, f"({letter})", transform=ax.transAxes, va="top", fontweight="bold")
         axes[-1].set_xlabel(f"{NAMES.get(axis, axis)}  ${SYMBOLS.get(axis, axis)}$")
         everything = [group.x for group in (*dots, *lines) if len(group.x)]
-        if everything:
+        if window is not None:
+            axes[-1].set_xlim(*window)
+        elif everything:
             low, high = min(float(x.min()) for x in everything), max(float(x.max()) for x in everything)
             axes[-1].set_xlim(low - 0.01 * (high - low), high + 0.01 * (high - low))
         if caption:
             axes[0].set_title(caption, fontsize=8.5, loc="left", pad=6)
-        _legend(figure, dots, lines, markers)
+        add_legend(figure, legend_entries(dots, lines, markers))
     return figure
+
+
+def _within(
+    window: tuple[float, float], dots: Sequence[ImpactDots], lines: Sequence[BranchLine], markers: Sequence[Marker]
+) -> tuple[list[ImpactDots], list[BranchLine], list[Marker]]:
+    """Leave out what the window does not show, so that the other axis is scaled to the rest."""
+    low, high = min(window), max(window)
+
+    def cut(group: Any, keep: npt.NDArray[np.bool_], *names: str) -> Any:
+        columns = {name: getattr(group, name)[keep] for name in ("x", *names)}
+        return replace(group, **columns, values={q: v[keep] for q, v in group.values.items()})
+
+    shown = [cut(one, (low <= one.x) & (one.x <= high), "side") for one in dots]
+    parts = [
+        cut(line, np.arange(start, stop), "stable")
+        for line in lines
+        for start, stop, inside in runs((low <= line.x) & (line.x <= high))
+        if inside
+    ]
+    return shown, parts, [marker for marker in markers if low <= marker.x <= high]
 
 
 def _draw(
     ax: Axes, panel: str, dots: Sequence[ImpactDots], lines: Sequence[BranchLine], markers: Sequence[Marker]
 ) -> None:
     for group in dots:
+        many = len(group.x) > _MANY
         for side, name in ((1, "L"), (-1, "R")):
             mine = group.side == side
             ax.plot(
@@ -168,16 +180,18 @@ def _draw(
                 group.values[panel][mine],
                 linestyle="none",
                 marker=".",
-                markersize=4.2,
+                markersize=1.6 if many else 4.2,
                 markeredgewidth=0,
+                alpha=0.35 if many else 1.0,
                 color=COLOURS[f"{name} light"],
-                rasterized=bool(np.count_nonzero(mine) > 20_000),
+                rasterized=many,
                 zorder=1,
             )
     for line in lines:
         # Where left and right coincide, as the flight times of a symmetric orbit do, neither colour would be true.
         twin = any(o is not line and o.side != line.side and _coincide(o, line, panel) for o in lines)
-        colour = COLOURS["ink" if twin else "L" if line.side == 1 else "R"]
+        left, right = FAMILIES[line.family]
+        colour = COLOURS["ink"] if twin else left if line.side == 1 else right
         for start, stop, stable in runs(line.stable):
             # One point is shared with the next run, so that the line has no gap where stability changes.
             part = slice(start, min(stop + 1, len(line.x)))
@@ -185,24 +199,13 @@ def _draw(
                 line.x[part],
                 line.values[panel][part],
                 color=colour,
-                linestyle="-" if stable else (0, (1, 1.6)),
-                linewidth=1.1 if stable else 1.4,
-                zorder=2,
+                linestyle="-" if stable else DOTTED,
+                linewidth=1.3 if stable else 1.2,
+                zorder=2.5 if stable else 2,
             )
     for marker in markers:
-        symbol, _ = MARKS.get(marker.type, ("x", marker.type))
         values = np.unique(np.round(marker.values[panel], 12))
-        ax.plot(
-            np.full(len(values), marker.x),
-            values,
-            linestyle="none",
-            marker=symbol,
-            markersize=5,
-            markerfacecolor="white",
-            markeredgecolor=COLOURS["ink"],
-            markeredgewidth=1.0,
-            zorder=3,
-        )
+        ax.plot(np.full(len(values), marker.x), values, linestyle="none", zorder=3, **mark_style(marker.type))
 
 
 def _widen(ax: Axes) -> None:
@@ -217,42 +220,6 @@ def _widen(ax: Axes) -> None:
 def _coincide(one: BranchLine, other: BranchLine, panel: str) -> bool:
     a, b = one.values[panel], other.values[panel]
     return len(a) == len(b) and np.array_equal(one.x, other.x) and np.allclose(a, b, rtol=1e-9, atol=1e-12)
-
-
-def _legend(figure: Figure, dots: Sequence[ImpactDots], lines: Sequence[BranchLine], markers: Sequence[Marker]) -> None:
-    from matplotlib.lines import Line2D
-
-    entries: list[Line2D] = []
-    for label in dict.fromkeys(group.label for group in dots):
-        for name, word in (("L", "left"), ("R", "right")):
-            entries.append(
-                Line2D([], [], linestyle="none", marker=".", markersize=6, markeredgewidth=0,
-                       color=COLOURS[f"{name} light"], label=f"{label}, {word} end")
-            )  # fmt: skip
-    for label in dict.fromkeys(line.label for line in lines):
-        mine = [line for line in lines if line.label == label]
-        if any(line.stable.any() for line in mine):
-            entries.append(Line2D([], [], color=COLOURS["ink"], linewidth=1.3, label=f"{label}, stable"))
-        if any((~line.stable).any() for line in mine):
-            entries.append(
-                Line2D(
-                    [],
-                    [],
-                    color=COLOURS["ink"],
-                    linewidth=1.5,
-                    linestyle=(0, (1, 1.6)),
-                    label=f"{label}, unstable",
-                )
-            )
-    for kind in dict.fromkeys(marker.type for marker in markers):
-        symbol, word = MARKS.get(kind, ("x", kind))
-        places = ", ".join(f"{m.x:.5g}" for m in markers if m.type == kind)
-        entries.append(
-            Line2D([], [], linestyle="none", marker=symbol, markersize=5, markerfacecolor="white",
-                   markeredgecolor=COLOURS["ink"], label=f"{word} ({places})")
-        )  # fmt: skip
-    if entries:
-        figure.legend(handles=entries, loc="outside lower center", ncols=3, columnspacing=1.6, handlelength=2.2)
 
 
 def runs(flags: npt.NDArray[np.bool_]) -> list[tuple[int, int, bool]]:

@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from vines.errors import DeclarationError, nearest
-from vines.figures._bifurcation import NAMES, SYMBOLS
+from vines.figures._names import ERRORS, NAMES, SYMBOLS
 from vines.figures._style import COLOURS, RC, new_figure
 
 if TYPE_CHECKING:
@@ -18,16 +18,9 @@ if TYPE_CHECKING:
     from matplotlib.contour import QuadContourSet
     from matplotlib.figure import Figure
 
-__all__ = ["ERRORS", "ErrorMap", "reduced_figure"]
+__all__ = ["ErrorMap", "reduced_figure"]
 
 Floats = npt.NDArray[np.float64]
-
-ERRORS = {
-    "max_abs_x1": r"error of $\max|x_1|$",
-    "kinetic_ratio": r"error of $K_2/K_1$",
-    "w_dot": r"error of $\dot w$",
-    "phase": r"error of $\psi$ [rad]",
-}
 
 _LEVELS = (1e-4, 2e-4, 5e-4, 1e-3, 2e-3, 5e-3, 1e-2, 2e-2, 5e-2, 0.1, 0.2, 0.5, 1.0)
 _NOWHERE = "#d9d9d9"

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-__all__ = ["COLOURS", "RC", "new_figure", "save"]
+__all__ = ["COLOURS", "FAMILIES", "RC", "new_figure", "save"]
 
 COLOURS = {
     "L": "#c8102e",
@@ -19,6 +19,15 @@ COLOURS = {
     "mark": "#555555",
 }
 """As in the paper: impacts on the left end red, on the right end blue; light for simulated dots, full for branches."""
+
+FAMILIES = {
+    "symmetric": ("#c8102e", "#0b4ea2"),
+    "asymmetric": ("#d0118f", "#0aa0bd"),
+    "doubled": ("#7a2bbf", "#0b7d6b"),
+    "doubled again": ("#a98bd0", "#6cb8aa"),
+    "unequal": ("#e87800", "#2c962c"),
+}
+"""Colours of branches on L and R: symmetric, asymmetric and unequal (2:1) ones as in the paper's Figs 4 and 5."""
 
 RC: Any = {
     "font.family": "DejaVu Sans",

@@ -1,0 +1,40 @@
+"""Symbols of bifurcations and styles of lines that all figures share."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from vines.figures._style import COLOURS
+
+__all__ = ["DOTTED", "MARKS", "mark_style"]
+
+DOTTED = (0, (1, 1.6))
+"""Line style of what is unstable."""
+
+MARKS = {
+    "symmetry_breaking": ("o", "symmetry breaking"),
+    "period_doubling": ("s", "period doubling"),
+    "fold": ("D", "fold"),
+    "neimark_sacker": ("^", "Neimark–Sacker"),
+    "grazing": ("v", "grazing"),
+    "pair_turns_real": ("|", "a pair of multipliers turns real"),
+}
+"""Symbol and name of each type."""
+
+
+def mark_style(kind: str) -> dict[str, Any]:
+    """Return the options of a line of matplotlib that draw the symbol of a type.
+
+    Examples
+    --------
+    >>> mark_style("fold")["marker"]
+    'D'
+    """
+    symbol, _ = MARKS.get(kind, ("x", kind))
+    return {
+        "marker": symbol,
+        "markersize": 4.2 if symbol == "D" else 5,
+        "markerfacecolor": "white",
+        "markeredgecolor": COLOURS["ink"],
+        "markeredgewidth": 0.9,
+    }

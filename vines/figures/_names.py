@@ -1,0 +1,26 @@
+"""What the figures call quantities and parameters. No import: declarations are checked against these names."""
+
+__all__ = ["ERRORS", "NAMES", "PANELS", "SYMBOLS"]
+
+PANELS = {
+    "w_dot": r"relative impact velocity  $\dot w$",
+    "dt": r"time to next impact  $\Delta t / T$",
+    "x1": r"displacement at impact  $x_1$",
+    "phase": r"impact phase  $\psi$  [rad]",
+}
+
+SYMBOLS = {"A": "A", "mu": r"\mu", "Omega": r"\Omega", "r": "r", "lam": r"\lambda"}
+NAMES = {
+    "A": "forcing amplitude",
+    "mu": "mass ratio",
+    "Omega": "frequency ratio",
+    "r": "restitution",
+    "lam": "damping",
+}
+
+ERRORS = {
+    "max_abs_x1": r"error of $\max|x_1|$",
+    "kinetic_ratio": r"error of $K_2/K_1$",
+    "w_dot": r"error of $\dot w$",
+    "phase": r"error of $\psi$ [rad]",
+}
