@@ -74,8 +74,8 @@ def project(folder: Path) -> Path:
     (folder / "trivial").mkdir()
     (folder / "trivial" / "__init__.py").write_text("")
     (folder / "trivial" / "lab.py").write_text(LAB)
-    stage = '[stages.{}]\nkind = "trivial"\ngain = {}\nvary.A = {{ from = 0.015, to = 0.023, count = 67 }}\n'
-    (folder / "pipelines" / "bench.toml").write_text("".join(stage.format(*each) for each in zip("abc", (1, 2, 3))))
+    stage = '[stages.{1}]\nkind = "trivial"\ngain = {0}\nvary.A = {{ from = 0.015, to = 0.023, count = 67 }}\n'
+    (folder / "pipelines" / "bench.toml").write_text("".join(stage.format(*each) for each in enumerate("abc")))
     return folder
 
 
@@ -136,7 +136,8 @@ def tasks(tool: str, folder: Path, count: int) -> list[str]:
             open(f"out{{i}}.txt", "w").write(str(0.5 * i))
         def task_point():
             for i in range({count}):
-                yield {{"name": str(i), "actions": [(write, [i])], "targets": [f"out{{i}}.txt"], "file_dep": ["in.txt"]}}
+                paths = {{"targets": [f"out{{i}}.txt"], "file_dep": ["in.txt"]}}
+                yield {{"name": str(i), "actions": [(write, [i])], **paths}}
         """
         (folder / "dodo.py").write_text(textwrap.dedent(text))
         (folder / "in.txt").write_text("1")

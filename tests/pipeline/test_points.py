@@ -1,5 +1,6 @@
 """Points: zipped axes, carried chains, refinement, shares; ids and values of many at once."""
 
+import itertools
 import math
 import struct
 from fractions import Fraction
@@ -179,7 +180,7 @@ def test_refinement_adds_points_where_a_measure_jumps_down_to_the_tolerance(lab)
     # sin jumps by more than a fifth between neighbours near 0.1 and hardly near 0.5
     lab.run(lab.declare(REFINED), jobs=1)
     found = lab.rows("up")
-    for one, other in zip(found, found[1:], strict=False):
+    for one, other in itertools.pairwise(found):
         change = abs(one["end_x1"] - other["end_x1"]) / max(one["end_x1"], other["end_x1"])
         assert change <= 0.2 or other["A"] - one["A"] <= 0.01
     assert 5 < len(found) < 20

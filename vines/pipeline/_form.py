@@ -97,7 +97,7 @@ def _stage(spec: Kind) -> dict[str, Any]:
     properties |= _options(spec)
     return {
         "type": "object",
-        "description": inspect.getdoc(spec.options) or spec.summary,
+        "description": inspect.cleandoc(vars(spec.options).get("__doc__") or spec.summary),
         "additionalProperties": False,
         "properties": properties,
     }
