@@ -102,15 +102,15 @@ def _alone(run: Shown, still: bool) -> rrb.Horizontal:
 
 def _column(run: Shown, still: bool) -> rrb.Vertical:
     """Return one of several runs beside each other."""
-    more = rrb.Tabs(_dial(run), _impacts(run), _about(run), _energy(run, still), _balance(run, still))
+    more = rrb.Tabs(_impacts(run), _about(run), _energy(run, still), _balance(run, still))
     return rrb.Vertical(
         _cavity(run),
-        _phase(run),
+        rrb.Horizontal(_phase(run), _dial(run), column_shares=[1.5, 1.0]),
         _gap(run, still),
         _rate(run, still),
         _lanes(run, still),
         more,
-        row_shares=[2.5, 3.2, 1.6, 1.6, 1.2, 2.6],
+        row_shares=[2.5, 3.6, 1.7, 1.7, 1.3, 1.9],
     )
 
 
