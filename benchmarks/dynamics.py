@@ -1,7 +1,7 @@
 """Speed and error of the simulator, with its peers in the same run: ``python -m benchmarks.dynamics [--pictures]``.
 
-Every figure is the median of five. Errors are those of |w'| at the impacts of a stable symmetric 1:1 orbit, whose closed
-form is known; all methods start on it. Times are those of the processor, so that a busy machine disturbs little.
+Every figure is the median of five. Errors are those of |w'| at the impacts of a stable symmetric 1:1 orbit, whose
+closed form is known; all methods start on it. Times are those of the processor, so that a busy machine disturbs little.
 """
 
 from __future__ import annotations
@@ -140,9 +140,8 @@ def siconos(p: Params, start: dict[str, float], periods: int) -> dict | None:
     begin = simulate(p, **state, phi=start["phase"], periods=0.1).final
     numbers = [p.mu, p.A, p.Omega, p.r, p.lam, periods, *(begin[n] for n in ("x1", "v1", "x2", "v2", "phase"))]
     script = Path(__file__).with_name("siconos_run.py")
-    done = subprocess.run(
-        [python, str(script), *(repr(float(number)) for number in numbers)], capture_output=True, text=True, check=False, timeout=300
-    )
+    words = [python, str(script), *(repr(float(number)) for number in numbers)]
+    done = subprocess.run(words, capture_output=True, text=True, check=False, timeout=300)
     lines = [line for line in done.stdout.splitlines() if line.startswith("{")]
     return json.loads(lines[-1]) if done.returncode == 0 and lines else None
 

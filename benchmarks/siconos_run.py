@@ -36,6 +36,7 @@ def main() -> None:
     run.insertIntegrator(solver)
     run.insertNonSmoothProblem(sk.LCP(), sk.SICONOS_OSNSP_ED_IMPACT)
     run.insertNonSmoothProblem(sk.LCP(), sk.SICONOS_OSNSP_ED_SMOOTH_ACC)
+    run.setToleranceED(1e-9)
     run.initialize()
     impacts, speeds = 0, []
     began = time.perf_counter()

@@ -1,7 +1,8 @@
 """What a simulation settles to: n:m/pT, quasi-periodic, chaotic, without impact, or not settled yet."""
 
 from vines.attractors._attractor import Attractor
+from vines.attractors._basins import Basins, basins
 from vines.attractors._settle import settle, settle_from
 from vines.attractors._warm_up import warm_up
 
-__all__ = ["Attractor", "settle", "settle_from", "warm_up"]
+__all__ = ["Attractor", "Basins", "basins", "settle", "settle_from", "warm_up"]

@@ -7,6 +7,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from vines.figures._basins import BasinMap, basins_figure
     from vines.figures._bifurcation import BranchLine, ImpactDots, Marker, bifurcation_figure
     from vines.figures._names import ERRORS, NAMES, PANELS, SYMBOLS
     from vines.figures._reduced import ErrorMap, reduced_figure
@@ -18,10 +19,12 @@ __all__ = [
     "NAMES",
     "PANELS",
     "SYMBOLS",
+    "BasinMap",
     "BranchLine",
     "ErrorMap",
     "ImpactDots",
     "Marker",
+    "basins_figure",
     "bifurcation_figure",
     "reduced_figure",
     "save",
@@ -33,10 +36,12 @@ _HOME = {
     "NAMES": "_names",
     "PANELS": "_names",
     "SYMBOLS": "_names",
+    "BasinMap": "_basins",
     "BranchLine": "_bifurcation",
     "ErrorMap": "_reduced",
     "ImpactDots": "_bifurcation",
     "Marker": "_bifurcation",
+    "basins_figure": "_basins",
     "bifurcation_figure": "_bifurcation",
     "reduced_figure": "_reduced",
     "save": "_style",

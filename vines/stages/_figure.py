@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from typing import Any
 
-from vines.figures import reduced_figure, save
+from vines.figures import basins_figure, reduced_figure, save
 from vines.pipeline import Batch, WholeJob
+from vines.stages._basin_map import basin_map
 from vines.stages._diagram import bifurcation_diagram
 from vines.stages._error_map import error_map
 
@@ -15,7 +16,10 @@ __all__ = ["compute"]
 def compute(job: WholeJob) -> Batch:
     """Draw the needed stages."""
     options: Any = job.options
-    if options.plot == "reduced":
+    if options.plot == "basins":
+        (stage,) = job.inputs.values()
+        figure = basins_figure(basin_map(stage), title=options.title, width=options.width)
+    elif options.plot == "reduced":
         maps = [error_map(stage) for stage in job.inputs.values()]
         figure = reduced_figure(maps, panels=options.panels, title=options.title, width=options.width)
     else:

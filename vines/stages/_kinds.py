@@ -18,10 +18,12 @@ from vines.places import shipped
 __all__ = [
     "Amplitudes",
     "AtlasOptions",
+    "BasinsOptions",
     "BranchOptions",
     "CheckOptions",
     "CurveOptions",
     "FigureOptions",
+    "Grid",
     "OptimumOptions",
     "ReducedOptions",
     "Start",
@@ -135,6 +137,28 @@ class OptimumOptions(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     largest_multiplier: float = 1.0
 
 
+class Grid(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """A coordinate of the start with evenly spaced values, `from` and `to` included."""
+
+    name: Literal["x1", "v1", "x2", "v2", "phase"]
+    start: float = msgspec.field(name="from")
+    stop: float = msgspec.field(name="to")
+    count: int = 100
+
+
+class BasinsOptions(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """To which attractor each start of a grid over the coordinates `x` and `y` comes, the others as in `start`.
+
+    Cells at a boundary are halved in both directions `refine` times; after `patience` periods a start is unsettled.
+    """
+
+    x: Grid
+    y: Grid
+    start: dict[str, float] = {}
+    refine: int = 0
+    patience: int = 4000
+
+
 class FigureOptions(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """A picture of the needed stages; `panels` are the quantities shown, by default those of the plot.
 
@@ -142,7 +166,7 @@ class FigureOptions(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     drawn too.
     """
 
-    plot: Literal["bifurcation", "reduced", "multipliers", "chart"]
+    plot: Literal["bifurcation", "reduced", "multipliers", "chart", "basins"]
     panels: tuple[str, ...] = ()
     title: str = ""
     width: float = 7.0
@@ -185,6 +209,23 @@ def _check_optimum(params: dict[str, float], options: Any) -> None:
         raise ParameterError(
             f"largest_multiplier is {options.largest_multiplier:g}, allowed is 0 < largest_multiplier <= 1"
         )
+
+
+def _check_basins(params: dict[str, float], options: Any) -> None:
+    Params(**params)
+    names = {options.x.name, options.y.name}
+    if len(names) < 2 or names & set(options.start):
+        raise ParameterError(f"x is {options.x.name}, y is {options.y.name}: give two coordinates, not again in start")
+    for name in options.start:
+        if name not in ("x1", "v1", "x2", "v2", "phase"):
+            raise ParameterError(f"unknown coordinate {name!r} in start, allowed: x1, v1, x2, v2, phase")
+    for name, value, least in (
+        ("count", min(options.x.count, options.y.count), 2),
+        ("refine", options.refine, 0),
+        ("patience", options.patience, 1),
+    ):
+        if value < least:
+            raise ParameterError(f"{name} is {value}, allowed is {name} >= {least}")
 
 
 def _check_branch(params: dict[str, float], options: Any) -> None:
@@ -330,6 +371,18 @@ def register_kinds() -> None:
             parameters={**PARAMETERS, "b": 1.0},
             vary="range",
             check=_check_optimum,
+        )
+    )
+    register(
+        Kind(
+            name="basins",
+            summary="to which attractor each start of a grid comes, and the attractors that coexist",
+            shape="whole",
+            options=BasinsOptions,
+            body="vines.stages._basins:compute",
+            tables=("attractors", "basins"),
+            parameters=PARAMETERS,
+            check=_check_basins,
         )
     )
     register(

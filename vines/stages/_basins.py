@@ -1,0 +1,54 @@
+"""Body of the kind ``basins``: to which attractor each start of a grid comes."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pyarrow as pa
+
+from vines.attractors import basins
+from vines.dynamics import no_ball
+from vines.model import Params, Word
+from vines.pipeline import Batch, WholeJob
+
+__all__ = ["compute"]
+
+
+def compute(job: WholeJob) -> Batch:
+    """Find the basins and describe the attractors."""
+    options: Any = job.options
+    p = Params(**job.params)
+    axes = [(axis.name, np.linspace(axis.start, axis.stop, axis.count)) for axis in (options.x, options.y)]
+    found = basins(p, *axes, others=dict(options.start), refine=options.refine, patience=options.patience)
+    n = len(found.x)
+    cells = {name: np.full(n, value) for name, value in p.as_dict().items()}
+    cells |= {"x_name": np.full(n, found.axes[0], dtype=object), "y_name": np.full(n, found.axes[1], dtype=object)}
+    cells |= {"x": found.x, "y": found.y, "level": found.level, "weight": found.weight}
+    cells |= {"attractor": found.label, "mirrored": found.mirrored, "periods": found.periods}
+    rows = []
+    for k, attractor in enumerate([*found.attractors, None]):
+        share, error = found.fraction(k if attractor is not None else -1)
+        row = {**p.as_dict(), "attractor": k, "fraction": share, "fraction_error": error, "regime": "unsettled"}
+        if attractor is None:
+            rows.append(row | {"attractor": -1})
+            continue
+        m = attractor.measures
+        rows.append(
+            row
+            | {
+                "regime": attractor.regime,
+                "name": attractor.name,
+                "alias": Word(attractor.word).alias if attractor.word else None,
+                "word": attractor.word,
+                "symmetric": attractor.symmetric,
+                "kinetic_ratio": m.kinetic_ratio,
+                "max_abs_x1": m.max_abs_x1,
+                "rms_x1": m.rms_x1,
+                "reduction": m.max_abs_x1 / no_ball(p) if no_ball(p) > 0 else None,
+                "impacts_per_period": m.impacts_per_period,
+                "sticks_per_period": m.sticks_per_period,
+                **{f"end_{name}": attractor.final[name] for name in ("x1", "v1", "x2", "v2", "phase")},
+            }
+        )
+    return Batch(tables={"attractors": rows, "basins": pa.table(cells)})
