@@ -180,7 +180,7 @@ def environment(tool: str, peers: Path) -> Path:
     home = peers / tool
     if not (home / "bin" / tool).exists():
         subprocess.run([sys.executable, "-m", "venv", str(home)], check=True)
-        subprocess.run([str(home / "bin" / "pip"), "install", "--quiet", tool], check=True)
+        subprocess.run([str(home / "bin" / "pip"), "install", "--quiet", tool], check=True, stderr=subprocess.DEVNULL)
     return home / "bin"
 
 

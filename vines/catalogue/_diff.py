@@ -92,13 +92,9 @@ def _table(
         )
     on = " and ".join(f"a.{key} is not distinct from b.{key}" for key in [*map(quote, keys), '"n th"'])
     where = " || ', ' || ".join([*(f"'{key} = ' || a.{quote(key)}" for key in keys), "'row ' || a.\"n th\""])
-    connection.execute(
-        f"create or replace temp table pairs as select {where} as place, a.file_row_number as at, "
-        + ", ".join(
-            f"a.{quote(c.name)} as {quote('a ' + c.name)}, b.{quote(c.name)} as {quote('b ' + c.name)}" for c in columns
-        )
-        + f" from a join b on {on}"
-    )
+    both = [f"{side}.{quote(c.name)} as {quote(f'{side} {c.name}')}" for c in columns for side in ("a", "b")]
+    picked = ", ".join([f"{where} as place", "a.file_row_number as nth", *both])
+    connection.execute(f"create or replace temp table pairs as select {picked} from a join b on {on}")
     counts = [connection.execute(f"select count(*) from {each}").fetchone()[0] for each in ("pairs", "a", "b")]
     found = []
     for column in columns:
