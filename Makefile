@@ -40,11 +40,13 @@ rooms: install   ## import-linter: the rooms of the house
 acceptance: install  ## everything in full; writes docs/acceptance.md
 	@"$(BIN)/python" -m benchmarks.acceptance
 
-system:          ## Debian packages for the viewer's pictures in tests (software Vulkan)
-	@if ldconfig -p | grep -q libvulkan.so.1 && ls /usr/share/vulkan/icd.d/lvp_icd*.json >/dev/null 2>&1; then \
-	  echo "software Vulkan is there"; \
+system:          ## Debian packages for the viewer's pictures in tests: software Vulkan, and Chromium for the web page
+	@if ldconfig -p | grep -q libvulkan.so.1 && ls /usr/share/vulkan/icd.d/lvp_icd*.json >/dev/null 2>&1 \
+	  && command -v chromium >/dev/null; then \
+	  echo "software Vulkan and Chromium are there"; \
 	else \
-	  apt-get update -qq && apt-get install -y -qq --no-install-recommends mesa-vulkan-drivers libvulkan1; \
+	  apt-get update -qq && \
+	  apt-get install -y -qq --no-install-recommends mesa-vulkan-drivers libvulkan1 chromium; \
 	fi
 
 lock:            ## renew requirements.lock
