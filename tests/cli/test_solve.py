@@ -7,6 +7,7 @@ from click.testing import CliRunner
 
 from vines.cli._solve import command
 from vines.errors import OrbitNotFound, ParameterError
+from vines.logs import read
 from vines.model import Params
 from vines.orbits import all_orbits, find_orbit
 
@@ -62,3 +63,11 @@ def test_no_orbit_is_an_error_of_one_line_and_exit_code_1():
         assert caught.value.exit_code == 1
     with pytest.raises(ParameterError, match="is not a word"):
         solve("1:1", "--mu", "0.01", "--A", "0.001")
+
+
+def test_log_of_one_period(project):
+    project.vines("solve", "LR", "--mu", "0.01", "--A", "0.02", "--log", project.root / "orbit.mcap")
+    log = read(project.root / "orbit.mcap")
+    assert (log.complete, log.word, log.impacts.num_rows) == (True, "LR", 2)
+    refused = project.vines("solve", "LR", "--mu", "0.01", "--A", "0.02", "--all", "--log", "x.mcap", check=False)
+    assert (refused.returncode, refused.stderr.count("\n")) == (2, 1)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
@@ -20,6 +21,11 @@ if TYPE_CHECKING:
 @click.option("--r", type=float, default=0.65, show_default=True, help="Coefficient of restitution.")
 @click.option("--lam", type=float, help="Damping c/(M omega0); the default is that of Table 1.")
 @click.option("--all", "every", is_flag=True, help="All orbits of the word that are found, not only one.")
+@click.option(
+    "--log",
+    type=click.Path(dir_okay=False, path_type=Path),
+    help="Write one period as an MCAP log too; 'vines view' shows it going round.",
+)
 @click.option("--json", "as_json", is_flag=True, help="For machines.")
 def command(
     word: str,
@@ -29,6 +35,7 @@ def command(
     r: float,
     lam: float | None,
     every: bool,
+    log: Path | None,
     as_json: bool,
 ) -> None:
     """Print the periodic orbit of a WORD of impacts, such as LR, LLR or LRLR/2T.
@@ -39,10 +46,13 @@ def command(
     \b
     vines solve LR --mu 0.01 --A 0.017
     vines solve LLR --mu 0.01 --A 0.023 --all
+    vines solve LR --mu 0.01 --A 0.02 --log orbit.mcap && vines view orbit.mcap
     """  # noqa: D301
     from vines.model import Params
     from vines.orbits import all_orbits, find_orbit, orbit_row
 
+    if every and log is not None:
+        raise click.UsageError("--log writes one orbit; leave out --all")
     given = {} if lam is None else {"lam": lam}
     p = Params(mu=mu, A=amplitude, Omega=frequency, r=r, **given)
     if every:
@@ -52,6 +62,10 @@ def command(
         complete, remark = found.complete, found.remark
     else:
         orbits, complete, remark = [find_orbit(word, p)], None, None
+    if log is not None:
+        from vines.stages import orbit_log
+
+        orbit_log(orbits[0], log)
     if as_json:
         rows = [_plain({**orbit_row(orbit), "remark": orbit.remark}) for orbit in orbits]
         shown: Any = {"complete": complete, "remark": remark, "orbits": rows} if every else rows[0]
