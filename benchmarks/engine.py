@@ -41,8 +41,10 @@ class Options(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     gain: float = 1.0
 
 def compute(job):
+    import pyarrow as pa
     A = job.points.column("A")
-    rows = {"point_id": job.points.ids, "A": A, "kinetic_ratio": job.options.gain * A, "status": ["ok"] * len(A)}
+    ids, status = job.points.key.arrow(), pa.repeat("ok", len(A))
+    rows = {"point_id": ids, "A": A, "kinetic_ratio": job.options.gain * A, "status": status}
     return Batch(tables={"points": rows})
 
 register(Kind(name="trivial", summary="a multiplication", shape="points", options=Options,
