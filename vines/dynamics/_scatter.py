@@ -182,7 +182,11 @@ def _towards(d, s, side, bound, window, fresh):
     a, j, k = side * d[2], side * d[3], side * d[4]
     if fresh:
         return leaving_step(max(-slope, 0.0), a, j, bound, window), math.nan
-    gap = max(1.0 - side * (d[0] - s[BALL]), 0.0)
+    gap = 1.0 - side * (d[0] - s[BALL])
+    if gap < 0.0 < slope:
+        # The jump to the contact went a little too far: a step back.
+        return math.inf, quartic_root(gap, slope, a, j, k)
+    gap = max(gap, 0.0)
     if slope > 0.0 and 2.0 * gap <= slope * window:
         reach = 2.0 * gap / slope
         if slope * slope > 2.0 * gap * (abs(a) + reach * (abs(j) + 0.5 * bound * reach)):
@@ -366,14 +370,13 @@ def scatter_block(parameters, starts, first, lengths, cap, what, finals, totals,
                     h, side, hit = root_down, -1.0, abs(root_down) <= near
                 if not hit and h < 1e-12 and fresh == 0.0:
                     hit, side = True, (1.0 if up <= down else -1.0)
-                h = max(h, 0.0)
                 s[WALL] = 0.0
             if h >= room:
                 h, hit = room, False
-            if t >= 0.0 and what & 1 and h > 0.0:
+            if t >= 0.0 and what & 1 and h != 0.0:
                 _energies(o, p, numbers, s, h, total, t)
             _go(o, Omega, s, h)
-            t = until if h == room else t + h
+            t = until if h >= room else t + h
             tau += h
             if not hit:
                 continue

@@ -109,13 +109,18 @@ class Trajectory:
 
     @cached_property
     def sticks(self) -> Table:
-        """Spells of sticking: side, times and phases of merge and release (nan if still stuck), chatter impacts."""
+        """Spells of sticking: side, times and phases of begin (where the chatter accumulates) and release, impacts.
+
+        The release is nan if the ball is still stuck; `impacts` are those of the chatter that were followed one by one.
+        """
         begins = np.flatnonzero(self.rows[:, col.KIND] == col.STICK)
         ends = np.flatnonzero(self.rows[:, col.KIND] == col.RELEASE)
         out = np.empty(len(begins), dtype=STICK)
         out["side"] = self.rows[begins, col.SIDE]
-        out["t_start"] = self.rows[begins, col.TIME]
-        out["phase_start"] = self.rows[begins, col.PHASE]
+        # The merge replaces a chatter at its present impact; the chain itself ends where its hops accumulate.
+        rest = self._rest_of_chatter(begins)
+        out["t_start"] = self.rows[begins, col.TIME] + rest
+        out["phase_start"] = (self.rows[begins, col.PHASE] + self.params.Omega * rest) % (2 * np.pi)
         out["impacts"] = self.rows[begins, col.RUN]
         out["t_release"] = np.nan
         out["phase_release"] = np.nan
@@ -123,6 +128,20 @@ class Trajectory:
         out["t_release"][: len(ends)] = self.rows[ends, col.TIME]
         out["phase_release"][: len(ends)] = self.rows[ends, col.PHASE]
         return out
+
+    def _rest_of_chatter(self, begins: npt.NDArray[np.int64]) -> npt.NDArray[np.float64]:
+        """Return how long the hops left out at each merge last together, 2 u/(a (1 - r)); 0 where r = 1."""
+        p, rows = self.params, self.rows[begins]
+        side = rows[:, col.SIDE]
+        speed = np.maximum(side * (rows[:, col.V2] - rows[:, col.V1]), 0.0)
+        force = p.A * (np.sin(rows[:, col.PHASE]) + p.lam * p.Omega * np.cos(rows[:, col.PHASE]))
+        push = side * (force - p.lam * rows[:, col.V1] - rows[:, col.X1])
+        lasts = np.zeros(len(rows))
+        good = (push > 0) & (p.r < 1)
+        lasts[good] = 2 * speed[good] / (push[good] * (1 - p.r))
+        # Where the push has almost gone the ball is let go before the series would end.
+        until = np.append(self.rows[1:, col.TIME], self.t_end)[begins] - rows[:, col.TIME]
+        return np.where(lasts < until, lasts, 0.0)
 
     @property
     def final(self) -> dict[str, float]:

@@ -7,8 +7,10 @@ from collections.abc import Callable
 
 import numpy as np
 
+from vines.dynamics._ensemble import ensemble
 from vines.dynamics._jit import CACHE
 from vines.dynamics._saltation import jacobian
+from vines.dynamics._scatter import Scatter
 from vines.dynamics._simulate import simulate
 from vines.dynamics._tangent import lyapunov_spectrum, tangent_map
 from vines.model import Params
@@ -36,7 +38,7 @@ def warm_up(report: Callable[[str], object] = print) -> None:
     >>> lines = []
     >>> warm_up(lines.append)
     >>> len(lines)
-    6
+    8
     """
     report(f"kernels of the dynamics, kept in {CACHE}")
     p = Params(mu=0.1, A=0.3, Omega=1.2)
@@ -48,3 +50,5 @@ def warm_up(report: Callable[[str], object] = print) -> None:
     timed("tangent map, Lyapunov exponents", lambda: (tangent_map(run), lyapunov_spectrum(run)), report)
     before = np.array([0.3, 0.3, -0.7, -0.8])
     timed("Jacobian of an impact map", lambda: jacobian(p, 1, -1, tuple(before), 0.4, 2.3409392834070411), report)
+    timed("ensembles in lanes", lambda: ensemble(p, periods=1, threads=1), report)
+    timed("ensembles with scatter", lambda: ensemble(p, periods=1, scatter=Scatter(sigma_r=0.1), threads=1), report)

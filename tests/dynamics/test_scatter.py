@@ -1,0 +1,72 @@
+"""Scatter: without any it is the model, its draws are reproducible whatever the cores, and its energy balances."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from vines.dynamics import Scatter, ensemble, simulate
+from vines.errors import ParameterError, StateError
+from vines.model import Params
+
+P = Params(mu=0.01, A=0.02)
+V2 = np.linspace(0.05, 0.2, 130)
+
+
+def test_without_scatter_it_is_the_model() -> None:
+    many = ensemble(P, {"v2": V2[:5]}, periods=5, record="impacts", scatter=Scatter(seed=1))
+    assert many.impacts is not None
+    for k in range(5):
+        ours = many.impacts[many.impacts["run"] == k]
+        model = simulate(P, v2=float(V2[k]), periods=5).impacts
+        n = min(len(ours), len(model), 4)
+        assert n >= 2
+        for name in ("t", "side", "v1", "v2", "x1"):
+            assert ours[name][:n] == pytest.approx(model[name][:n], abs=1e-9)
+
+
+@pytest.mark.parametrize(
+    "scatter", [Scatter(sigma_r=0.05, seed=4), Scatter(noise=0.1, second=0.2, second_phase=0.3, r_speed=0.05, seed=4)]
+)
+def test_draws_do_not_depend_on_cores_and_energy_balances(scatter: Scatter) -> None:
+    one = ensemble(P, {"v2": V2}, periods=6, record="measures", scatter=scatter, threads=1)
+    two = ensemble(P, {"v2": V2}, periods=6, record="measures", scatter=scatter, threads=2)
+    assert np.array_equal(one.final, two.final)
+    assert one.scatter == scatter
+    m = one.measures
+    assert m is not None
+    balance = m["base_work"] - m["damper_loss"] - m["impact_loss_left"] - m["impact_loss_right"] - m["energy_change"]
+    assert np.max(np.abs(balance)) < 1e-12
+
+
+def test_trajectories_draw_from_streams_of_their_own() -> None:
+    same = ensemble(P, {"v2": [0.1, 0.1]}, periods=30, scatter=Scatter(sigma_r=0.05, seed=4))
+    other = ensemble(P, {"v2": [0.1]}, periods=30, scatter=Scatter(sigma_r=0.05, seed=5))
+    assert same.final["x1"][0] != same.final["x1"][1]
+    assert same.final["x1"][0] != other.final["x1"][0]
+
+
+def test_restitution_has_the_mean_and_spread_asked_for() -> None:
+    hits = ensemble(
+        P, {"v2": V2}, periods=60, record="impacts", scatter=Scatter(sigma_r=0.03, r_speed=0.04, seed=9)
+    ).impacts
+    assert hits is not None
+    fast = hits[np.abs(hits["w_dot"]) > 0.05]
+    r = -(fast["v1_after"] - fast["v2_after"]) / fast["w_dot"]
+    left_over = r - (P.r - 0.04 * np.abs(fast["w_dot"]))
+    n = len(fast)
+    assert n > 5000
+    assert abs(left_over.mean()) < 5 * 0.03 / n**0.5
+    assert left_over.std() == pytest.approx(0.03, rel=0.05)
+
+
+def test_bad_scatter_is_refused() -> None:
+    for options, message in (
+        ({"sigma_r": -1.0}, "sigma_r is -1"),
+        ({"hold": 0}, "hold is 0"),
+        ({"seed": -1}, "seed is"),
+    ):
+        with pytest.raises(ParameterError, match=message):
+            Scatter(**options)
+    with pytest.raises(StateError, match="lyapunov is not defined"):
+        ensemble(P, lyapunov=True, scatter=Scatter())
