@@ -11,9 +11,9 @@ import numpy as np
 import numpy.typing as npt
 
 from vines.errors import DeclarationError, nearest
-from vines.figures._names import NAMES, PANELS, SYMBOLS
 from vines.figures._legend import add_legend, legend_entries
 from vines.figures._marks import DOTTED, mark_style
+from vines.figures._names import NAMES, PANELS, SYMBOLS
 from vines.figures._style import COLOURS, FAMILIES, RC, new_figure
 
 if TYPE_CHECKING:
@@ -24,8 +24,14 @@ __all__ = ["BranchLine", "ImpactDots", "Marker", "bifurcation_figure"]
 
 Floats = npt.NDArray[np.float64]
 
-_MANY = 20_000
+_MANY = 4_000
 """Dots beyond which they are small, translucent and drawn as pixels, so that chaos does not cover what is regular."""
+
+_FEW = 8
+"""Bifurcations beyond which their symbols are small."""
+
+_RARE = 0.03
+"""Share of the dots, at either end, that may lie beyond an axis."""
 
 
 @dataclass(frozen=True)
@@ -68,6 +74,8 @@ class BranchLine:
         For the legend, such as ``"1:1 symmetric"``.
     family : str
         One of :data:`FAMILIES`, for the colours.
+    image : bool
+        Whether it is the mirror image of another line, whose flight times it shares.
     """
 
     x: Floats
@@ -76,6 +84,7 @@ class BranchLine:
     values: dict[str, Floats]
     label: str
     family: str = "symmetric"
+    image: bool = False
 
 
 @dataclass(frozen=True)
@@ -134,6 +143,7 @@ def bifurcation_figure(
             _draw(ax, panel, dots, lines, markers)
             ax.set_ylabel(PANELS[panel])
             _widen(ax)
+            _spare_outliers(ax, panel, dots, lines)
             ax.text(-0.082, 1.0, f"({letter})", transform=ax.transAxes, va="top", fontweight="bold")
         axes[-1].set_xlabel(f"{NAMES.get(axis, axis)}  ${SYMBOLS.get(axis, axis)}$")
         everything = [group.x for group in (*dots, *lines) if len(group.x)]
@@ -154,7 +164,7 @@ def _within(
     """Leave out what the window does not show, so that the other axis is scaled to the rest."""
     low, high = min(window), max(window)
 
-    def cut(group: Any, keep: npt.NDArray[np.bool_], *names: str) -> Any:
+    def cut(group: Any, keep: npt.NDArray[Any], *names: str) -> Any:
         columns = {name: getattr(group, name)[keep] for name in ("x", *names)}
         return replace(group, **columns, values={q: v[keep] for q, v in group.values.items()})
 
@@ -180,16 +190,20 @@ def _draw(
                 group.values[panel][mine],
                 linestyle="none",
                 marker=".",
-                markersize=1.6 if many else 4.2,
+                markersize=2.8 if many else 4.2,
                 markeredgewidth=0,
-                alpha=0.35 if many else 1.0,
+                alpha=0.6 if many else 1.0,
                 color=COLOURS[f"{name} light"],
                 rasterized=many,
                 zorder=1,
             )
     for line in lines:
+        if line.image and panel == "dt":
+            continue
         # Where left and right coincide, as the flight times of a symmetric orbit do, neither colour would be true.
-        twin = any(o is not line and o.side != line.side and _coincide(o, line, panel) for o in lines)
+        twin = line.family == "symmetric" and any(
+            o is not line and o.side != line.side and _coincide(o, line, panel) for o in lines
+        )
         left, right = FAMILIES[line.family]
         colour = COLOURS["ink"] if twin else left if line.side == 1 else right
         for start, stop, stable in runs(line.stable):
@@ -203,9 +217,10 @@ def _draw(
                 linewidth=1.3 if stable else 1.2,
                 zorder=2.5 if stable else 2,
             )
+    size = 5.0 if len(markers) <= _FEW else 3.8
     for marker in markers:
         values = np.unique(np.round(marker.values[panel], 12))
-        ax.plot(np.full(len(values), marker.x), values, linestyle="none", zorder=3, **mark_style(marker.type))
+        ax.plot(np.full(len(values), marker.x), values, linestyle="none", zorder=3, **mark_style(marker.type, size))
 
 
 def _widen(ax: Axes) -> None:
@@ -215,6 +230,19 @@ def _widen(ax: Axes) -> None:
     middle, least = (low + high) / 2, 1e-6 * max(abs(low), abs(high), 1e-6)
     if high - low < least:
         ax.set_ylim(middle - least / 2, middle + least / 2)
+
+
+def _spare_outliers(ax: Axes, panel: str, dots: Sequence[ImpactDots], lines: Sequence[BranchLine]) -> None:
+    """Let lines and all but the rarest dots fill an axis: one long flight would flatten everything else."""
+    groups = [group.values[panel] for group in dots if len(group.x)]
+    branches = [line.values[panel] for line in lines if len(line.x)]
+    if not groups or not branches:
+        return
+    values = np.concatenate(groups)
+    bulk = np.quantile(values, [_RARE, 1 - _RARE])
+    low, high = (float(end(np.append(np.concatenate(branches), bulk))) for end in (np.min, np.max))
+    if values.min() < low - (high - low) or values.max() > high + (high - low):
+        ax.set_ylim(low - 0.05 * (high - low), high + 0.05 * (high - low))
 
 
 def _coincide(one: BranchLine, other: BranchLine, panel: str) -> bool:

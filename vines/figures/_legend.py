@@ -31,10 +31,11 @@ def legend_entries(
         entries.append((label, tuple(Line2D([], [], color=COLOURS[f"{side} light"], **point) for side in "LR")))
     for label, family in dict.fromkeys((line.label, line.family) for line in lines):
         entries.append((label, tuple(Line2D([], [], color=colour, linewidth=1.6) for colour in FAMILIES[family])))
-    for word, style, there in (
+    styles: tuple[tuple[str, Any, bool], ...] = (
         ("stable", "-", any(line.stable.any() for line in lines)),
         ("unstable", DOTTED, any((~line.stable).any() for line in lines)),
-    ):
+    )
+    for word, style, there in styles:
         if there:
             entries.append((word, (Line2D([], [], color=COLOURS["ink"], linewidth=1.4, linestyle=style),)))
     for kind in dict.fromkeys(marker.type for marker in markers):
@@ -50,8 +51,10 @@ def add_legend(figure: Figure, entries: Sequence[tuple[str, tuple[Any, ...]]], n
     from matplotlib.legend_handler import HandlerTuple
 
     if entries:
+        # A tuple of lines is drawn side by side by the handler; the annotations of matplotlib know single ones only.
+        handles: Any = [drawn for _, drawn in entries]
         figure.legend(
-            [handles for _, handles in entries],
+            handles,
             [label for label, _ in entries],
             handler_map={tuple: HandlerTuple(ndivide=None, pad=0.3)},
             loc="outside lower center",

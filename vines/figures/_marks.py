@@ -8,7 +8,7 @@ from vines.figures._style import COLOURS
 
 __all__ = ["DOTTED", "MARKS", "mark_style"]
 
-DOTTED = (0, (1, 1.6))
+DOTTED: Any = (0, (1, 1.6))
 """Line style of what is unstable."""
 
 MARKS = {
@@ -22,7 +22,7 @@ MARKS = {
 """Symbol and name of each type."""
 
 
-def mark_style(kind: str) -> dict[str, Any]:
+def mark_style(kind: str, size: float = 5.0) -> dict[str, Any]:
     """Return the options of a line of matplotlib that draw the symbol of a type.
 
     Examples
@@ -33,7 +33,7 @@ def mark_style(kind: str) -> dict[str, Any]:
     symbol, _ = MARKS.get(kind, ("x", kind))
     return {
         "marker": symbol,
-        "markersize": 4.2 if symbol == "D" else 5,
+        "markersize": 0.85 * size if symbol == "D" else size,
         "markerfacecolor": "white",
         "markeredgecolor": COLOURS["ink"],
         "markeredgewidth": 0.9,

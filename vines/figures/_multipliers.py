@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 import numpy.typing as npt
 
-from vines.figures._bifurcation import NAMES, SYMBOLS
 from vines.figures._legend import add_legend
 from vines.figures._marks import MARKS, mark_style
+from vines.figures._names import NAMES, SYMBOLS
 from vines.figures._style import COLOURS, FAMILIES, RC, new_figure
 
 if TYPE_CHECKING:
@@ -21,6 +21,9 @@ if TYPE_CHECKING:
 __all__ = ["MultiplierLines", "multiplier_figure"]
 
 Floats = npt.NDArray[np.float64]
+
+_HIGHEST = 2.5
+"""Largest modulus shown: next to a grazing one grows without bound."""
 
 
 @dataclass(frozen=True)
@@ -84,7 +87,9 @@ def multiplier_figure(
         axes[0].set_ylabel(r"moduli of the multipliers  $|\lambda_i|$")
         if caption:
             figure.suptitle(caption, fontsize=8.5)
-        entries = [(MARKS.get(kind, ("x", kind))[1], (Line2D([], [], linestyle="none", **mark_style(kind)),)) for kind in kinds]
+        entries = [
+            (MARKS.get(kind, ("x", kind))[1], (Line2D([], [], linestyle="none", **mark_style(kind)),)) for kind in kinds
+        ]
         add_legend(figure, entries)
     return figure
 
@@ -109,7 +114,3 @@ def _panel(ax: Axes, branch: MultiplierLines, window: tuple[float, float] | None
         ax.set_ylim(0, min(_HIGHEST, 1.08 * float(branch.moduli[inside].max())))
     ax.locator_params(axis="x", nbins=5)
     return [kind for kind, _ in shown]
-
-
-_HIGHEST = 2.5
-"""Largest modulus shown: next to a grazing one grows without bound."""

@@ -17,7 +17,9 @@ from vines.pipeline import Input
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-__all__ = ["bifurcation_diagram"]
+__all__ = ["bifurcation_diagram", "family_label", "family_of", "listed"]
+
+EVENT = "pair_turns_real"
 
 
 def bifurcation_diagram(inputs: Mapping[str, Input], options: Any) -> Figure:
@@ -37,11 +39,12 @@ def bifurcation_diagram(inputs: Mapping[str, Input], options: Any) -> Figure:
     return bifurcation_figure(
         axis,
         [_dots(stage, axis, shared) for stage in stages if "impacts" in stage.tables],
-        [line for stage in branches for line in _lines(stage, axis, shared)],
-        [marker for stage in branches for marker in _markers(stage, axis)],
+        [line for stage in branches for line in _lines(stage, axis, shared, options.mirror)],
+        [marker for stage in branches for marker in _markers(stage, axis, events=len(branches) == 1)],
         panels=options.panels or ("w_dot", "dt"),
-        caption=options.title or _listed(shared),
+        caption=options.title or listed(shared),
         width=options.width,
+        window=options.window,
     )
 
 
@@ -61,27 +64,67 @@ def _dots(stage: Input, axis: str, shared: dict[str, float]) -> ImpactDots:
     )
 
 
-def _lines(stage: Input, axis: str, shared: dict[str, float]) -> Iterable[BranchLine]:
-    """Yield a line for each impact of the orbits of each branch."""
+def _lines(stage: Input, axis: str, shared: dict[str, float], mirror: bool) -> Iterable[BranchLine]:
+    """Yield a line for each impact of the orbits of each branch, and of their mirror images if these have one word."""
     orbits = stage.table("orbits")
     for branch in stage.table("branches").to_pylist():
         mine = orbits.filter(pc.field("branch_id") == branch["branch_id"])
         x = _numpy(mine)(axis)
         stable = mine["stable"].to_numpy(zero_copy_only=False).astype(bool)
         values, sides = _per_impact(mine)
-        for k, side in enumerate(sides):
-            label = f"{branch['name']} {'symmetric' if branch['symmetric'] else 'asymmetric'}"
-            yield BranchLine(
-                x=x,
-                side=int(side),
-                stable=stable,
-                values={q: v[:, k] for q, v in values.items()},
-                label=_label(label, stage, shared),
-            )
+        image = {"w_dot": -values["w_dot"], "x1": -values["x1"], "dt": values["dt"]}
+        image["phase"] = (values["phase"] + math.pi) % (2 * math.pi)
+        word = Word(branch["word"])
+        both = mirror and not branch["symmetric"] and word.mirror == word
+        for turned, shown in ((1, values), (-1, image)) if both else ((1, values),):
+            for k, side in enumerate(sides):
+                yield BranchLine(
+                    x=x,
+                    side=turned * int(side),
+                    stable=stable,
+                    values={q: v[:, k] for q, v in shown.items()},
+                    label=_label(family_label(branch), stage, shared),
+                    family=family_of(branch),
+                    image=turned < 0,
+                )
 
 
-def _markers(stage: Input, axis: str) -> Iterable[Marker]:
+def family_label(branch: Mapping[str, Any]) -> str:
+    """Return what a figure calls a branch, from its row.
+
+    Examples
+    --------
+    >>> family_label({"word": "LR", "name": "1:1", "symmetric": True})
+    '1:1 symmetric'
+    >>> family_label({"word": "LLR", "name": "2:1", "symmetric": False})
+    '2:1'
+    """
+    if not Word(branch["word"]).symmetric:
+        return branch["name"]
+    return f"{branch['name']} {'symmetric' if branch['symmetric'] else 'asymmetric'}"
+
+
+def family_of(branch: Mapping[str, Any]) -> str:
+    """Return the family of a branch for its colours, from its row.
+
+    Examples
+    --------
+    >>> [family_of({"word": word, "symmetric": False}) for word in ("LR", "LRLR/2T", "LRLRLRLR/4T", "LLR")]
+    ['asymmetric', 'doubled', 'doubled again', 'unequal']
+    """
+    word = Word(branch["word"])
+    if word.n != word.m:
+        return "unequal"
+    if word.p == 1:
+        return "symmetric" if branch["symmetric"] else "asymmetric"
+    return "doubled" if word.p == 2 else "doubled again"
+
+
+def _markers(stage: Input, axis: str, events: bool) -> Iterable[Marker]:
+    """Yield the bifurcations of a stage; events, which are none, only where they do not crowd."""
     for row in stage.table("bifurcations").to_pylist():
+        if row["type"] == EVENT and not events:
+            continue
         period = 2 * math.pi / row["Omega"]
         t = np.array(row["t"])
         yield Marker(
@@ -103,7 +146,26 @@ def _per_impact(orbits: pa.Table) -> tuple[dict[str, np.ndarray], np.ndarray]:
     span = orbits["p"].to_numpy() * period
     dt = np.diff(t, axis=1, append=(t[:, 0] + span)[:, None]) / period[:, None]
     values = {name: _matrix(orbits, name) for name in ("w_dot", "x1", "phase")} | {"dt": dt}
-    return values, _matrix(orbits, "side")[0]
+    starts = Word(orbits["word"][0].as_py()).rotations()
+    return _threaded(values, starts), _matrix(orbits, "side")[0]
+
+
+def _threaded(values: dict[str, np.ndarray], starts: tuple[int, ...]) -> dict[str, np.ndarray]:
+    """Let a column follow one impact along the branch.
+
+    An orbit whose letters are a repetition has several first impacts, and which one is stored may change along the
+    branch; of them the one is taken that is nearest to the orbit before.
+    """
+    if len(starts) == 1:
+        return values
+    known = np.stack([values["w_dot"], values["dt"]])
+    shifts = np.zeros(known.shape[1], dtype=int)
+    for i in range(1, known.shape[1]):
+        before = np.roll(known[:, i - 1], -shifts[i - 1], axis=1)
+        distances = [np.abs(np.roll(known[:, i], -start, axis=1) - before).max() for start in starts]
+        shifts[i] = starts[int(np.argmin(distances))]
+    places = (np.arange(known.shape[2]) + shifts[:, None]) % known.shape[2]
+    return {name: np.take_along_axis(matrix, places, axis=1) for name, matrix in values.items()}
 
 
 def _matrix(orbits: pa.Table, name: str) -> np.ndarray:
@@ -116,8 +178,8 @@ def _numpy(table: pa.Table) -> Any:
 
 def _label(what: str, stage: Input, shared: dict[str, float]) -> str:
     own = {name: value for name, value in stage.params.items() if name not in shared}
-    return f"{what}, {_listed(own)}" if own else what
+    return f"{what}, {listed(own)}" if own else what
 
 
-def _listed(params: dict[str, float]) -> str:
+def listed(params: dict[str, float]) -> str:
     return ",  ".join(f"${SYMBOLS[name]} = {value:.4g}$" for name, value in params.items())

@@ -7,8 +7,10 @@ from typing import Any
 from vines.figures import basins_figure, reduced_figure, save
 from vines.pipeline import Batch, WholeJob
 from vines.stages._basin_map import basin_map
+from vines.stages._chart import chart
 from vines.stages._diagram import bifurcation_diagram
 from vines.stages._error_map import error_map
+from vines.stages._multipliers import multipliers
 
 __all__ = ["compute"]
 
@@ -22,6 +24,10 @@ def compute(job: WholeJob) -> Batch:
     elif options.plot == "reduced":
         maps = [error_map(stage) for stage in job.inputs.values()]
         figure = reduced_figure(maps, panels=options.panels, title=options.title, width=options.width)
+    elif options.plot == "multipliers":
+        figure = multipliers(job.inputs, options)
+    elif options.plot == "chart":
+        figure = chart(job.inputs, options)
     else:
         figure = bifurcation_diagram(job.inputs, options)
     save(figure, job.folder)

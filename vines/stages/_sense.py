@@ -37,7 +37,7 @@ def check_stages(pipeline: Pipeline) -> None:
         One line with the file, the stage, what is wrong and the remedy.
     """
     for stage in pipeline.stages.values():
-        check = {"branch": _branch, "figure": _figure, "check": _check}.get(stage.kind.name)
+        check = {"branch": _branch, "curve": _curve, "figure": _figure, "check": _check}.get(stage.kind.name)
         if check is not None:
             check(stage, pipeline)
 
@@ -54,20 +54,33 @@ def _branch(stage: Stage, pipeline: Pipeline) -> None:
         )
 
 
+def _curve(stage: Stage, pipeline: Pipeline) -> None:
+    if len(stage.axes) != 2:
+        names = ", ".join(axis.name for axis in stage.axes) or "nothing"
+        raise _refuse(
+            stage, pipeline, f"a curve is followed in two parameters, this one varies {names}; give vary.X and vary.Y"
+        )
+
+
 def _figure(stage: Stage, pipeline: Pipeline) -> None:
     if not stage.needs:
         raise _refuse(stage, pipeline, "a figure draws other stages; name them, needs = [...]")
     options: Any = stage.options
     if options.width <= 0:
         raise _refuse(stage, pipeline, f"width is {options.width:g} inch, allowed is width > 0")
-    if options.panels:
+    window = options.window
+    if window is not None and not window[0] < window[1]:
+        raise _refuse(stage, pipeline, f"window is {window[0]:g} to {window[1]:g}; give the lower end first")
+    if options.panels and options.plot in ("bifurcation", "reduced"):
         from vines.figures import ERRORS, PANELS
 
         known = PANELS if options.plot == "bifurcation" else ERRORS
         for panel in options.panels:
             if panel not in known:
                 raise _refuse(stage, pipeline, f"unknown panel {panel!r}: {nearest(panel, known)}")
-    if options.plot != "bifurcation":
+    if options.plot == "chart":
+        _chart(stage, pipeline)
+    if options.plot not in ("bifurcation", "multipliers"):
         return
     axes = {name: tuple(axis.name for axis in pipeline.stages[name].axes) for name in stage.needs}
     if len(set(axes.values())) != 1 or len(next(iter(axes.values()))) != 1:
@@ -75,6 +88,18 @@ def _figure(stage: Stage, pipeline: Pipeline) -> None:
         raise _refuse(
             stage, pipeline, f"a bifurcation diagram needs stages that vary one and the same parameter; {listed}"
         )
+    if options.plot == "multipliers" and not any(pipeline.stages[name].kind.name == "branch" for name in stage.needs):
+        raise _refuse(stage, pipeline, "multipliers are those of branches; name a stage of kind 'branch' in needs")
+
+
+def _chart(stage: Stage, pipeline: Pipeline) -> None:
+    needed = [pipeline.stages[name] for name in stage.needs]
+    wrong = [one.name for one in needed if one.kind.name not in ("curve", "reduced")]
+    if wrong or not any(one.kind.name == "curve" for one in needed):
+        told = f"; {', '.join(wrong)} is of another" if wrong else ""
+        raise _refuse(stage, pipeline, f"a chart draws stages of kind 'curve', and shades one of kind 'reduced'{told}")
+    if len({frozenset(axis.name for axis in one.axes) for one in needed}) != 1:
+        raise _refuse(stage, pipeline, "the stages of a chart have to vary the same two parameters")
 
 
 def _check(stage: Stage, pipeline: Pipeline) -> None:

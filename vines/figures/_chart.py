@@ -1,0 +1,162 @@
+"""Charts of two parameters: curves of bifurcations, special points on them, and where an orbit is stable."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import numpy.typing as npt
+
+from vines.figures._legend import add_legend
+from vines.figures._marks import MARKS
+from vines.figures._names import NAMES, SYMBOLS
+from vines.figures._style import COLOURS, RC, new_figure
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+__all__ = ["CurveLine", "Region", "SpecialMark", "chart_figure"]
+
+Floats = npt.NDArray[np.float64]
+
+_COLOURS = {
+    "fold": "#333333",
+    "symmetry_breaking": "#c8102e",
+    "period_doubling": "#7a2bbf",
+    "neimark_sacker": "#0b7d6b",
+    "grazing": "#0b4ea2",
+}
+_STYLES = ("-", (0, (5, 1.5)), (0, (4, 1.5, 1, 1.5)), (0, (1.5, 1.2)))
+"""Line styles of the families, in the order in which they come."""
+
+_SYMBOLS = ("*", "P", "X", "d", "h", "p", "8", "<", ">")
+_STABLE = "#dcebd5"
+_DECADE = 10
+"""Ratio of the ends of a range from which its axis is logarithmic."""
+
+
+@dataclass(frozen=True)
+class CurveLine:
+    """A curve of bifurcations: its type, the family it belongs to, such as ``"1:1 symmetric"``, and its points."""
+
+    type: str
+    family: str
+    x: Floats
+    y: Floats
+
+
+@dataclass(frozen=True)
+class SpecialMark:
+    """A point of codimension two on a curve."""
+
+    type: str
+    x: float
+    y: float
+
+
+@dataclass(frozen=True)
+class Region:
+    """Where something holds, on a grid: x (nx,), y (ny,), inside (ny, nx) of bool, and its name for the legend."""
+
+    x: Floats
+    y: Floats
+    inside: npt.NDArray[np.bool_]
+    label: str
+
+
+def chart_figure(
+    axes: tuple[str, str],
+    curves: Sequence[CurveLine],
+    special: Sequence[SpecialMark],
+    regions: Sequence[Region] = (),
+    *,
+    caption: str = "",
+    width: float = 7.0,
+) -> Figure:
+    """Draw a chart.
+
+    Parameters
+    ----------
+    axes : (str, str)
+        Names of the parameters along x and y. An axis whose curves span a decade is logarithmic.
+    curves, special, regions : sequences
+        What is drawn.
+    caption : str
+        The fixed parameters, written above.
+    width : float
+        Width of the figure [inch].
+    """
+    import matplotlib as mpl
+
+    with mpl.rc_context(RC):
+        figure = new_figure(width, 0.78 * width)
+        ax = figure.subplots()
+        for region in regions:
+            # Pixel by pixel: a smooth outline would claim more than the grid knows.
+            shown = np.where(region.inside, 1.0, np.nan)
+            ax.pcolormesh(region.x, region.y, shown, cmap=_one(_STABLE), shading="nearest", rasterized=True, zorder=0)
+        families = list(dict.fromkeys(curve.family for curve in curves))
+        for curve in curves:
+            style: Any = _STYLES[families.index(curve.family) % len(_STYLES)]
+            ax.plot(curve.x, curve.y, color=_COLOURS[curve.type], linestyle=style, linewidth=1.5, zorder=2)
+        symbols: dict[str, str] = dict(zip(dict.fromkeys(mark.type for mark in special), _SYMBOLS, strict=False))
+        for mark in special:
+            ax.plot([mark.x], [mark.y], linestyle="none", zorder=4, **_special_style(symbols.get(mark.type, "x")))
+        _scale(ax, curves)
+        ax.set_xlabel(f"{NAMES.get(axes[0], axes[0])}  ${SYMBOLS.get(axes[0], axes[0])}$")
+        ax.set_ylabel(f"{NAMES.get(axes[1], axes[1])}  ${SYMBOLS.get(axes[1], axes[1])}$")
+        if caption:
+            ax.set_title(caption, fontsize=8.5, loc="left", pad=6)
+        add_legend(figure, _entries(curves, families, symbols, regions))
+    return figure
+
+
+def _one(colour: str) -> Any:
+    from matplotlib.colors import ListedColormap
+
+    return ListedColormap([colour])
+
+
+def _special_style(symbol: str) -> dict[str, Any]:
+    return {
+        "marker": symbol,
+        "markersize": 9 if symbol == "*" else 6.5,
+        "markerfacecolor": "#f7d038",
+        "markeredgecolor": COLOURS["ink"],
+        "markeredgewidth": 0.8,
+    }
+
+
+def _scale(ax: Axes, curves: Sequence[CurveLine]) -> None:
+    """Choose linear or logarithmic axes, and let the curves fill them."""
+    for name in ("x", "y"):
+        values = np.concatenate([getattr(curve, name) for curve in curves]) if curves else np.array([])
+        if not len(values):
+            continue
+        low, high = float(values.min()), float(values.max())
+        if low > 0 and high / low >= _DECADE:
+            getattr(ax, f"set_{name}scale")("log")
+        getattr(ax, f"set_{name}lim")(low, high)
+
+
+def _entries(
+    curves: Sequence[CurveLine], families: list[str], symbols: dict[str, str], regions: Sequence[Region]
+) -> list[tuple[str, tuple[Any, ...]]]:
+    from matplotlib.lines import Line2D
+    from matplotlib.patches import Patch
+
+    entries: list[tuple[str, tuple[Any, ...]]] = [
+        (region.label, (Patch(facecolor=_STABLE, edgecolor="none"),)) for region in regions
+    ]
+    for kind, family in dict.fromkeys((curve.type, curve.family) for curve in curves):
+        style: Any = _STYLES[families.index(family) % len(_STYLES)]
+        line = Line2D([], [], color=_COLOURS[kind], linewidth=1.5, linestyle=style)
+        entries.append((f"{MARKS[kind][1]}, {family}", (line,)))
+    for kind, symbol in symbols.items():
+        text = re.sub(r"(\d)_(\d)", r"\1:\2", kind).replace("neimark_sacker", "Neimark–Sacker").replace("_", " ")
+        entries.append((text, (Line2D([], [], linestyle="none", **_special_style(symbol)),)))
+    return entries
