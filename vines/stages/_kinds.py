@@ -61,13 +61,16 @@ class SweepOptions(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """The settled attractor of each point: `settle` periods, then `record` periods that are classified and measured.
 
     `keep` is the number of recorded periods whose impacts are kept where the attractor is not periodic; of a periodic
-    one, one repetition is.
+    one, one repetition is. At each point `random` further starts are drawn with `seed`, and the table ``attractors``
+    lists every attractor that they come to beside the point's own.
     """
 
     start: Start = msgspec.field(default_factory=Start)
     settle: int = 400
     record: int = 64
     keep: int = 64
+    random: int = 0
+    seed: int = 0
 
 
 class BranchOptions(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -182,7 +185,7 @@ class CheckOptions(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 def _check_simulation(params: dict[str, float], options: Any) -> None:
     Params(**params)
-    for name, least in (("settle", 0), ("record", 2), ("per_period", 2), ("keep", 1)):
+    for name, least in (("settle", 0), ("record", 2), ("per_period", 2), ("keep", 1), ("random", 0), ("seed", 0)):
         value = getattr(options, name, least)
         if value < least:
             raise ParameterError(f"{name} is {value}, allowed is {name} >= {least}")
@@ -301,7 +304,7 @@ def register_kinds() -> None:
             shape="points",
             options=SweepOptions,
             body="vines.stages._sweep:compute",
-            tables=("points", "impacts"),
+            tables=("points", "impacts", "attractors"),
             parameters=PARAMETERS,
             vary="grid",
             carry=True,

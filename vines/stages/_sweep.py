@@ -10,6 +10,7 @@ import pyarrow as pa
 from vines.attractors import Attractor, settle
 from vines.model import Params
 from vines.pipeline import Batch, Job
+from vines.stages._coexisting import attractor_rows, coexisting
 from vines.stages._rows import STATE, impact_rows, point_row
 
 __all__ = ["compute"]
@@ -22,6 +23,7 @@ def compute(job: Job) -> Batch:
     start = at_rest if job.start is None else {name: float(job.start[f"end_{name}"]) for name in STATE}
     rows: list[dict[str, Any]] = []
     impacts: list[dict[str, Any]] = []
+    attractors: list[dict[str, Any]] = []
     for point in job.points:
         attractor = settle(
             Params(**point.params),
@@ -35,10 +37,14 @@ def compute(job: Job) -> Batch:
         )
         rows.append(point_row(point.id, attractor, start, carry=job.carry, before=0, record=options.record))
         impacts.append(impact_rows(point.id, attractor.params, representative(attractor, options.keep)))
+        found = coexisting(
+            attractor, random=options.random, seed=options.seed, settle_for=options.settle, record=options.record
+        )
+        attractors += attractor_rows(point.id, found, options.random)
         if job.carry is not None:
             start = {name: attractor.final[name] for name in STATE}
     columns = {name: np.concatenate([part[name] for part in impacts]) for name in impacts[0]}
-    return Batch(tables={"points": rows, "impacts": pa.table(columns)})
+    return Batch(tables={"points": rows, "impacts": pa.table(columns), "attractors": attractors})
 
 
 def representative(attractor: Attractor, keep: int) -> np.ndarray:

@@ -1,0 +1,97 @@
+"""The constants of the certified steps, and the corners: two walls in one step, resonance, fast and slow balls."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from vines.dynamics import ensemble, simulate
+from vines.dynamics._constants import constants
+from vines.dynamics._flight import derivatives, fourth_bound, phasors, turn
+from vines.dynamics._steps import leaving_step, safe_step
+from vines.model import Params
+
+
+@settings(max_examples=150, deadline=None)
+@given(
+    A=st.floats(0, 10),
+    Omega=st.one_of(st.floats(0.05, 5.0), st.floats(0.99, 1.01)),
+    lam=st.floats(1e-3, 1.9),
+    x=st.floats(-2, 2),
+    v=st.floats(-2, 2),
+    phase=st.floats(0, 6.28),
+)
+def test_the_fourth_derivative_stays_below_its_bound(
+    A: float, Omega: float, lam: float, x: float, v: float, phase: float
+) -> None:
+    c = constants(Params(mu=0.1, A=A, Omega=Omega, lam=lam))
+    at = phasors(c.free, Omega, x, v, phase)
+    fourth = derivatives(c.free, Omega, *at)[4]
+    bound = fourth_bound(c, *at, fourth, c.window)
+    for h in np.linspace(0.0, c.window, 40):
+        later = derivatives(c.free, Omega, *turn(c.free, Omega, *at, float(h)))[4]
+        assert abs(later) <= bound * (1 + 1e-9) + 1e-12 * (1 + math.hypot(at[0], at[1]) + math.hypot(at[2], at[3]))
+
+
+@given(gap=st.floats(0, 2), slope=st.floats(-3, 3), curvature=st.floats(-5, 5))
+def test_a_safe_step_reaches_the_wall_at_most_at_its_end(gap: float, slope: float, curvature: float) -> None:
+    h = safe_step(gap, slope, curvature, 0.9)
+    inner = np.linspace(0.0, h, 200)
+    assert 0.0 <= h <= 0.9
+    assert np.all(slope * inner + 0.5 * curvature * inner**2 <= gap + 1e-12)
+
+
+@given(speed=st.floats(0, 1), second=st.floats(-2, 2), third=st.floats(-2, 2), bound=st.floats(0, 5))
+def test_a_leaving_step_does_not_come_back(speed: float, second: float, third: float, bound: float) -> None:
+    h = leaving_step(speed, second, third, bound, 0.9)
+    inner = np.linspace(0.0, h, 200)
+    height = inner * (-speed + inner * (second / 2 + inner * (max(third, 0.0) / 6 + inner * bound / 24)))
+    if not (second <= 0.0 and third < 0.0):
+        assert np.all(height <= 1e-15)
+
+
+@pytest.mark.parametrize("v2", [20.0, -50.0, 200.0])
+def test_two_walls_within_one_step(v2: float) -> None:
+    p = Params(mu=1e-6, A=0.1, Omega=1.3, r=1.0)
+    run = simulate(p, v2=v2, periods=0.5)
+    many = ensemble(p, {"v2": [v2]}, periods=0.5)
+    assert len(run.impacts) == many.counts[0] > 10
+    assert np.all(np.diff(run.impacts["side"]) != 0)
+    assert np.allclose(np.diff(run.impacts["t"]), 2.0 / abs(v2), rtol=0.2)
+
+
+def test_a_ball_that_rests_is_struck_only_where_the_oscillator_reaches_it() -> None:
+    p = Params(mu=0.1, A=0.0, Omega=2.0, lam=0.0)
+    for amplitude, struck in ((0.999999, False), (1.000001, True)):
+        run = simulate(p, x1=amplitude, x2=0.0 if amplitude < 1 else 1e-6, v2=0.0, periods=3)
+        assert (len(run.impacts) > 0) == struck
+
+
+@pytest.mark.parametrize("Omega", [0.05, 0.5, 1.0, 2.0, 5.0])
+@pytest.mark.parametrize("A", [0.0, 0.1, 10.0])
+@pytest.mark.parametrize("mu", [1e-6, 0.1, 10.0])
+@pytest.mark.parametrize("r", [0.0, 1.0])
+def test_lanes_agree_with_the_scalar_kernel_in_the_corners(Omega: float, A: float, mu: float, r: float) -> None:
+    p = Params(mu=mu, A=A, Omega=Omega, r=r)
+    run = simulate(p, v2=0.7, phi=0.3, periods=1.5, max_impacts_per_period=300)
+    many = ensemble(p, {"v2": [0.7], "phase": [0.3]}, periods=1.5, record="impacts", max_impacts_per_period=300)
+    assert many.impacts is not None
+    n = min(len(run.impacts), len(many.impacts), 3)
+    for name in ("t", "side", "x1", "v1", "v2"):
+        assert many.impacts[name][:n] == pytest.approx(run.impacts[name][:n], rel=1e-7, abs=1e-7)
+
+
+@pytest.mark.parametrize("lam", [1e-2, 1e-4, 1e-6])
+def test_resonance_with_vanishing_damping(lam: float) -> None:
+    p = Params(mu=0.01, A=0.01, Omega=1.0, lam=lam)
+    run = simulate(p, x2=0.95, v2=0.0, periods=3)
+    first = run.impacts[0]
+    # Without damping x1 = A (sin t - t cos t)/2 from rest; lam changes it by less than lam t times as much.
+    t = float(first["t"])
+    assert first["x1"] == pytest.approx(0.5 * p.A * (math.sin(t) - t * math.cos(t)), abs=3 * lam * t * p.A * t + 1e-10)
+    m = run.measures()
+    assert abs(m.balance) < 1e-9 * (m.base_work + m.max_abs_x1**2)
