@@ -99,6 +99,17 @@ def waiting() -> list[str]:
     return table(("command", "median s", "x import numpy"), rows)
 
 
+def benchmark(name: str) -> Callable[[], list[str]]:
+    """Return a section that runs one of the benchmarks and shows what it printed."""
+
+    def section() -> list[str]:
+        done = subprocess.run([sys.executable, "-m", f"benchmarks.{name}"], capture_output=True, text=True, check=False)
+        told = done.stdout.rstrip() if done.returncode == 0 else f"failed: {done.stderr.strip().splitlines()[-1]}"
+        return ["```", *told.splitlines(), "```"]
+
+    return section
+
+
 def tests() -> list[str]:
     """Run the whole suite, the full-size variants included."""
     begin = time.perf_counter()
@@ -118,6 +129,10 @@ SECTIONS = {
     "Where the symmetric orbit loses stability": branch,
     "Chatter and sticking": chatter,
     "Waiting for the command line": waiting,
+    "Dynamics, beside its peers": benchmark("dynamics"),
+    "Periodic orbits, beside AUTO-07p": benchmark("orbits"),
+    "Logs, beside mcap's own writer": benchmark("logs"),
+    "Pipelines, beside their peers": benchmark("engine"),
     "Tests": tests,
 }
 

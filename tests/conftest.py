@@ -20,7 +20,8 @@ os.environ.pop("VINES_ROOT", None)
 os.environ.pop("VINES_DATA", None)
 
 # No timed test in the suite: a busy machine must not fail a property.
-hypothesis.settings.register_profile("vines", deadline=None)
+# In CI the examples are the same each time; a developer's run goes on looking for new ones.
+hypothesis.settings.register_profile("vines", deadline=None, derandomize=bool(os.environ.get("CI")))
 hypothesis.settings.load_profile("vines")
 
 

@@ -97,7 +97,8 @@ def test_killed_at_ten_random_moments_the_run_ends_with_the_same_bytes(lab, undi
     assert 0 < state.done < state.wanted
     lab.run(declared, jobs=1)
     assert everything(lab) == undisturbed(declared)
-    assert not any(lab.store.staging_folder.iterdir())
+    # the empty lock of a process that was killed between its lock and its folder may stay for a while
+    assert not any(path.is_dir() for path in lab.store.staging_folder.iterdir())
 
 
 @pytest.mark.parametrize("jobs", [1, 2])
@@ -170,7 +171,9 @@ class Cluster:
         self.environment = {**os.environ, "PYTHONPATH": str(code), "DASK_DISTRIBUTED__SCHEDULER__ALLOWED_FAILURES": "5"}
         self.processes = []
         self.file = folder / "scheduler.json"
-        self.scheduler = self.spawn("scheduler", "--port", "0", "--no-dashboard", "--scheduler-file", self.file)
+        self.scheduler = self.spawn(
+            "scheduler", "--host", "127.0.0.1", "--port", "0", "--no-dashboard", "--scheduler-file", self.file
+        )
         wait_for(self.file.exists, self.scheduler)
         self.address = json.loads(self.file.read_text())["address"]
 

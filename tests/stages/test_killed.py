@@ -40,4 +40,4 @@ def test_killed_and_run_again(project, quickstart, moment, wait):
     assert contents(project) != contents(quickstart)
     project.vines("run", "quickstart")
     assert contents(project) == contents(quickstart)
-    assert not list(project.data.glob("staging/*"))
+    assert not [path for path in project.data.glob("staging/*") if path.is_dir()]

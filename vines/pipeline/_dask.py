@@ -101,15 +101,17 @@ class Dask:
                 "--engine dask needs the package distributed; install vines with the extra 'dask'"
             ) from None
         # what it says of lost connections is said in one line here
-        for name in [name for name in logging.root.manager.loggerDict if name.partition(".")[0] == "distributed"]:
-            logging.getLogger(name).setLevel(logging.CRITICAL)
+        for name in [*logging.root.manager.loggerDict, "tornado.application"]:
+            if name.partition(".")[0] in ("distributed", "tornado"):
+                logging.getLogger(name).setLevel(logging.CRITICAL)
         if self._address is None:
             self._before = set(multiprocessing.active_children())
             self._cluster = distributed.LocalCluster(
                 n_workers=self._jobs,
                 threads_per_worker=1,
                 processes=True,
-                dashboard_address=":0",
+                host="127.0.0.1",
+                dashboard_address=None,
                 env={"NUMBA_NUM_THREADS": "1"},
                 silence_logs=logging.CRITICAL,
             )

@@ -80,8 +80,8 @@ def tables() -> dict[str, Table]:
 
     Examples
     --------
-    >>> [name for name in tables() if name.startswith("b")]
-    ['bifurcations', 'branches']
+    >>> [name for name in tables() if name.startswith("bi")]
+    ['bifurcations']
     """
     return dict(_tables())
 

@@ -4,11 +4,15 @@ from __future__ import annotations
 
 import contextlib
 import shutil
+import time
 import uuid
 from collections.abc import Iterator
 from pathlib import Path
 
 __all__ = ["clear_staging", "staging"]
+
+_FORGOTTEN = 3600.0
+"""Seconds after which a lock without a folder belongs to nobody."""
 
 
 @contextlib.contextmanager
@@ -33,7 +37,11 @@ def clear_staging(folder: Path) -> None:
     from filelock import FileLock, Timeout
 
     for place in [*folder.iterdir()] if folder.is_dir() else ():
-        if place.suffix == ".lock":  # goes with its folder; alone, it may belong to a process that makes one just now
+        if place.suffix == ".lock":
+            # It goes with its folder. Alone, it may belong to a process that makes one just now, unless it is old.
+            with contextlib.suppress(FileNotFoundError):
+                if not place.with_suffix("").exists() and time.time() - place.stat().st_mtime > _FORGOTTEN:
+                    place.unlink()
             continue
         lock = FileLock(place.with_suffix(".lock"))
         with contextlib.suppress(Timeout), lock.acquire(timeout=0):
