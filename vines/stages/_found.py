@@ -12,6 +12,8 @@ from typing import TYPE_CHECKING, Any
 from vines.stages._running import load_pipeline, open_store
 
 if TYPE_CHECKING:
+    import pyarrow as pa
+
     from vines.store import Result, Store
 
 __all__ = ["found"]
@@ -61,7 +63,7 @@ def _findings(results: dict[str, Result]) -> Iterable[str]:
                 what = row["type"].replace("_", " ")
                 yield f"{what} at {row['parameter']} = {row['value']:.6g} on the {row['name']} orbit  ({stage})"
         if "points" in result.tables:
-            yield f"{_attractors(result.table('points').to_pylist())}  ({stage})"
+            yield f"{_attractors(result.table('points'))}  ({stage})"
     verdicts = Counter(
         row["verdict"] for r in results.values() if "checks" in r.tables for row in r.table("checks").to_pylist()
     )
@@ -70,20 +72,33 @@ def _findings(results: dict[str, Result]) -> Iterable[str]:
         yield f"{verdicts['reproduced']} of {total} published values reproduced"
 
 
-def _attractors(rows: list[dict[str, Any]]) -> str:
+def _attractors(points: pa.Table) -> str:
     """Return what the points of a stage settled to, the most frequent first."""
-    kinds = Counter(row["name"] if row["settled"] and row["name"] else row["regime"] or row["status"] for row in rows)
-    failed = [row for row in rows if row["status"] == "failed"]
-    if failed:
-        return f"{len(failed)} of {len(rows)} points failed, the first because: {failed[0]['reason']}"
-    if len(rows) == 1:
-        (row,) = rows
-        side = "" if row["symmetric"] is None else ("symmetric " if row["symmetric"] else "asymmetric ")
-        alias = f" (the paper's {row['alias']})" if row["alias"] != row["name"] else ""
-        bought = "" if row["reduction"] is None else f", max|x1| {row['reduction']:.3g} of that with no ball"
-        return f"{side}{next(iter(kinds))}{alias} at {_place(row)}{bought}"
-    listed = ", ".join(f"{count} {kind}" for kind, count in kinds.most_common(6))
-    return f"{len(rows)} points: {listed}"
+    import pyarrow.compute as pc
+
+    failed = points.filter(pc.field("status") == "failed")
+    if failed.num_rows:
+        reason = failed["reason"][0].as_py()
+        return f"{failed.num_rows} of {points.num_rows} points failed, the first because: {reason}"
+    if points.num_rows == 1:
+        return _one_attractor(points.to_pylist()[0])
+    # Counted in columns: a sweep may have a million points.
+    counts: Counter[str] = Counter()
+    for group in points.group_by(["settled", "name", "regime", "status"]).aggregate([([], "count_all")]).to_pylist():
+        counts[_kind(group)] += group["count_all"]
+    listed = ", ".join(f"{count} {kind}" for kind, count in counts.most_common(6))
+    return f"{points.num_rows} points: {listed}"
+
+
+def _one_attractor(row: dict[str, Any]) -> str:
+    side = "" if row["symmetric"] is None else ("symmetric " if row["symmetric"] else "asymmetric ")
+    alias = f" (the paper's {row['alias']})" if row["alias"] != row["name"] else ""
+    bought = "" if row["reduction"] is None else f", max|x1| {row['reduction']:.3g} of that with no ball"
+    return f"{side}{_kind(row)}{alias} at {_place(row)}{bought}"
+
+
+def _kind(row: dict[str, Any]) -> str:
+    return row["name"] if row["settled"] and row["name"] else row["regime"] or row["status"]
 
 
 def _place(row: dict[str, Any]) -> str:
