@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from vines.errors import DeclarationError
-from vines.figures import BranchLine, ImpactDots, Marker, bifurcation_figure, save
+from vines.figures import COLOURS, BranchLine, ImpactDots, Marker, bifurcation_figure, save
+from vines.figures._style import FAMILIES
 
 
 def drawing(**options):
@@ -39,13 +40,51 @@ def test_stable_parts_are_solid_and_unstable_ones_dotted():
 def test_legend_names_everything_once():
     (legend,) = drawing().legends
     labels = [text.get_text() for text in legend.get_texts()]
-    assert labels == [
-        "simulation, left end",
-        "simulation, right end",
-        "1:1 symmetric, stable",
-        "1:1 symmetric, unstable",
-        "symmetry breaking (0.018)",
+    assert labels == ["simulation", "1:1 symmetric", "stable", "unstable", "symmetry breaking (0.018)"]
+
+
+def test_families_have_the_colours_of_the_paper():
+    x = np.linspace(0.02, 0.03, 5)
+    values = {"w_dot": x, "dt": x}
+    lines = [
+        BranchLine(x=x, side=side, stable=x > 0, values=values, label=family, family=family)
+        for family in ("symmetric", "asymmetric", "unequal")
+        for side in (1, -1)
     ]
+    # The flight times of the two ends of a symmetric orbit coincide, and are neither red nor blue.
+    drawn = bifurcation_figure("A", [], lines, [], panels=("w_dot", "dt")).axes
+    assert [line.get_color() for line in drawn[0].lines[2:]] == [
+        colour for family in ("asymmetric", "unequal") for colour in FAMILIES[family]
+    ]
+    assert {line.get_color() for line in drawn[1].lines[:2]} == {COLOURS["ink"]}
+
+
+def test_a_mirror_image_adds_nothing_to_flight_times():
+    x = np.linspace(0.02, 0.03, 5)
+    line = BranchLine(x=x, side=1, stable=x > 0, values={"w_dot": x, "dt": x}, label="", family="asymmetric")
+    image = BranchLine(
+        x=x, side=-1, stable=x > 0, values={"w_dot": -x, "dt": x}, label="", family="asymmetric", image=True
+    )
+    axes = bifurcation_figure("A", [], [line, image], []).axes
+    assert [len(ax.lines) for ax in axes] == [2, 1]
+
+
+def test_a_window_scales_the_other_axis_to_what_it_shows():
+    (ax,) = drawing(panels=("x1",), window=(0.016, 0.017)).axes
+    assert ax.get_xlim() == (0.016, 0.017)
+    low, high = ax.get_ylim()
+    assert 0.0158 < low < 0.016 < 0.017 < high < 0.0172
+    (legend,) = ax.figure.legends
+    assert "symmetry breaking (0.018)" not in [text.get_text() for text in legend.get_texts()]
+
+
+def test_a_long_flight_does_not_flatten_the_branches():
+    x = np.linspace(0.01, 0.02, 200)
+    dt = np.where(np.arange(200) == 7, 25.0, 0.5)
+    dots = ImpactDots(x=x, side=np.ones(200, dtype=int), values={"dt": dt})
+    line = BranchLine(x=x, side=1, stable=x > 0, values={"dt": np.linspace(0.3, 0.7, 200)}, label="1:1")
+    (ax,) = bifurcation_figure("A", [dots], [line], [], panels=("dt",)).axes
+    assert ax.get_ylim()[1] < 0.8
 
 
 def test_files_are_the_same_bytes_each_time(tmp_path):

@@ -170,7 +170,8 @@ def _within(
 
     shown = [cut(one, (low <= one.x) & (one.x <= high), "side") for one in dots]
     parts = [
-        cut(line, np.arange(start, stop), "stable")
+        # One point more at either end, so that a line reaches the border.
+        cut(line, np.arange(max(start - 1, 0), min(stop + 1, len(line.x))), "stable")
         for line in lines
         for start, stop, inside in runs((low <= line.x) & (line.x <= high))
         if inside

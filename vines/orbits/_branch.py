@@ -91,8 +91,8 @@ class Branch:
 
     @property
     def symmetric(self) -> bool:
-        """Whether the orbits are their own mirror images."""
-        return self.orbits[0].symmetric
+        """Whether the orbits are their own mirror images; one that joins a symmetric family at its end may be."""
+        return all(orbit.symmetric for orbit in self.orbits)
 
     @cached_property
     def branch_id(self) -> str:

@@ -21,6 +21,9 @@ __all__ = ["Families", "follow_families"]
 _FINER = (1.0, 0.25, 0.05)
 """Steps tried, relative to the one asked for: next to a grazing a bifurcation may only be located with small ones."""
 
+_MET = 1e-4
+"""Relative difference of the parameter at a branching point as located from either family."""
+
 
 class Families(list[Branch]):
     """Branches of one word and those that come out of them.
@@ -74,7 +77,8 @@ def follow_families(
     Returns
     -------
     Families
-        Symmetric families first. Every branch but those switched to begins at its lower end. Of an asymmetric pair
+        Symmetric families first, each with what comes out of it. Every branch but those switched to has its first orbit
+        at the lower value of the parameter of its two ends. Of an asymmetric pair
         with one word one is followed: the other is its mirror image. ``parent`` is linked where a family comes out
         of another of the list.
 
@@ -141,34 +145,47 @@ def _both_ways(
 
 
 def _joined(down: Branch | None, up: Branch | None) -> Branch:
-    if down is None or up is None:
-        only = up or down
-        assert only is not None
-        return only
+    """Return one branch from two that set out from one orbit, or the only one, turned round if it begins higher."""
+    one = up or down
+    assert one is not None
+    if up is not None and down is not None:
+        one = replace(
+            up,
+            orbits=(*reversed(down.orbits), *up.orbits[1:]),
+            bifurcations=(*reversed(down.bifurcations), *up.bifurcations),
+            events=(*reversed(down.events), *up.events),
+            ends=(down.ends[1], up.ends[1]),
+        )
+    if one.values[0] <= one.values[-1]:
+        return one
     return replace(
-        up,
-        orbits=(*reversed(down.orbits), *up.orbits[1:]),
-        bifurcations=(*reversed(down.bifurcations), *up.bifurcations),
-        events=(*reversed(down.events), *up.events),
-        ends=(down.ends[1], up.ends[1]),
+        one,
+        orbits=one.orbits[::-1],
+        bifurcations=one.bifurcations[::-1],
+        events=one.events[::-1],
+        ends=one.ends[::-1],
     )
 
 
 def _linked(found: list[Branch]) -> list[Branch]:
-    """Name the parent of every branch that ends where it comes out of another one."""
+    """Name the parent of every branch that ends where it comes out of another one.
+
+    The branching point is that of the parent, which is located to rounding, and is not repeated on the child: from
+    there the equations degenerate.
+    """
     linked = []
     for branch in found:
         child = branch
         if child.parent is None and set(BRANCHING) & set(child.ends):
-            joints = [b for b in child.bifurcations if is_joint(b)]
-            parents = [
-                other.branch_id
-                for other in found
-                for b in other.bifurcations
-                if other is not child
-                and not is_joint(b)
-                and any(j.type == b.type and math.isclose(j.value, b.value, rel_tol=1e-9) for j in joints)
-            ]
-            child = replace(branch, parent=parents[0] if parents else None)
+            for joint in filter(is_joint, branch.bifurcations):
+                parents = [
+                    other.branch_id
+                    for other in found
+                    for b in other.bifurcations
+                    if b.type == joint.type and not is_joint(b) and math.isclose(b.value, joint.value, rel_tol=_MET)
+                ]
+                if parents:
+                    kept = tuple(b for b in child.bifurcations if b is not joint)
+                    child = replace(child, bifurcations=kept, parent=parents[0])
         linked.append(child)
     return linked
