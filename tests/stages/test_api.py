@@ -82,3 +82,14 @@ def test_json_output_is_json(project):
     assert json.loads(project.vines("status", "quickstart", "--json").stdout)["quickstart"]
     assert json.loads(project.vines("schema", "points", "--json").stdout)["table"] == "points"
     assert json.loads(project.vines("tables", "--json").stdout)
+
+
+def test_a_study_declared_in_python_runs_and_shares_its_points_with_the_file(root):
+    from vines.pipeline import Declaration, span
+
+    (root / "pipelines" / "small.toml").write_text(SMALL)
+    run("small")
+    study = Declaration("mine", params={"mu": 0.01})
+    study.stage("up", "sweep", vary={"A": span(0.015, 0.016, 5)}, settle=60, record=8)
+    assert [(stage.state, stage.new) for stage in vines.run(study).stages] == [("computed", 0)]
+    assert vines.query("select count(*) as n from mine.up").to_pylist() == [{"n": 5}]
