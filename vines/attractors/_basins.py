@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -17,7 +18,7 @@ from vines.model import Params
 
 __all__ = ["COORDINATES", "Basins", "basins"]
 
-Floats = npt.NDArray[np.float64]
+Floats = npt.NDArray[Any]
 
 COORDINATES = ("x1", "v1", "x2", "v2", "phase")
 ROUND = 32
@@ -130,14 +131,16 @@ def basins(
     mirrored = np.zeros(len(gx), dtype=bool)
     periods = np.zeros(len(gx))
     label[inside], mirrored[inside], periods[inside] = search.run(gx[inside], gy[inside])
-    cells = [(gx, gy, np.zeros(len(gx), dtype=np.int64), np.where(inside, 1.0, 0.0), label, mirrored, periods)]
+    cells: list[Any] = [
+        (gx, gy, np.zeros(len(gx), dtype=np.int64), np.where(inside, 1.0, 0.0), label, mirrored, periods)
+    ]
     step = [float(v[1] - v[0]) if len(v) > 1 else 0.0 for v in (xs, ys)]
     edge = _edges((2 * label + mirrored).reshape(len(ys), len(xs))).ravel() & inside
     for k in range(refine):
         step = [0.5 * h for h in step]
         whole = cells[-1]
         # The halved cells take the place of those that they were cut from.
-        cells[-1] = tuple(column[~edge] for column in whole)  # type: ignore[assignment]
+        cells[-1] = tuple(column[~edge] for column in whole)
         px, py, weight, before = whole[0][edge], whole[1][edge], whole[3][edge], 2 * whole[4][edge] + whole[5][edge]
         fx = np.concatenate([px + a * step[0] / 2 for a in (-1, 1) for _ in (0, 1)])
         fy = np.concatenate([py + b * step[1] / 2 for _ in (0, 1) for b in (-1, 1)])
@@ -152,7 +155,7 @@ def basins(
         # Cut again where the four quarters of a cell, or they and the cell, are not all alike.
         four = (2 * found + image).reshape(4, -1)
         edge = np.tile((four != before).any(axis=0), 4) & allowed
-    columns = [np.concatenate(parts) for parts in zip(*cells, strict=True)]
+    columns: list[Any] = [np.concatenate(parts) for parts in zip(*cells, strict=True)]
     keep = columns[3] > 0
     gx, gy, level, weight, label, mirrored, periods = (column[keep] for column in columns)
     return Basins(p, names, gx, gy, level, weight / weight.sum(), label, mirrored, periods, search.attractors)

@@ -255,7 +255,8 @@ def _measure(recording: Recording, found: Verdict) -> tuple[Measures, tuple[floa
         measures_from(p, window_totals(c, rows, len(rows), k * width, min((k + 1) * width, stop)))
         for k in range(BLOCKS)
     ]
-    scatter = np.std([(m.kinetic_ratio, m.max_abs_x1, m.rms_x1) for m in parts], axis=0, ddof=1) / math.sqrt(BLOCKS)
+    values = np.array([(m.kinetic_ratio, m.max_abs_x1, m.rms_x1) for m in parts])
+    scatter = np.std(values, axis=0, ddof=1) / math.sqrt(BLOCKS)
     return whole, (float(scatter[0]), float(scatter[1]), float(scatter[2]))
 
 

@@ -60,7 +60,7 @@ def basins_figure(data: BasinMap, *, title: str = "", width: float = 7.0) -> Fig
     corners = np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]])
     centres = np.stack([data.x, data.y], axis=1)
     quads = centres[:, None, :] + corners[None, :, :] * half[:, None, :]
-    cells = PolyCollection(quads, facecolors=shown, edgecolors="none", antialiased=False, rasterized=True)
+    cells = PolyCollection(list(quads), facecolors=shown, edgecolors="none", antialiased=False, rasterized=True)
     ax.add_collection(cells)
     ax.set_xlim(quads[..., 0].min(), quads[..., 0].max())
     ax.set_ylim(quads[..., 1].min(), quads[..., 1].max())
