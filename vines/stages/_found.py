@@ -58,10 +58,14 @@ def _cached(store: Store, pipeline: str, results: dict[str, Result]) -> list[str
 
 def _findings(results: dict[str, Result]) -> Iterable[str]:
     for stage, result in results.items():
-        if "bifurcations" in result.tables:
+        if "atlas" in result.tables:
+            yield f"{_atlas(result.table('atlas').to_pylist())}  ({stage})"
+        elif "bifurcations" in result.tables:
             for row in result.table("bifurcations").to_pylist():
                 what = row["type"].replace("_", " ")
                 yield f"{what} at {row['parameter']} = {row['value']:.6g} on the {row['name']} orbit  ({stage})"
+        if "curves" in result.tables:
+            yield from (f"{line}  ({stage})" for line in _curves(result.table("curves").to_pylist()))
         if "points" in result.tables:
             yield f"{_attractors(result.table('points'))}  ({stage})"
     verdicts = Counter(
@@ -70,6 +74,31 @@ def _findings(results: dict[str, Result]) -> Iterable[str]:
     if verdicts:
         total = sum(verdicts.values())
         yield f"{verdicts['reproduced']} of {total} published values reproduced"
+
+
+def _atlas(rows: list[dict[str, Any]]) -> str:
+    """Return what an atlas found on all its lines."""
+    orbits, stable, branches = (sum(row[name] or 0 for row in rows) for name in ("orbits", "stable", "branches"))
+    failed = sum(row["status"] == "failed" for row in rows)
+    lines = f"{len(rows)} lines" + (f", {failed} of them failed" if failed else "")
+    return f"{orbits} orbits on {branches} branches, {stable} of them stable, on {lines}"
+
+
+def _curves(rows: list[dict[str, Any]]) -> Iterable[str]:
+    """Yield what each curve is and which special points are on it."""
+    for name in dict.fromkeys(row["curve_id"] for row in rows):
+        mine = [row for row in rows if row["curve_id"] == name]
+        first, (one, two) = mine[0], (mine[0]["parameter_1"], mine[0]["parameter_2"])
+        special = [
+            f"{row['special'].replace('_', ' ')} at {one} = {row[one]:.6g}, {two} = {row[two]:.6g}"
+            for row in mine
+            if row["special"]
+        ]
+        side = "symmetric " if first["symmetric"] else ""
+        points = len(mine) - len(special)
+        yield f"{first['type'].replace('_', ' ')} of {side}{first['name']} in ({one}, {two}): {points} points" + (
+            f", {'; '.join(special)}" if special else ""
+        )
 
 
 def _attractors(points: pa.Table) -> str:
