@@ -109,8 +109,8 @@ def classify(recording: Recording, tolerance: float) -> Verdict:
         match = _match(recording.rows, kept, p, p * recording.params.period, scale)
         if match is None:
             continue
-        # A run within the tolerance of its orbit repeats to twice that, and to less after 2 p periods where a multiplier
-        # is near -1: with a tighter bound here the orbit would be named with twice its period.
+        # A run within the tolerance of its orbit repeats to twice that, and to less after 2 p periods where a
+        # multiplier is near -1: with a tighter bound here the orbit would be named with twice its period.
         if match.blocks[-1] <= 2.5 * tolerance:
             return _periodic(recording, kept, match, scale, tolerance)
         if best is None or match.blocks[-1] < 0.5 * best.blocks[-1]:
