@@ -146,7 +146,7 @@ def main() -> None:
         found = section()
         print("\n".join(found), flush=True)
         lines += ["", f"## {title}", "", *found]
-    PAGE.write_text("\n".join(lines) + "\n", encoding="utf-8")
+        PAGE.write_text("\n".join(lines) + "\n", encoding="utf-8")
 
 
 if __name__ == "__main__":
