@@ -12,6 +12,7 @@ if TYPE_CHECKING:
     from vines.stages._found import found
     from vines.stages._keeping import Difference, clean, declaration_schema, diff, graph
     from vines.stages._kinds import register_kinds
+    from vines.stages._orbit_log import orbit_log
     from vines.stages._running import compile_if_cold, list_pipelines, load_pipeline, open_store, run, status, warm_up
     from vines.stages._study import init_study
 
