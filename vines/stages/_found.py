@@ -19,6 +19,10 @@ if TYPE_CHECKING:
 __all__ = ["found"]
 
 
+MOST = 6
+"""Bifurcations of a stage that the screen lists before it only counts them."""
+
+
 def found(name: str) -> list[str]:
     """Return the lines of the screen.
 
@@ -61,9 +65,12 @@ def _findings(results: dict[str, Result]) -> Iterable[str]:
         if "atlas" in result.tables:
             yield f"{_atlas(result.table('atlas').to_pylist())}  ({stage})"
         elif "bifurcations" in result.tables:
-            for row in result.table("bifurcations").to_pylist():
+            rows = result.table("bifurcations").to_pylist()
+            for row in rows[:MOST]:
                 what = row["type"].replace("_", " ")
                 yield f"{what} at {row['parameter']} = {row['value']:.6g} on the {row['name']} orbit  ({stage})"
+            if len(rows) > MOST:
+                yield f"and {len(rows) - MOST} more bifurcations and events: vines query 'select * from bifurcations'"
         if "curves" in result.tables:
             yield from (f"{line}  ({stage})" for line in _curves(result.table("curves").to_pylist()))
         if "points" in result.tables:
