@@ -137,17 +137,33 @@ SECTIONS = {
 }
 
 
-def main() -> None:
-    """Measure everything and write the page."""
+def main(names: list[str]) -> None:
+    """Measure everything, or only the named sections, and write the page; other sections keep what they say."""
     subprocess.run([sys.executable, "-m", "vines.cli", "run", "quickstart", "--quiet"], check=True)
-    lines = ["# Acceptance", "", "Written by `make acceptance`; every number below was computed by that run."]
+    told = kept() if names else {}
     for title, section in SECTIONS.items():
+        if names and title not in names:
+            continue
         print(title, flush=True)
-        found = section()
-        print("\n".join(found), flush=True)
-        lines += ["", f"## {title}", "", *found]
-        PAGE.write_text("\n".join(lines) + "\n", encoding="utf-8")
+        told[title] = section()
+        print("\n".join(told[title]), flush=True)
+        write(told)
+
+
+def kept() -> dict[str, list[str]]:
+    """Return the sections of the page as it is."""
+    parts = PAGE.read_text(encoding="utf-8").split("\n## ")[1:] if PAGE.is_file() else []
+    return {part.split("\n", 1)[0]: part.split("\n", 1)[1].strip().splitlines() for part in parts}
+
+
+def write(told: dict[str, list[str]]) -> None:
+    """Write the page in the order of the sections."""
+    lines = ["# Acceptance", "", "Written by `make acceptance`; every number below was computed by it."]
+    for title in SECTIONS:
+        if title in told:
+            lines += ["", f"## {title}", "", *told[title]]
+    PAGE.write_text("\n".join(lines) + "\n", encoding="utf-8")
 
 
 if __name__ == "__main__":
-    main()
+    main(sys.argv[1:])
