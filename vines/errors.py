@@ -18,6 +18,7 @@ __all__ = [
     "OrbitNotFound",
     "ParameterError",
     "QueryError",
+    "RigError",
     "RunFailed",
     "SchemaError",
     "StateError",
@@ -82,6 +83,10 @@ class QueryError(VinesError, ValueError):
 
 class ViewerError(VinesError, RuntimeError):
     """The Rerun viewer could not be started or could not draw."""
+
+
+class RigError(VinesError, ValueError):
+    """Data of a rig cannot be used: no unit, sign, rate or sensitivity, a clipped signal, clocks that don't agree."""
 
 
 class OrbitNotFound(VinesError, LookupError):  # noqa: N818 - the name is promised in the design
