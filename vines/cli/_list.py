@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from typing import Any
 
 import click
 
@@ -10,7 +11,7 @@ import click
 @click.command("list")
 @click.option("--json", "as_json", is_flag=True, help="For machines.")
 def command(as_json: bool) -> None:
-    """List the pipelines and what they are for."""
+    """List the pipelines and collections and what they are for."""
     from vines.cli._layout import print_rows
     from vines.stages import list_pipelines
 
@@ -20,5 +21,9 @@ def command(as_json: bool) -> None:
         return
     print_rows(
         ["pipeline", "stages", "title", "source"],
-        [[row["name"], row["stages"], row["title"], row["source"]] for row in rows],
+        [[row["name"], _size(row), row["title"], row["source"]] for row in rows],
     )
+
+
+def _size(row: dict[str, Any]) -> str:
+    return f"{len(row['pipelines'])} pipelines" if row["pipelines"] else str(row["stages"])

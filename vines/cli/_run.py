@@ -45,6 +45,9 @@ def command(
 ) -> None:
     """Compute what the pipeline NAME (or declared in FILE) still lacks; all of it, or the named stages.
 
+    A collection such as "paper" runs its pipelines one after the other, and goes on when one fails; a STAGE is then a
+    pipeline or <pipeline>.<stage>, and the name of the pipeline stands first in --set.
+
     What is computed is kept by point: a second run computes nothing, a finer grid only what is new, and after an
     interruption the same command goes on.
     """

@@ -16,16 +16,16 @@ if TYPE_CHECKING:
 @click.argument("name", required=False)
 @click.option("--json", "as_json", is_flag=True, help="For machines.")
 def command(name: str | None, as_json: bool) -> None:
-    """Say what is computed, what is stale, and why: of the pipeline NAME, or of all."""
+    """Say what is computed, what is stale, and why: of the pipeline or collection NAME, or of all."""
     from vines.cli._layout import print_rows
-    from vines.stages import list_pipelines, status
+    from vines.stages import list_pipelines, members_of, status
 
-    names = [name] if name is not None else [row["name"] for row in list_pipelines()]
+    names = members_of(name) if name is not None else [row["name"] for row in list_pipelines() if not row["pipelines"]]
     plans = {each: status(each) for each in names}
     if as_json:
         click.echo(json.dumps({each: [asdict(p) for p in found] for each, found in plans.items()}, indent=2))
         return
-    if name is None:
+    if name not in plans:
         rows = []
         for each, found in plans.items():
             ready = sum(p.state == "up_to_date" for p in found)

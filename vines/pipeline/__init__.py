@@ -6,10 +6,11 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from vines.pipeline._axes import Axis
     from vines.pipeline._builder import Declaration, span
+    from vines.pipeline._collection import Collection, load_collection, members
     from vines.pipeline._declaration import Carry, Pipeline, Refine, Stage, available, find, load
-    from vines.pipeline._events import Event, RunSummary, silent
+    from vines.pipeline._events import Event, RunSummary, StageOutcome, silent
     from vines.pipeline._form import json_schema
-    from vines.pipeline._graph import mermaid
+    from vines.pipeline._graph import mermaid, mermaid_of_all
     from vines.pipeline._include import with_included
     from vines.pipeline._ingredients import what_changed
     from vines.pipeline._jobs import Batch, Input, Job, Point, Points, Range, WholeJob
@@ -23,6 +24,7 @@ __all__ = [
     "Axis",
     "Batch",
     "Carry",
+    "Collection",
     "Declaration",
     "Event",
     "Input",
@@ -37,6 +39,7 @@ __all__ = [
     "RunSummary",
     "Shard",
     "Stage",
+    "StageOutcome",
     "StagePlan",
     "WholeJob",
     "available",
@@ -45,7 +48,10 @@ __all__ = [
     "kind",
     "kinds",
     "load",
+    "load_collection",
+    "members",
     "mermaid",
+    "mermaid_of_all",
     "plan",
     "pool_keys",
     "register",
@@ -60,6 +66,7 @@ _HOME = {
     "Axis": "vines.pipeline._axes",
     "Batch": "vines.pipeline._jobs",
     "Carry": "vines.pipeline._declaration",
+    "Collection": "vines.pipeline._collection",
     "Declaration": "vines.pipeline._builder",
     "Event": "vines.pipeline._events",
     "Input": "vines.pipeline._jobs",
@@ -74,6 +81,7 @@ _HOME = {
     "RunSummary": "vines.pipeline._events",
     "Shard": "vines.pipeline._shard",
     "Stage": "vines.pipeline._declaration",
+    "StageOutcome": "vines.pipeline._events",
     "StagePlan": "vines.pipeline._plan",
     "WholeJob": "vines.pipeline._jobs",
     "available": "vines.pipeline._declaration",
@@ -82,7 +90,10 @@ _HOME = {
     "kind": "vines.pipeline._kinds",
     "kinds": "vines.pipeline._kinds",
     "load": "vines.pipeline._declaration",
+    "load_collection": "vines.pipeline._collection",
+    "members": "vines.pipeline._collection",
     "mermaid": "vines.pipeline._graph",
+    "mermaid_of_all": "vines.pipeline._graph",
     "plan": "vines.pipeline._plan",
     "pool_keys": "vines.pipeline._plan",
     "register": "vines.pipeline._kinds",

@@ -25,7 +25,7 @@ JUMP = (("", 0.1),)
 """Relative change of a number from one point to the next that counts as a jump, where nothing is said."""
 MOST = 10_000
 """Points that a refinement adds at most, where nothing is said."""
-_STAGES = re.compile(r"^\s*(\[\s*stages\b|include\s*=)", re.MULTILINE)
+_STAGES = re.compile(r"^\s*(\[\s*stages\b|include\s*=|pipelines\s*=)", re.MULTILINE)
 
 
 @dataclass(frozen=True, slots=True)
@@ -199,9 +199,9 @@ class Pipeline:
 
 
 def available(root: Path) -> dict[str, Path]:
-    """Return the files of all pipelines by name: those of the project, and those that ship with vines.
+    """Return the files of all pipelines and collections by name: of the project, and those that ship with vines.
 
-    Files of ``pipelines/`` that declare no stages, such as published claims, are none.
+    Files of ``pipelines/`` that declare neither stages nor pipelines, such as published claims, are none.
     """
     found: dict[str, Path] = {}
     for folder in (shipped("pipelines"), root / "pipelines"):

@@ -33,6 +33,13 @@ def json_schema() -> dict[str, Any]:
             "title": {"type": "string", "description": "What the pipeline is for"},
             "source": {"type": "string", "description": "Figure or section that it reproduces"},
             "include": {"type": "string", "description": "A file that this one is laid over, relative to it"},
+            "pipelines": {
+                "type": "array",
+                "description": "Pipelines that run as one, in this order; instead of stages",
+                "items": {"type": "string", "pattern": f"^{NAME.pattern}$"},
+                "minItems": 1,
+                "uniqueItems": True,
+            },
             "params": {
                 "type": "object",
                 "description": "Parameters of every stage that takes them",
@@ -56,6 +63,7 @@ def json_schema() -> dict[str, Any]:
                 },
             },
         },
+        "not": {"required": ["pipelines", "stages"]},
         "$defs": {name: _stage(known[name]) for name in sorted(known)} | {"axis": _axis()},
     }
 

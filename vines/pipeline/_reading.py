@@ -29,7 +29,10 @@ GENERAL = ("carry", "kind", "needs", "params", "refine", "vary", "zip")
 
 def read(path: Path, overrides: Mapping[str, Any], root: Path | None) -> Pipeline:
     """Read a declaration; see :func:`vines.pipeline.load`."""
-    return read_form(path.stem, with_included(path), overrides, path, root)
+    form = with_included(path)
+    if "pipelines" in form:
+        raise DeclarationError(f"{path}: a collection of pipelines, which are run, not the file; name one of them here")
+    return read_form(path.stem, form, overrides, path, root)
 
 
 def read_form(

@@ -13,7 +13,8 @@ if TYPE_CHECKING:
     from vines.stages._keeping import Difference, clean, declaration_schema, diff, graph
     from vines.stages._kinds import register_kinds
     from vines.stages._orbit_log import orbit_log
-    from vines.stages._running import compile_if_cold, list_pipelines, load_pipeline, open_store, run, status, warm_up
+    from vines.stages._parts import load_pipeline, members_of
+    from vines.stages._running import compile_if_cold, list_pipelines, open_store, run, status, warm_up
     from vines.stages._study import init_study
 
 __all__ = [
@@ -31,6 +32,7 @@ __all__ = [
     "list_pipelines",
     "list_tables",
     "load_pipeline",
+    "members_of",
     "open_store",
     "orbit_log",
     "query",
@@ -60,7 +62,8 @@ _HOME = {
     "init_study": "_study",
     "list_pipelines": "_running",
     "list_tables": "_asking",
-    "load_pipeline": "_running",
+    "load_pipeline": "_parts",
+    "members_of": "_parts",
     "open_store": "_running",
     "query": "_asking",
     "register_kinds": "_kinds",

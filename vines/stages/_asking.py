@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Literal
 from vines import schema
 from vines.catalogue import connect
 from vines.errors import QueryError, UnknownNameError, nearest
-from vines.pipeline import available
+from vines.pipeline import available, members
 from vines.places import find_root
 from vines.stages._running import open_store
 
@@ -115,7 +115,7 @@ def checks(name: str | None = None) -> list[dict[str, Any]]:
     Parameters
     ----------
     name : str, optional
-        A pipeline; all that were run if left out.
+        A pipeline or collection; all pipelines that were run if left out.
 
     Returns
     -------
@@ -130,7 +130,10 @@ def checks(name: str | None = None) -> list[dict[str, Any]]:
     known = {*available(find_root()), *open_store().pinned()}
     if name is not None and name not in known:
         raise UnknownNameError(f"unknown pipeline {name!r}: {nearest(name, known)}")
-    where = "" if name is None else f"where pipeline = '{name}'"
+    where = ""
+    if name is not None:
+        names = members(name, find_root()) if name in available(find_root()) else (name,)
+        where = f"where pipeline in ({', '.join(repr(each) for each in names)})"
     rows = query(f"select * from checks {where} order by pipeline, stage, point_id").to_pylist()
     if not rows:
         what = name or "any pipeline"

@@ -9,11 +9,14 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from vines.stages._running import load_pipeline, open_store
+from vines.stages._parts import load_parts
+from vines.stages._running import open_store
 
 if TYPE_CHECKING:
     import pyarrow as pa
 
+    from vines.pipeline import Pipeline
+    from vines.stages._parts import Part
     from vines.store import Result, Store
 
 __all__ = ["found"]
@@ -30,20 +33,43 @@ def found(name: str) -> list[str]:
     results, so that a run with nothing to do stays quick.
     """
     store = open_store()
-    declared = load_pipeline(name)
-    pipeline = declared.name
-    pins = store.pins(pipeline)
-    results = {
-        stage: store.result(pins[stage]["result"])
-        for stage in declared.stages
-        if stage in pins and store.has(pins[stage]["result"])
-    }
+    parts = load_parts(name)
+    if parts[0].collection:
+        return _of_all(store, parts)
+    pipeline = parts[0].pipeline.name
+    results = _results(store, parts[0].pipeline)
     if not results:
         return []
     findings = _cached(store, pipeline, results)
     lines = ["Found", *(f"  {line}" for line in findings), "", "Files", *_files(store, results), "", "Next"]
-    lines += [f"  {command:68s} {what}" for command, what in _next(pipeline, results)]
+    return lines + [_step(command, what) for command, what in _next(pipeline, results)]
+
+
+def _results(store: Store, declared: Pipeline) -> dict[str, Result]:
+    pins = store.pins(declared.name)
+    return {
+        stage: store.result(pins[stage]["result"])
+        for stage in declared.stages
+        if stage in pins and store.has(pins[stage]["result"])
+    }
+
+
+def _of_all(store: Store, parts: list[Part]) -> list[str]:
+    """Return what a collection has: its pictures, and how many of the published values are reproduced."""
+    results = {part.pipeline.name: _results(store, part.pipeline) for part in parts}
+    pictures = {name: list(_pictures(found)) for name, found in results.items()}
+    lines = [f"  {name}: {_short(picture)} (and .svg)" for name, each in pictures.items() for picture in each]
+    lines = ["Files", *lines, ""] if lines else []
+    together = {f"{name}.{stage}": result for name, found in results.items() for stage, result in found.items()}
+    checked = _verdicts(together)
+    if checked:
+        lines = ["Found", f"  {checked}", "", *lines, "Next"]
+        lines.append(_step(f"vines check {parts[0].collection}", "compare with the published values"))
     return lines
+
+
+def _step(command: str, what: str) -> str:
+    return f"  {command:68s} {what}"
 
 
 def _cached(store: Store, pipeline: str, results: dict[str, Result]) -> list[str]:
@@ -75,12 +101,17 @@ def _findings(results: dict[str, Result]) -> Iterable[str]:
             yield from (f"{line}  ({stage})" for line in _curves(result.table("curves").to_pylist()))
         if "points" in result.tables:
             yield f"{_attractors(result.table('points'))}  ({stage})"
+    checked = _verdicts(results)
+    if checked:
+        yield checked
+
+
+def _verdicts(results: dict[str, Result]) -> str:
+    """Return how many published values are reproduced; empty if none were checked."""
     verdicts = Counter(
         row["verdict"] for r in results.values() if "checks" in r.tables for row in r.table("checks").to_pylist()
     )
-    if verdicts:
-        total = sum(verdicts.values())
-        yield f"{verdicts['reproduced']} of {total} published values reproduced"
+    return f"{verdicts['reproduced']} of {sum(verdicts.values())} published values reproduced" if verdicts else ""
 
 
 def _atlas(rows: list[dict[str, Any]]) -> str:
@@ -145,10 +176,13 @@ def _place(row: dict[str, Any]) -> str:
 def _files(store: Store, results: dict[str, Result]) -> Iterable[str]:
     tables = sum(len(result.tables) for result in results.values())
     logs = [path for result in results.values() for path in result.logs.values()]
-    pictures = [r.folder / "picture.png" for r in results.values() if (r.folder / "picture.png").is_file()]
     yield f"  {_short(store.data / 'results')}: {tables} Parquet tables" + (f", {len(logs)} MCAP logs" if logs else "")
-    for picture in pictures:
+    for picture in _pictures(results):
         yield f"  {_short(picture)} (and .svg)"
+
+
+def _pictures(results: dict[str, Result]) -> Iterable[Path]:
+    yield from (r.folder / "picture.png" for r in results.values() if (r.folder / "picture.png").is_file())
 
 
 def _next(pipeline: str, results: dict[str, Result]) -> Iterable[tuple[str, str]]:

@@ -8,9 +8,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from vines.errors import StoreError, UnknownNameError, VinesError, nearest
-from vines.pipeline import available, mermaid, plan, pool_keys, what_changed
+from vines.pipeline import available, mermaid, mermaid_of_all, plan, pool_keys, what_changed
 from vines.places import find_root
-from vines.stages._running import load_pipeline, open_store
+from vines.stages._parts import load_parts
+from vines.stages._running import open_store
 
 if TYPE_CHECKING:
     from vines.catalogue import TableDifference
@@ -46,9 +47,11 @@ class Difference:
 
 
 def graph(name: str | Declaration) -> str:
-    """Return a pipeline as a Mermaid flowchart: its stages, what they need, and where they stand."""
-    pipeline = load_pipeline(name)
-    return mermaid(pipeline, {each.name: each for each in plan(pipeline, open_store())})
+    """Return a pipeline, or those of a collection, as a Mermaid flowchart: stages, needs, and where they stand."""
+    store = open_store()
+    parts = load_parts(name)
+    drawn = [(part.pipeline, {each.name: each for each in plan(part.pipeline, store)}) for part in parts]
+    return mermaid_of_all(drawn) if parts[0].collection else mermaid(*drawn[0])
 
 
 def declaration_schema() -> str:
@@ -126,7 +129,7 @@ def _wanted(store: Store) -> set[str]:
     wanted: set[str] = set()
     for name in available(find_root()):
         try:
-            wanted |= pool_keys(load_pipeline(name), store)
+            wanted |= {key for part in load_parts(name) for key in pool_keys(part.pipeline, store)}
         except VinesError:  # a declaration that cannot be read asks for nothing
             continue
     return wanted

@@ -3,45 +3,25 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
-from vines.errors import VinesError
-from vines.pipeline import available, find, kind, load, plan
+from vines.errors import EngineError, VinesError
+from vines.pipeline import available, kind, plan
 from vines.places import data_folder, find_root
-from vines.stages._kinds import register_kinds
-from vines.stages._sense import check_name, check_stages
+from vines.stages._parts import Part, load_parts
 from vines.store import Store
 
 if TYPE_CHECKING:
-    from vines.pipeline import Declaration, Event, Pipeline, RunSummary, StagePlan
+    from vines.pipeline import Declaration, Event, RunSummary, StageOutcome, StagePlan
 
-__all__ = ["compile_if_cold", "list_pipelines", "load_pipeline", "open_store", "run", "status", "warm_up"]
+__all__ = ["compile_if_cold", "list_pipelines", "open_store", "run", "status", "warm_up"]
 
 
 def open_store() -> Store:
     """Return the store of the project that the current folder belongs to (see :func:`vines.places.data_folder`)."""
     return Store(data_folder())
-
-
-def load_pipeline(name: str | Declaration, overrides: Mapping[str, Any] | None = None) -> Pipeline:
-    """Read the declaration of a pipeline, by name, by the path of its file, or as it was made in Python.
-
-    Raises
-    ------
-    UnknownNameError, FileMissingError, DeclarationError, ParameterError, StateError
-        One line each: no such pipeline or file, or what is wrong in it.
-    """
-    register_kinds()
-    root = find_root()
-    if isinstance(name, str):
-        path = find(name, root)
-        check_name(path, root)
-        pipeline = load(path, overrides, root=root)
-    else:
-        pipeline = name.load(overrides, root=root)
-    check_stages(pipeline)
-    return pipeline
 
 
 def run(
@@ -58,16 +38,17 @@ def run(
     retry_failed: bool = False,
     report: Callable[[Event], None] | None = None,
 ) -> RunSummary:
-    """Compute what a pipeline still lacks.
+    """Compute what a pipeline still lacks, or all pipelines of a collection, one after the other.
 
     Parameters
     ----------
     name : str or Declaration
-        Name of a pipeline, the path of a declaration, or one made in Python.
+        Name of a pipeline or collection, the path of a declaration, or one made in Python.
     stages : iterable of str, optional
-        Only these stages and those they need.
+        Only these stages and those they need; of a collection only these pipelines, or ``<pipeline>.<stage>``.
     overrides : mapping, optional
-        Values by dotted key that replace those of the file, such as ``{"stages.up.vary.A.count": 801}``.
+        Values by dotted key that replace those of the file, such as ``{"stages.up.vary.A.count": 801}``; in a
+        collection the name of the pipeline stands first, ``{"fig3.params.r": 0.6}``.
     jobs : int, optional
         Number of processes; all cores if left out, one where the work is too small to pay for more.
     engine : {"local", "dask"}
@@ -88,7 +69,7 @@ def run(
     Returns
     -------
     RunSummary
-        Stage by stage what was there and what was computed.
+        Stage by stage what was there and what was computed; in a collection stages are ``<pipeline>.<stage>``.
 
     Raises
     ------
@@ -99,12 +80,10 @@ def run(
     EngineError
         If dask is not installed, or its scheduler does not answer any more; what was computed is stored.
     """
-    pipeline = load_pipeline(name, overrides)
-    from vines.pipeline import Journal, Shard, run_pipeline, silent
+    parts = load_parts(name, stages, overrides)
+    from vines.pipeline import RunSummary, Shard
 
-    store = open_store()
     asked: dict[str, Any] = {
-        "stages": tuple(stages) if stages is not None else None,
         "jobs": jobs,
         "engine": engine,
         "scheduler": scheduler,
@@ -113,14 +92,42 @@ def run(
         "force": force,
         "retry_failed": retry_failed,
     }
-    with Journal(store.logs, pipeline.name, {**asked, "set": overrides}, report or silent) as journal:
-        summary = run_pipeline(pipeline, store, **asked, report=journal)
+    outcomes = [outcome for part in parts for outcome in _run_part(part, asked, report)]
+    label = next((part.collection or part.pipeline.name for part in parts), str(name))
+    summary = RunSummary(label, tuple(outcomes))
     summary.check()
     return summary
 
 
+def _run_part(part: Part, asked: dict[str, Any], report: Callable[[Event], None] | None) -> Iterable[StageOutcome]:
+    """Run one pipeline. In a collection an error of one, such as a damaged result, is an outcome: the others go on."""
+    from vines.pipeline import Event, Journal, StageOutcome, run_pipeline, silent
+
+    tell = report or silent
+
+    def told(event: Event) -> None:
+        tell(replace(event, stage=part.prefix + event.stage) if event.stage else event)
+
+    store = open_store()
+    name = part.pipeline.name
+    try:
+        with Journal(store.logs, name, {"stages": part.stages, **asked, "set": part.overrides}, told) as journal:
+            summary = run_pipeline(part.pipeline, store, stages=part.stages, **asked, report=journal)
+    except EngineError:
+        raise
+    except VinesError as error:
+        if not part.collection:
+            raise
+        tell(Event("failed", name, text=str(error)))
+        return [StageOutcome(name, "failed", reason=str(error))]
+    return [replace(outcome, name=part.prefix + outcome.name) for outcome in summary.stages]
+
+
 def list_pipelines() -> list[dict[str, Any]]:
-    """Return name, title, source and number of stages of the pipelines of the project and of those that ship."""
+    """Return name, title, source and number of stages of the pipelines of the project and of those that ship.
+
+    A collection has no stages, and its pipelines under ``pipelines``.
+    """
     from vines.pipeline import with_included
 
     rows = []
@@ -128,7 +135,7 @@ def list_pipelines() -> list[dict[str, Any]]:
         try:
             form = with_included(path)
         except VinesError as error:
-            rows.append({"name": name, "title": f"cannot be read: {error}", "source": "", "stages": 0})
+            rows.append({"name": name, "title": f"cannot be read: {error}", "source": "", "stages": 0, "pipelines": []})
             continue
         stages = form.get("stages")
         rows.append(
@@ -137,6 +144,7 @@ def list_pipelines() -> list[dict[str, Any]]:
                 "title": str(form.get("title", "")),
                 "source": str(form.get("source", "")),
                 "stages": len(stages) if isinstance(stages, dict) else 0,
+                "pipelines": list(form.get("pipelines", [])),
             }
         )
     return rows
@@ -145,8 +153,16 @@ def list_pipelines() -> list[dict[str, Any]]:
 def status(
     name: str | Declaration, *, stages: Iterable[str] | None = None, overrides: Mapping[str, Any] | None = None
 ) -> list[StagePlan]:
-    """Return where each stage of a pipeline stands, with the reason why it is stale."""
-    return plan(load_pipeline(name, overrides), open_store(), stages)
+    """Return where each stage of a pipeline stands, with the reason why it is stale.
+
+    In a collection stages are ``<pipeline>.<stage>``; points that two pipelines share are wanted by both.
+    """
+    store = open_store()
+    return [
+        replace(each, name=part.prefix + each.name)
+        for part in load_parts(name, stages, overrides)
+        for each in plan(part.pipeline, store, part.stages)
+    ]
 
 
 def warm_up(report: Callable[[str], object] = print) -> None:
