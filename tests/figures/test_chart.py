@@ -65,4 +65,4 @@ def test_multipliers_have_a_panel_a_branch_and_the_unit_circle():
     assert any(list(line.get_ydata()) == [1.0, 1.0] for line in first.lines)
     (legend,) = figure.legends
     # What the window does not show is not explained.
-    assert [text.get_text() for text in legend.get_texts()] == ["symmetry breaking"]
+    assert [text.get_text() for text in legend.get_texts()] == ["symmetry breaking (0.018)"]

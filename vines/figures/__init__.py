@@ -8,11 +8,14 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from vines.figures._basins import BasinMap, basins_figure
-    from vines.figures._bifurcation import BranchLine, ImpactDots, Marker, bifurcation_figure
+    from vines.figures._bifurcation import bifurcation_figure
     from vines.figures._chart import CurveLine, Region, SpecialMark, chart_figure
-    from vines.figures._multipliers import MultiplierLines, multiplier_figure
-    from vines.figures._names import ERRORS, NAMES, PANELS, SYMBOLS
+    from vines.figures._diagram_panel import BranchLine, DiagramPanel, ImpactDots, Marker
+    from vines.figures._multipliers import MultiplierLines, MultiplierPanel, multiplier_figure
+    from vines.figures._names import ERRORS, NAMES, PANELS, RUN_PANELS, SYMBOLS
     from vines.figures._reduced import ErrorMap, reduced_figure
+    from vines.figures._runs import EndsPanel, GapPanel, PhasePlanePanel, RunCurves
+    from vines.figures._sheet import Panel, sheet_figure
     from vines.figures._style import COLOURS, save
 
 __all__ = [
@@ -20,15 +23,23 @@ __all__ = [
     "ERRORS",
     "NAMES",
     "PANELS",
+    "RUN_PANELS",
     "SYMBOLS",
     "BasinMap",
     "BranchLine",
     "CurveLine",
+    "DiagramPanel",
+    "EndsPanel",
     "ErrorMap",
+    "GapPanel",
     "ImpactDots",
     "Marker",
     "MultiplierLines",
+    "MultiplierPanel",
+    "Panel",
+    "PhasePlanePanel",
     "Region",
+    "RunCurves",
     "SpecialMark",
     "basins_figure",
     "bifurcation_figure",
@@ -36,20 +47,30 @@ __all__ = [
     "multiplier_figure",
     "reduced_figure",
     "save",
+    "sheet_figure",
 ]
 
 _HOME = {
+    "sheet_figure": "_sheet",
+    "Panel": "_sheet",
+    "RunCurves": "_runs",
+    "PhasePlanePanel": "_runs",
+    "GapPanel": "_runs",
+    "EndsPanel": "_runs",
+    "RUN_PANELS": "_names",
+    "MultiplierPanel": "_multipliers",
+    "Marker": "_diagram_panel",
+    "ImpactDots": "_diagram_panel",
+    "DiagramPanel": "_diagram_panel",
+    "BranchLine": "_diagram_panel",
     "COLOURS": "_style",
     "ERRORS": "_names",
     "NAMES": "_names",
     "PANELS": "_names",
     "SYMBOLS": "_names",
     "BasinMap": "_basins",
-    "BranchLine": "_bifurcation",
     "CurveLine": "_chart",
     "ErrorMap": "_reduced",
-    "ImpactDots": "_bifurcation",
-    "Marker": "_bifurcation",
     "MultiplierLines": "_multipliers",
     "Region": "_chart",
     "SpecialMark": "_chart",

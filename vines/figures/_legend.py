@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from vines.figures._marks import DOTTED, MARKS, mark_style
@@ -11,24 +11,44 @@ from vines.figures._style import COLOURS, FAMILIES
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from vines.figures._bifurcation import BranchLine, ImpactDots, Marker
+    from vines.figures._diagram_panel import BranchLine, ImpactDots, Marker
 
-__all__ = ["add_legend", "legend_entries"]
+__all__ = ["Entry", "add_legend", "legend_entries", "mark_entries"]
+
+Entry = tuple[str, tuple[Any, ...]]
+"""A label, and the lines that are drawn side by side before it."""
 
 _LISTED = 3
 """Values of the parameter that an entry lists at most; more would hide the entry."""
 
 
 def legend_entries(
-    dots: Sequence[ImpactDots], lines: Sequence[BranchLine], markers: Sequence[Marker]
-) -> list[tuple[str, tuple[Any, ...]]]:
-    """Return the entries as (label, lines drawn side by side): left end, then right end."""
+    dots: Sequence[ImpactDots],
+    lines: Sequence[BranchLine],
+    markers: Sequence[Marker],
+    *,
+    names: Mapping[str, str] | None = None,
+    full: bool = False,
+) -> list[Entry]:
+    """Return the entries: left end, then right end.
+
+    Parameters
+    ----------
+    dots, lines, markers : sequences
+        What is drawn.
+    names : mapping of str to str, optional
+        What is written beside the bifurcations of a type.
+    full : bool
+        Whether dots have the colours of the ends in full.
+    """
     from matplotlib.lines import Line2D
 
-    entries: list[tuple[str, tuple[Any, ...]]] = []
+    entries: list[Entry] = []
     for label in dict.fromkeys(group.label for group in dots):
         point = {"linestyle": "none", "marker": ".", "markersize": 6, "markeredgewidth": 0}
-        entries.append((label, tuple(Line2D([], [], color=COLOURS[f"{side} light"], **point) for side in "LR")))
+        entries.append(
+            (label, tuple(Line2D([], [], color=COLOURS[side if full else f"{side} light"], **point) for side in "LR"))
+        )
     for label, family in dict.fromkeys((line.label, line.family) for line in lines):
         entries.append((label, tuple(Line2D([], [], color=colour, linewidth=1.6) for colour in FAMILIES[family])))
     styles: tuple[tuple[str, Any, bool], ...] = (
@@ -38,15 +58,24 @@ def legend_entries(
     for word, style, there in styles:
         if there:
             entries.append((word, (Line2D([], [], color=COLOURS["ink"], linewidth=1.4, linestyle=style),)))
-    for kind in dict.fromkeys(marker.type for marker in markers):
+    return entries + mark_entries([(marker.type, marker.x) for marker in markers], names or {})
+
+
+def mark_entries(marks: Sequence[tuple[str, float]], names: Mapping[str, str]) -> list[Entry]:
+    """Return an entry for each type of bifurcation with its places, given as (type, place)."""
+    from matplotlib.lines import Line2D
+
+    entries: list[Entry] = []
+    for kind in dict.fromkeys(kind for kind, _ in marks):
         _, word = MARKS.get(kind, ("x", kind))
-        places = list(dict.fromkeys(f"{marker.x:.5g}" for marker in markers if marker.type == kind))
+        places = list(dict.fromkeys(f"{place:.5g}" for each, place in marks if each == kind))
         listed = f" ({', '.join(places)})" if len(places) <= _LISTED else ""
-        entries.append((f"{word}{listed}", (Line2D([], [], linestyle="none", **mark_style(kind)),)))
+        name = f"{names[kind]}: " if kind in names else ""
+        entries.append((f"{name}{word}{listed}", (Line2D([], [], linestyle="none", **mark_style(kind)),)))
     return entries
 
 
-def add_legend(figure: Figure, entries: Sequence[tuple[str, tuple[Any, ...]]], ncols: int = 3) -> None:
+def add_legend(figure: Figure, entries: Sequence[Entry], ncols: int = 3) -> None:
     """Write a legend below the panels."""
     from matplotlib.legend_handler import HandlerTuple
 

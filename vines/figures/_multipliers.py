@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
 
-from vines.figures._legend import add_legend
-from vines.figures._marks import MARKS, mark_style
+from vines.figures._legend import add_legend, mark_entries
+from vines.figures._marks import mark_style
 from vines.figures._names import NAMES, SYMBOLS
 from vines.figures._style import COLOURS, FAMILIES, RC, new_figure
 
@@ -18,7 +18,9 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-__all__ = ["MultiplierLines", "multiplier_figure"]
+    from vines.figures._legend import Entry
+
+__all__ = ["MultiplierLines", "MultiplierPanel", "multiplier_figure"]
 
 Floats = npt.NDArray[np.float64]
 
@@ -51,6 +53,60 @@ class MultiplierLines:
     family: str = "symmetric"
 
 
+@dataclass(frozen=True)
+class MultiplierPanel:
+    """The four moduli along a branch over the varied parameter, with the line 1 and the bifurcations on it.
+
+    `names` is what is written beside the bifurcations of a type.
+    """
+
+    axis: str
+    branch: MultiplierLines
+    window: tuple[float, float] | None = None
+    y: tuple[float, float] | None = None
+    title: str = ""
+    names: Mapping[str, str] = field(default_factory=dict)
+
+    def draw(self, ax: Axes) -> None:
+        """Draw it."""
+        branch, inside = self.branch, self._inside()
+        left, right = FAMILIES[branch.family]
+        for k, colour in enumerate((left, left, right, right)):
+            values = np.where(inside, branch.moduli[:, k], np.nan)
+            ax.plot(branch.x, values, color=colour, linewidth=1.3, linestyle="-" if k % 2 == 0 else (0, (4, 2)))
+        ax.axhline(1.0, color=COLOURS["R"], linewidth=0.8)
+        for kind, place in self._marks():
+            ax.axvline(place, color=COLOURS["mark"], linewidth=0.6, linestyle=":")
+            ax.plot([place], [1.0], linestyle="none", zorder=3, **mark_style(kind))
+            if kind in self.names:
+                ax.annotate(self.names[kind], (place, 1.0), (-4, 6), textcoords="offset points", fontsize=9, ha="right")
+        x = branch.x[inside]
+        if len(x):
+            pad = 0.02 * float(np.ptp(x))
+            ax.set_xlim(self.window or (float(x.min()) - pad, float(x.max()) + pad))
+            ax.set_ylim(0, min(_HIGHEST, 1.08 * float(branch.moduli[inside].max())))
+        if self.y is not None:
+            ax.set_ylim(*self.y)
+        ax.locator_params(axis="x", nbins=5)
+        ax.set_xlabel(f"{NAMES.get(self.axis, self.axis)}  ${SYMBOLS.get(self.axis, self.axis)}$")
+        ax.set_ylabel(r"moduli of the multipliers  $|\lambda_i|$")
+        if self.title:
+            ax.set_title(self.title, fontsize=8.5)
+
+    def entries(self) -> list[Entry]:
+        """Return what the legend says of it."""
+        return mark_entries(self._marks(), self.names)
+
+    def _inside(self) -> npt.NDArray[np.bool_]:
+        x = self.branch.x
+        low, high = (min(self.window), max(self.window)) if self.window is not None else (x.min(), x.max())
+        return (low <= x) & (x <= high)
+
+    def _marks(self) -> list[tuple[str, float]]:
+        x = self.branch.x[self._inside()]
+        return [(kind, place) for kind, place in self.branch.marks if len(x) and x.min() <= place <= x.max()]
+
+
 def multiplier_figure(
     axis: str,
     branches: Sequence[MultiplierLines],
@@ -74,43 +130,19 @@ def multiplier_figure(
         The part of the varied parameter that is shown.
     """
     import matplotlib as mpl
-    from matplotlib.lines import Line2D
 
     with mpl.rc_context(RC):
         figure = new_figure(width, 3.4)
         axes = figure.subplots(1, len(branches), squeeze=False)[0]
-        kinds: dict[str, None] = {}
+        said: dict[str, tuple[Any, ...]] = {}
         for letter, branch, ax in zip("abcdefgh", branches, axes, strict=False):
-            kinds |= dict.fromkeys(_panel(ax, branch, window))
-            ax.set_xlabel(f"{NAMES.get(axis, axis)}  ${SYMBOLS.get(axis, axis)}$")
+            panel = MultiplierPanel(axis, branch, window)
+            panel.draw(ax)
+            said |= dict(panel.entries())
             ax.set_title(f"({letter})  {branch.label}", fontsize=9, loc="left")
-        axes[0].set_ylabel(r"moduli of the multipliers  $|\lambda_i|$")
+        for ax in axes[1:]:
+            ax.set_ylabel("")
         if caption:
             figure.suptitle(caption, fontsize=8.5)
-        entries = [
-            (MARKS.get(kind, ("x", kind))[1], (Line2D([], [], linestyle="none", **mark_style(kind)),)) for kind in kinds
-        ]
-        add_legend(figure, entries)
+        add_legend(figure, list(said.items()))
     return figure
-
-
-def _panel(ax: Axes, branch: MultiplierLines, window: tuple[float, float] | None) -> list[str]:
-    """Draw one branch and return the types that are marked."""
-    low, high = (min(window), max(window)) if window is not None else (float(branch.x.min()), float(branch.x.max()))
-    inside = (low <= branch.x) & (branch.x <= high)
-    left, right = FAMILIES[branch.family]
-    for k, colour in enumerate((left, left, right, right)):
-        values = np.where(inside, branch.moduli[:, k], np.nan)
-        ax.plot(branch.x, values, color=colour, linewidth=1.3, linestyle="-" if k % 2 == 0 else (0, (4, 2)))
-    ax.axhline(1.0, color=COLOURS["mark"], linewidth=0.8)
-    x = branch.x[inside]
-    shown = [(kind, place) for kind, place in branch.marks if len(x) and x.min() <= place <= x.max()]
-    for kind, place in shown:
-        ax.axvline(place, color=COLOURS["mark"], linewidth=0.6, linestyle=":")
-        ax.plot([place], [1.0], linestyle="none", zorder=3, **mark_style(kind))
-    if len(x):
-        pad = 0.02 * float(np.ptp(x))
-        ax.set_xlim(float(x.min()) - pad, float(x.max()) + pad)
-        ax.set_ylim(0, min(_HIGHEST, 1.08 * float(branch.moduli[inside].max())))
-    ax.locator_params(axis="x", nbins=5)
-    return [kind for kind, _ in shown]

@@ -1,6 +1,6 @@
 """What the figures call quantities and parameters. No import: declarations are checked against these names."""
 
-__all__ = ["ERRORS", "NAMES", "PANELS", "SYMBOLS"]
+__all__ = ["ERRORS", "NAMES", "PANELS", "RUN_PANELS", "SYMBOLS"]
 
 PANELS = {
     "w_dot": r"relative impact velocity  $\dot w$",
@@ -8,6 +8,9 @@ PANELS = {
     "x1": r"displacement at impact  $x_1$",
     "phase": r"impact phase  $\psi$  [rad]",
 }
+
+RUN_PANELS = ("ends", "gap", "phase_plane")
+"""Panels that show runs: displacements of the cavity's ends and the ball, gap and relative velocity, their plane."""
 
 SYMBOLS = {"A": "A", "mu": r"\mu", "Omega": r"\Omega", "r": "r", "lam": r"\lambda"}
 NAMES = {

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -17,7 +17,7 @@ from vines.pipeline import Input
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-__all__ = ["bifurcation_diagram", "family_label", "family_of", "listed"]
+__all__ = ["bifurcation_diagram", "diagram_parts", "family_label", "family_of", "listed", "shared_params"]
 
 EVENT = "pair_turns_real"
 
@@ -29,23 +29,53 @@ def bifurcation_diagram(inputs: Mapping[str, Input], options: Any) -> Figure:
     under another's parameters.
     """
     stages = list(inputs.values())
-    axis = stages[0].axes[0]
-    shared = {
-        name: value
-        for name, value in stages[0].params.items()
-        if all(stage.params.get(name) == value for stage in stages)
-    }
-    branches = [stage for stage in stages if "orbits" in stage.tables]
     return bifurcation_figure(
-        axis,
-        [_dots(stage, axis, shared) for stage in stages if "impacts" in stage.tables],
-        [line for stage in branches for line in _lines(stage, axis, shared, options.mirror)],
-        [marker for stage in branches for marker in _markers(stage, axis, events=len(branches) == 1)],
+        stages[0].axes[0],
+        *diagram_parts(stages, mirror=options.mirror),
         panels=options.panels or ("w_dot", "dt"),
-        caption=options.title or listed(shared),
+        caption=options.title or listed(shared_params(stages)),
         width=options.width,
         window=options.window,
     )
+
+
+def diagram_parts(
+    stages: Sequence[Input], *, mirror: bool, families: Collection[str] = (), marks: Collection[str] = ()
+) -> tuple[list[ImpactDots], list[BranchLine], list[Marker]]:
+    """Return what a diagram of stages that vary one parameter draws.
+
+    Parameters
+    ----------
+    stages : sequence of Input
+        Those with impacts give dots, those with orbits lines and markers.
+    mirror : bool
+        Whether mirror images of asymmetric orbits are drawn too.
+    families : collection of str
+        Labels of the branches that are drawn, see :func:`family_label`; all if empty.
+    marks : collection of str
+        Types of bifurcations that are marked; all if empty.
+    """
+    axis, shared = stages[0].axes[0], shared_params(stages)
+    branches = [stage for stage in stages if "orbits" in stage.tables]
+    # Events, which are no bifurcations, are marked only where they do not crowd.
+    events = len(branches) == 1
+    chosen = [(stage, _chosen(stage, families)) for stage in branches]
+    return (
+        [_dots(stage, axis, shared) for stage in stages if "impacts" in stage.tables],
+        [line for stage, rows in chosen for line in _lines(stage, rows, axis, shared, mirror)],
+        [mark for stage, rows in chosen for mark in _markers(stage, rows, axis, marks, events=events, mirror=mirror)],
+    )
+
+
+def shared_params(stages: Sequence[Input]) -> dict[str, float]:
+    """Return the parameters that all stages share."""
+    first, *others = (stage.params for stage in stages)
+    return {name: value for name, value in first.items() if all(other.get(name) == value for other in others)}
+
+
+def _chosen(stage: Input, families: Collection[str]) -> list[dict[str, Any]]:
+    """Return the rows of the branches that are drawn."""
+    return [row for row in stage.table("branches").to_pylist() if not families or family_label(row) in families]
 
 
 def _dots(stage: Input, axis: str, shared: dict[str, float]) -> ImpactDots:
@@ -64,19 +94,18 @@ def _dots(stage: Input, axis: str, shared: dict[str, float]) -> ImpactDots:
     )
 
 
-def _lines(stage: Input, axis: str, shared: dict[str, float], mirror: bool) -> Iterable[BranchLine]:
+def _lines(
+    stage: Input, branches: Iterable[dict[str, Any]], axis: str, shared: dict[str, float], mirror: bool
+) -> Iterable[BranchLine]:
     """Yield a line for each impact of the orbits of each branch, and of their mirror images if these have one word."""
     orbits = stage.table("orbits")
-    for branch in stage.table("branches").to_pylist():
+    for branch in branches:
         mine = orbits.filter(pc.field("branch_id") == branch["branch_id"])
         x = _numpy(mine)(axis)
         stable = mine["stable"].to_numpy(zero_copy_only=False).astype(bool)
         values, sides = _per_impact(mine)
-        image = {"w_dot": -values["w_dot"], "x1": -values["x1"], "dt": values["dt"]}
-        image["phase"] = (values["phase"] + math.pi) % (2 * math.pi)
-        word = Word(branch["word"])
-        both = mirror and not branch["symmetric"] and word.mirror == word
-        for turned, shown in ((1, values), (-1, image)) if both else ((1, values),):
+        both = mirror and _has_image(branch)
+        for turned, shown in ((1, values), (-1, _image(values))) if both else ((1, values),):
             for k, side in enumerate(sides):
                 yield BranchLine(
                     x=x,
@@ -120,23 +149,39 @@ def family_of(branch: Mapping[str, Any]) -> str:
     return "doubled" if word.p == 2 else "doubled again"
 
 
-def _markers(stage: Input, axis: str, events: bool) -> Iterable[Marker]:
-    """Yield the bifurcations of a stage; events, which are none, only where they do not crowd."""
+def _markers(
+    stage: Input, branches: Iterable[dict[str, Any]], axis: str, marks: Collection[str], *, events: bool, mirror: bool
+) -> Iterable[Marker]:
+    """Yield the bifurcations on some branches."""
+    drawn = {branch["branch_id"]: _has_image(branch) for branch in branches}
     for row in stage.table("bifurcations").to_pylist():
-        if row["type"] == EVENT and not events:
+        if row["branch_id"] not in drawn or (row["type"] == EVENT and not events):
+            continue
+        if marks and row["type"] not in marks:
             continue
         period = 2 * math.pi / row["Omega"]
         t = np.array(row["t"])
-        yield Marker(
-            type=row["type"],
-            x=row[axis],
-            values={
-                "w_dot": np.array(row["w_dot"]),
-                "dt": np.diff(t, append=t[0] + Word(row["word"]).p * period) / period,
-                "phase": np.array(row["phase"]),
-                "x1": np.array(row["x1"]),
-            },
-        )
+        values = {name: np.array(row[name]) for name in ("w_dot", "phase", "x1")}
+        values["dt"] = np.diff(t, append=t[0] + Word(row["word"]).p * period) / period
+        if mirror and drawn[row["branch_id"]]:
+            values = {name: np.append(value, _image(values)[name]) for name, value in values.items()}
+        yield Marker(type=row["type"], x=row[axis], values=values)
+
+
+def _has_image(branch: Mapping[str, Any]) -> bool:
+    """Return whether the mirror images of a branch's orbits are other orbits of the same word."""
+    word = Word(branch["word"])
+    return not branch["symmetric"] and word.mirror == word
+
+
+def _image(values: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
+    """Return the quantities of the mirror images (x, t) -> (-x, t + half a forcing period)."""
+    return {
+        "w_dot": -values["w_dot"],
+        "x1": -values["x1"],
+        "dt": values["dt"],
+        "phase": (values["phase"] + math.pi) % (2 * math.pi),
+    }
 
 
 def _per_impact(orbits: pa.Table) -> tuple[dict[str, np.ndarray], np.ndarray]:

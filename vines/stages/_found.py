@@ -188,7 +188,8 @@ def _pictures(results: dict[str, Result]) -> Iterable[Path]:
 def _next(pipeline: str, results: dict[str, Result]) -> Iterable[tuple[str, str]]:
     logged = [stage for stage, result in results.items() if result.logs]
     if logged:
-        yield f"vines view {pipeline}.{logged[0]}", "see a run in the Rerun viewer"
+        several = f" (one of {len(logged)}, also {logged[1]})" if logged[1:] else ""
+        yield f"vines view {pipeline}.{logged[0]}", f"see a run in the Rerun viewer{several}"
     if any("points" in result.tables for result in results.values()):
         yield 'vines query "select A, name, reduction from points order by A"', "ask the tables in SQL"
     if any("checks" in result.tables for result in results.values()):

@@ -20,6 +20,7 @@ __all__ = [
     "AtlasOptions",
     "BasinsOptions",
     "BranchOptions",
+    "Cell",
     "CheckOptions",
     "CurveOptions",
     "FigureOptions",
@@ -162,19 +163,45 @@ class BasinsOptions(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     patience: int = 4000
 
 
+class Cell(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """A panel of a sheet: what it shows of which of the needed stages.
+
+    Of runs it shows the two ends of the cavity with the ball (`ends`) or gap and relative velocity (`gap`) over
+    `periods` forcing periods, or the phase plane of all of them. Of sweeps and branches that vary one parameter it
+    shows a quantity, or the moduli of the multipliers of the branch that `families` names.
+
+    `families` are the labels of branches, such as ``1:1 symmetric``, all by default. `marks` are the types of
+    bifurcations that are marked, each with what is written beside it; all by default. `opacity` is that of simulated
+    impacts, where they repeat they add up to solid. `window` and `y` are the parts of the axes that are shown.
+    """
+
+    show: Literal["ends", "gap", "phase_plane", "multipliers", "w_dot", "dt", "x1", "phase"]
+    of: tuple[str, ...]
+    title: str = ""
+    periods: float = 3.0
+    families: tuple[str, ...] = ()
+    marks: dict[str, str] = {}
+    opacity: float | None = None
+    window: tuple[float, float] | None = None
+    y: tuple[float, float] | None = None
+
+
 class FigureOptions(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """A picture of the needed stages; `panels` are the quantities shown, by default those of the plot.
 
     `window` is the part of the varied parameter that is shown; with `mirror` the mirror images of asymmetric orbits are
-    drawn too.
+    drawn too. A sheet has `cells` of several kinds in `columns`, in rows of the `height` given in inches.
     """
 
-    plot: Literal["bifurcation", "reduced", "multipliers", "chart", "basins"]
+    plot: Literal["bifurcation", "reduced", "multipliers", "chart", "basins", "sheet"]
     panels: tuple[str, ...] = ()
     title: str = ""
     width: float = 7.0
     window: tuple[float, float] | None = None
     mirror: bool = False
+    cells: tuple[Cell, ...] = ()
+    columns: int = 1
+    height: float = 2.3
 
 
 class CheckOptions(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -293,6 +320,7 @@ def register_kinds() -> None:
             tables=("points", "impacts"),
             parameters=PARAMETERS,
             vary="grid",
+            carry=True,
             logs=True,
             check=_check_simulation,
         )

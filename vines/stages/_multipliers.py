@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -16,7 +16,7 @@ from vines.stages._diagram import family_label, family_of, listed
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-__all__ = ["multipliers"]
+__all__ = ["multiplier_lines", "multipliers"]
 
 
 def multipliers(inputs: Mapping[str, Input], options: Any) -> Figure:
@@ -28,19 +28,29 @@ def multipliers(inputs: Mapping[str, Input], options: Any) -> Figure:
         If there is no branch of that label.
     """
     stages = [stage for stage in inputs.values() if "branches" in stage.tables]
-    found = [branch for stage in stages for branch in _branches(stage)]
-    labels = list(dict.fromkeys(branch.label for branch in found))
-    for panel in options.panels:
-        if panel not in labels:
-            raise DeclarationError(f"no branch {panel!r} to show multipliers of: {nearest(panel, labels)}")
-    chosen = [next(b for b in found if b.label == panel) for panel in options.panels] or found
     return multiplier_figure(
         stages[0].axes[0],
-        chosen,
+        multiplier_lines(stages, options.panels),
         caption=options.title or listed(stages[0].params),
         width=options.width,
         window=options.window,
     )
+
+
+def multiplier_lines(stages: Iterable[Input], labels: Sequence[str]) -> list[MultiplierLines]:
+    """Return the branches of these labels, or all; the first where several have the same.
+
+    Raises
+    ------
+    DeclarationError
+        If there is no branch of a label.
+    """
+    found = [branch for stage in stages for branch in _branches(stage)]
+    known = list(dict.fromkeys(branch.label for branch in found))
+    for label in labels:
+        if label not in known:
+            raise DeclarationError(f"no branch {label!r} to show multipliers of: {nearest(label, known)}")
+    return [next(b for b in found if b.label == label) for label in labels] or found
 
 
 def _branches(stage: Input) -> list[MultiplierLines]:

@@ -80,6 +80,10 @@ def _figure(stage: Stage, pipeline: Pipeline) -> None:
                 raise _refuse(stage, pipeline, f"unknown panel {panel!r}: {nearest(panel, known)}")
     if options.plot == "chart":
         _chart(stage, pipeline)
+    if options.plot == "sheet":
+        _sheet(stage, pipeline)
+    elif options.cells:
+        raise _refuse(stage, pipeline, f"cells belong to plot = 'sheet', this one is {options.plot!r}")
     if options.plot not in ("bifurcation", "multipliers"):
         return
     axes = {name: tuple(axis.name for axis in pipeline.stages[name].axes) for name in stage.needs}
@@ -90,6 +94,31 @@ def _figure(stage: Stage, pipeline: Pipeline) -> None:
         )
     if options.plot == "multipliers" and not any(pipeline.stages[name].kind.name == "branch" for name in stage.needs):
         raise _refuse(stage, pipeline, "multipliers are those of branches; name a stage of kind 'branch' in needs")
+
+
+def _sheet(stage: Stage, pipeline: Pipeline) -> None:
+    from vines.figures import RUN_PANELS
+
+    options: Any = stage.options
+    if not options.cells or options.columns < 1 or options.height <= 0:
+        raise _refuse(stage, pipeline, "a sheet has [[cells]], columns >= 1 and height > 0 inch")
+    for number, cell in enumerate(options.cells, 1):
+        where = f"cell {number} ({cell.show})"
+        if not cell.of:
+            raise _refuse(stage, pipeline, f"{where} shows nothing; name stages, of = [...]")
+        for name in cell.of:
+            if name not in stage.needs:
+                raise _refuse(stage, pipeline, f"{where}: {name!r} is not needed: {nearest(name, stage.needs)}")
+        shown = [pipeline.stages[name] for name in cell.of]
+        kinds = {one.kind.name for one in shown}
+        if cell.show in RUN_PANELS:
+            if kinds != {"trajectory"} or (cell.show != "phase_plane" and len(shown) > 1):
+                raise _refuse(stage, pipeline, f"{where} shows one stage of kind 'trajectory', a phase plane also more")
+            continue
+        if not kinds <= {"sweep", "branch"} or len({tuple(axis.name for axis in one.axes) for one in shown}) != 1:
+            raise _refuse(stage, pipeline, f"{where} shows sweeps and branches that vary one and the same parameter")
+        if cell.show == "multipliers" and (kinds != {"branch"} or len(cell.families) != 1):
+            raise _refuse(stage, pipeline, f"{where} shows one family of stages of kind 'branch'; name it in families")
 
 
 def _chart(stage: Stage, pipeline: Pipeline) -> None:

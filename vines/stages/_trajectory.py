@@ -23,12 +23,17 @@ CLASSIFY_OVER = 64
 
 
 def compute(job: Job) -> Batch:
-    """Run every point: `settle` periods unrecorded, `record` periods into a log, and on to name the attractor."""
+    """Run every point: `settle` periods unrecorded, `record` periods into a log, and on to name the attractor.
+
+    Carried points start where the one before them, or the point of a sweep that starts the chain, ended.
+    """
     options: Any = job.options
     rows: list[dict[str, Any]] = []
     impacts: list[dict[str, Any]] = []
     logs: dict[str, str] = {}
     start = {name: getattr(options.start, name) for name in STATE[:4]} | {"phase": 0.0}
+    if job.start is not None:
+        start = {name: float(job.start[f"end_{name}"]) for name in STATE}
     for point in job.points:
         p = Params(**point.params)
         state = start
@@ -38,7 +43,7 @@ def compute(job: Job) -> Batch:
         wait = 0 if options.settle else CLASSIFY_AFTER
         attractor = settle(p, **_initial(run.final), settle=wait, record=CLASSIFY_OVER)
         before = options.settle + options.record
-        rows.append(point_row(point.id, attractor, start, carry=None, before=before, record=CLASSIFY_OVER))
+        rows.append(point_row(point.id, attractor, start, carry=job.carry, before=before, record=CLASSIFY_OVER))
         impacts.append(impact_rows(point.id, p, representative(attractor, CLASSIFY_OVER)))
         logs[point.id] = f"{point.id}.mcap"
         write_run(
@@ -52,6 +57,8 @@ def compute(job: Job) -> Batch:
             attractor=attractor.name or attractor.regime,
             bare=options.bare,
         )
+        if job.carry is not None:
+            start = {name: attractor.final[name] for name in STATE}
     columns = {name: np.concatenate([part[name] for part in impacts]) for name in impacts[0]}
     return Batch(tables={"points": rows, "impacts": pa.table(columns)}, logs=logs)
 

@@ -1,0 +1,275 @@
+"""One panel of a bifurcation diagram: simulated impacts as dots, branches of periodic orbits as lines."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import numpy.typing as npt
+
+from vines.figures._legend import legend_entries
+from vines.figures._marks import DOTTED, mark_style
+from vines.figures._names import NAMES, PANELS, SYMBOLS
+from vines.figures._style import COLOURS, FAMILIES
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+    from vines.figures._legend import Entry
+
+__all__ = ["BranchLine", "DiagramPanel", "ImpactDots", "Marker", "runs"]
+
+Floats = npt.NDArray[np.float64]
+
+_MANY = 4_000
+"""Dots beyond which they are small, translucent and drawn as pixels, so that chaos does not cover what is regular."""
+
+_FEW = 8
+"""Bifurcations beyond which their symbols are small."""
+
+_RARE = 0.03
+"""Share of the dots, at either end, that may lie beyond an axis."""
+
+
+@dataclass(frozen=True)
+class ImpactDots:
+    """Simulated impacts.
+
+    Attributes
+    ----------
+    x : (n,) array
+        Value of the varied parameter.
+    side : (n,) array
+        +1 on the left end, -1 on the right.
+    values : dict of str to (n,) array
+        What the panels show, by the names of :data:`PANELS`; ``dt`` in forcing periods.
+    label : str
+        For the legend.
+    """
+
+    x: Floats
+    side: npt.NDArray[np.integer[Any]]
+    values: dict[str, Floats]
+    label: str = "simulation"
+
+
+@dataclass(frozen=True)
+class BranchLine:
+    """One impact of the orbits along a branch, as a line.
+
+    Attributes
+    ----------
+    x : (n,) array
+        Value of the varied parameter along the branch.
+    side : int
+        +1 on the left end, -1 on the right.
+    stable : (n,) array of bool
+        Solid where true, dotted where not.
+    values : dict of str to (n,) array
+        As in :class:`ImpactDots`.
+    label : str
+        For the legend, such as ``"1:1 symmetric"``.
+    family : str
+        One of :data:`FAMILIES`, for the colours.
+    image : bool
+        Whether it is the mirror image of another line, whose flight times it shares.
+    """
+
+    x: Floats
+    side: int
+    stable: npt.NDArray[np.bool_]
+    values: dict[str, Floats]
+    label: str
+    family: str = "symmetric"
+    image: bool = False
+
+
+@dataclass(frozen=True)
+class Marker:
+    """A bifurcation on a branch: its type, its place, and what the panels show there (one value an impact)."""
+
+    type: str
+    x: float
+    values: dict[str, Floats]
+
+
+@dataclass(frozen=True)
+class DiagramPanel:
+    """One quantity over the varied parameter.
+
+    Attributes
+    ----------
+    axis : str
+        The varied parameter.
+    quantity : str
+        One of :data:`PANELS`.
+    dots, lines, markers : sequences
+        What is drawn.
+    window, y : (float, float), optional
+        The parts of the two axes that are shown.
+    title : str
+        Above the panel.
+    opacity : float, optional
+        Of the dots, which then have the full colours of the two ends; where they repeat they add up to solid.
+    names : dict of str to str
+        What is written beside the bifurcations of a type, such as ``{"symmetry_breaking": "$B_1$"}``.
+    """
+
+    axis: str
+    quantity: str
+    dots: Sequence[ImpactDots]
+    lines: Sequence[BranchLine]
+    markers: Sequence[Marker]
+    window: tuple[float, float] | None = None
+    y: tuple[float, float] | None = None
+    title: str = ""
+    opacity: float | None = None
+    names: Mapping[str, str] = field(default_factory=dict)
+
+    def draw(self, ax: Axes) -> None:
+        """Draw it."""
+        dots, lines, markers = self._shown()
+        self._dots(ax, dots)
+        self._lines(ax, lines)
+        self._markers(ax, markers)
+        ax.set_ylabel(PANELS[self.quantity])
+        ax.set_xlabel(f"{NAMES.get(self.axis, self.axis)}  ${SYMBOLS.get(self.axis, self.axis)}$")
+        _widen(ax)
+        _spare_outliers(ax, self.quantity, dots, lines)
+        everything = [group.x for group in (*dots, *lines) if len(group.x)]
+        if self.window is not None:
+            ax.set_xlim(*self.window)
+        elif everything:
+            low, high = min(float(x.min()) for x in everything), max(float(x.max()) for x in everything)
+            ax.set_xlim(low - 0.01 * (high - low), high + 0.01 * (high - low))
+        if self.y is not None:
+            ax.set_ylim(*self.y)
+        if self.title:
+            ax.set_title(self.title, fontsize=8.5)
+
+    def entries(self) -> list[Entry]:
+        """Return what the legend says of it."""
+        dots, lines, markers = self._shown()
+        return legend_entries(dots, lines, markers, names=self.names, full=self.opacity is not None)
+
+    def _shown(self) -> tuple[Sequence[ImpactDots], Sequence[BranchLine], Sequence[Marker]]:
+        if self.window is None:
+            return self.dots, self.lines, self.markers
+        return _within(self.window, self.dots, self.lines, self.markers)
+
+    def _dots(self, ax: Axes, dots: Sequence[ImpactDots]) -> None:
+        total = sum(len(group.x) for group in dots)
+        for group in dots:
+            many = total > _MANY
+            for side, name in ((1, "L"), (-1, "R")):
+                mine = group.side == side
+                ax.plot(
+                    group.x[mine],
+                    group.values[self.quantity][mine],
+                    linestyle="none",
+                    marker=".",
+                    markersize=2.8 if many else 4.2,
+                    markeredgewidth=0,
+                    alpha=self.opacity or (0.6 if many else 1.0),
+                    color=COLOURS[name if self.opacity is not None else f"{name} light"],
+                    rasterized=many,
+                    zorder=1,
+                )
+
+    def _lines(self, ax: Axes, lines: Sequence[BranchLine]) -> None:
+        for line in lines:
+            if line.image and self.quantity == "dt":
+                continue
+            # Where left and right coincide, as the flight times of a symmetric orbit do, neither colour would be true.
+            twin = line.family == "symmetric" and any(
+                o is not line and o.side != line.side and _coincide(o, line, self.quantity) for o in lines
+            )
+            left, right = FAMILIES[line.family]
+            colour = COLOURS["ink"] if twin else left if line.side == 1 else right
+            for start, stop, stable in runs(line.stable):
+                # One point is shared with the next run, so that the line has no gap where stability changes.
+                part = slice(start, min(stop + 1, len(line.x)))
+                ax.plot(
+                    line.x[part],
+                    line.values[self.quantity][part],
+                    color=colour,
+                    linestyle="-" if stable else DOTTED,
+                    linewidth=1.3 if stable else 1.2,
+                    zorder=2.5 if stable else 2,
+                )
+
+    def _markers(self, ax: Axes, markers: Sequence[Marker]) -> None:
+        size = 5.0 if len(markers) <= _FEW else 3.8
+        for marker in markers:
+            values = np.unique(np.round(marker.values[self.quantity], 12))
+            ax.plot(np.full(len(values), marker.x), values, linestyle="none", zorder=3, **mark_style(marker.type, size))
+            if marker.type in self.names:
+                place = (marker.x, float(values.max()))
+                text = self.names[marker.type]
+                ax.annotate(text, place, (-4, 6), textcoords="offset points", fontsize=9, ha="right", zorder=4)
+
+
+def _within(
+    window: tuple[float, float], dots: Sequence[ImpactDots], lines: Sequence[BranchLine], markers: Sequence[Marker]
+) -> tuple[list[ImpactDots], list[BranchLine], list[Marker]]:
+    """Leave out what the window does not show, so that the other axis is scaled to the rest."""
+    low, high = min(window), max(window)
+
+    def cut(group: Any, keep: npt.NDArray[Any], *names: str) -> Any:
+        columns = {name: getattr(group, name)[keep] for name in ("x", *names)}
+        return replace(group, **columns, values={q: v[keep] for q, v in group.values.items()})
+
+    shown = [cut(one, (low <= one.x) & (one.x <= high), "side") for one in dots]
+    parts = [
+        # One point more at either end, so that a line reaches the border.
+        cut(line, np.arange(max(start - 1, 0), min(stop + 1, len(line.x))), "stable")
+        for line in lines
+        for start, stop, inside in runs((low <= line.x) & (line.x <= high))
+        if inside
+    ]
+    return shown, parts, [marker for marker in markers if low <= marker.x <= high]
+
+
+def _widen(ax: Axes) -> None:
+    """Keep an axis from magnifying rounding noise into structure."""
+    ax.ticklabel_format(axis="y", useOffset=False)
+    low, high = ax.get_ylim()
+    middle, least = (low + high) / 2, 1e-6 * max(abs(low), abs(high), 1e-6)
+    if high - low < least:
+        ax.set_ylim(middle - least / 2, middle + least / 2)
+
+
+def _spare_outliers(ax: Axes, panel: str, dots: Sequence[ImpactDots], lines: Sequence[BranchLine]) -> None:
+    """Let lines and all but the rarest dots fill an axis: one long flight would flatten everything else."""
+    groups = [group.values[panel] for group in dots if len(group.x)]
+    branches = [line.values[panel] for line in lines if len(line.x)]
+    if not groups or not branches:
+        return
+    values = np.concatenate(groups)
+    bulk = np.quantile(values, [_RARE, 1 - _RARE])
+    low, high = (float(end(np.append(np.concatenate(branches), bulk))) for end in (np.min, np.max))
+    if values.min() < low - (high - low) or values.max() > high + (high - low):
+        ax.set_ylim(low - 0.05 * (high - low), high + 0.05 * (high - low))
+
+
+def _coincide(one: BranchLine, other: BranchLine, panel: str) -> bool:
+    a, b = one.values[panel], other.values[panel]
+    return len(a) == len(b) and np.array_equal(one.x, other.x) and np.allclose(a, b, rtol=1e-9, atol=1e-12)
+
+
+def runs(flags: npt.NDArray[np.bool_]) -> list[tuple[int, int, bool]]:
+    """Return the stretches of equal flags as (start, stop, flag).
+
+    Examples
+    --------
+    >>> runs(np.array([True, True, False]))
+    [(0, 2, True), (2, 3, False)]
+    """
+    if not len(flags):
+        return []
+    edges = np.flatnonzero(np.diff(flags.astype(np.int8))) + 1
+    bounds = [0, *edges.tolist(), len(flags)]
+    return [(a, b, bool(flags[a])) for a, b in itertools.pairwise(bounds)]

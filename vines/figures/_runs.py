@@ -1,0 +1,186 @@
+"""Runs of the simulator: displacements, gap and phase plane, as in the paper's Figs 2, 4, 10 and 11."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import numpy.typing as npt
+
+from vines.figures._marks import DOTTED
+from vines.figures._style import COLOURS, FAMILIES
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+    from vines.figures._legend import Entry
+
+__all__ = ["EndsPanel", "GapPanel", "PhasePlanePanel", "RunCurves"]
+
+Floats = npt.NDArray[np.float64]
+
+_LINES = (COLOURS["R"], FAMILIES["asymmetric"][0], FAMILIES["unequal"][1], FAMILIES["unequal"][0])
+"""Colours of runs that share a phase plane; the first two are those of the paper's Fig. 4(b) and (e)."""
+
+_MANY = 40
+"""Impacts beyond which they are not marked one by one."""
+
+
+@dataclass(frozen=True)
+class RunCurves:
+    """A run in dense samples, two at each impact, and its impacts.
+
+    Attributes
+    ----------
+    t : (n,) array
+        Time since the start of the record [forcing periods].
+    x1, x2, w, w_dot : (n,) array
+        Displacements, gap and relative velocity, dimensionless.
+    hit_t : (k,) array
+        Times of the impacts [forcing periods].
+    hit_side : (k,) array of int
+        +1 on the left end, -1 on the right.
+    hit_x2, hit_w_dot : (k,) array
+        Place of the ball, and relative velocity just before.
+    label : str
+        What tells the run from others, such as ``"$A = 0.017$"``.
+    """
+
+    t: Floats
+    x1: Floats
+    x2: Floats
+    w: Floats
+    w_dot: Floats
+    hit_t: Floats
+    hit_side: npt.NDArray[np.integer[Any]]
+    hit_x2: Floats
+    hit_w_dot: Floats
+    label: str = ""
+
+
+@dataclass(frozen=True)
+class EndsPanel:
+    """The two ends of the cavity, x1 - 1 and x1 + 1, and the ball between them, over `periods` forcing periods."""
+
+    run: RunCurves
+    periods: float
+    title: str = ""
+    y: tuple[float, float] | None = None
+
+    def draw(self, ax: Axes) -> None:
+        """Draw it."""
+        run = self.run
+        for shift in (-1, 1):
+            ax.plot(run.t, run.x1 + shift, color=COLOURS["R"], linestyle=DOTTED, linewidth=1.2)
+        ax.plot(run.t, run.x2, color=COLOURS["L"], linewidth=1.1)
+        ax.plot(run.hit_t, run.hit_x2, **_HIT)
+        _along_time(ax, self.periods, r"$x_1 \pm 1,\ x_2$")
+        _frame(ax, self.title, self.y)
+
+    def entries(self) -> list[Entry]:
+        """Return what the legend says of it."""
+        from matplotlib.lines import Line2D
+
+        return [
+            (r"cavity ends $x_1 \pm 1$", (Line2D([], [], color=COLOURS["R"], linestyle=DOTTED, linewidth=1.4),)),
+            ("ball $x_2$", (Line2D([], [], color=COLOURS["L"], linewidth=1.3),)),
+            ("impact", (Line2D([], [], **_HIT),)),
+        ]
+
+
+@dataclass(frozen=True)
+class GapPanel:
+    """Gap w and relative velocity over `periods` forcing periods."""
+
+    run: RunCurves
+    periods: float
+    title: str = ""
+    y: tuple[float, float] | None = None
+
+    def draw(self, ax: Axes) -> None:
+        """Draw it."""
+        for wall in (-1, 1):
+            ax.axhline(wall, color=COLOURS["mark"], linewidth=0.5, alpha=0.6)
+        ax.plot(self.run.t, self.run.w, color=COLOURS["R"], linewidth=1.1)
+        ax.plot(self.run.t, self.run.w_dot, color=COLOURS["L"], linewidth=1.1)
+        _along_time(ax, self.periods, r"$w,\ \dot w$")
+        _frame(ax, self.title, self.y)
+
+    def entries(self) -> list[Entry]:
+        """Return what the legend says of it."""
+        from matplotlib.lines import Line2D
+
+        return [
+            (r"gap $w$", (Line2D([], [], color=COLOURS["R"], linewidth=1.3),)),
+            (r"relative velocity $\dot w$", (Line2D([], [], color=COLOURS["L"], linewidth=1.3),)),
+        ]
+
+
+@dataclass(frozen=True)
+class PhasePlanePanel:
+    """The (w, w') plane of one run, or of several in colours of their own; an impact is a vertical line at w = ±1."""
+
+    runs: Sequence[RunCurves]
+    title: str = ""
+    y: tuple[float, float] | None = None
+
+    def draw(self, ax: Axes) -> None:
+        """Draw it."""
+        for wall in (-1, 1):
+            ax.axvline(wall, color=COLOURS["mark"], linewidth=0.5, alpha=0.6)
+        for run, colour in zip(self.runs, self._colours(), strict=True):
+            many = len(run.hit_t) > _MANY
+            ax.plot(run.w, run.w_dot, color=colour, linewidth=0.6 if many else 1.1, label=run.label)
+            if len(self.runs) == 1:
+                size = 2.0 if many else 4.5
+                for side, name in ((1, "L"), (-1, "R")):
+                    mine = run.hit_side == side
+                    dot = {"marker": ".", "markersize": 2 * size, "markeredgewidth": 0, "linestyle": "none"}
+                    ax.plot(run.hit_side[mine], run.hit_w_dot[mine], color=COLOURS[name], zorder=3, **dot)
+        if len(self.runs) > 1:
+            # In the panel, since others of the sheet may have the same colours for other runs.
+            ax.legend(loc="best", handlelength=1.6, borderaxespad=2.4)
+        ax.set_xlim(-1.15, 1.15)
+        ax.set_xlabel("gap  $w$")
+        ax.set_ylabel(r"relative velocity  $\dot w$")
+        _frame(ax, self.title, self.y)
+
+    def entries(self) -> list[Entry]:
+        """Return what the legend says of it."""
+        from matplotlib.lines import Line2D
+
+        if len(self.runs) > 1:
+            return []
+        dot: dict[str, Any] = {"marker": ".", "markersize": 8, "markeredgewidth": 0, "linestyle": "none"}
+        return [
+            (rf"$\dot w$ before an impact on {side}", (Line2D([], [], color=COLOURS[side], **dot),)) for side in "LR"
+        ]
+
+    def _colours(self) -> Sequence[str]:
+        return [COLOURS["ink"]] if len(self.runs) == 1 else _LINES[: len(self.runs)]
+
+
+_HIT: dict[str, Any] = {
+    "linestyle": "none",
+    "marker": "o",
+    "markersize": 2.6,
+    "markerfacecolor": "white",
+    "markeredgecolor": COLOURS["ink"],
+    "markeredgewidth": 0.7,
+    "zorder": 3,
+}
+
+
+def _along_time(ax: Axes, periods: float, label: str) -> None:
+    ax.set_xlim(0, periods)
+    ax.set_xlabel("time  $t/T$")
+    ax.set_ylabel(label)
+
+
+def _frame(ax: Axes, title: str, y: tuple[float, float] | None) -> None:
+    if title:
+        ax.set_title(title, fontsize=8.5)
+    if y is not None:
+        ax.set_ylim(*y)
