@@ -1,10 +1,11 @@
-"""Sheets: the paper's Figs 2 and 4 on small grids, runs that start where a sweep had settled, and bad declarations."""
+"""Sheets: six figures of the paper on small grids, runs that start where a sweep had settled, and bad declarations."""
 
 import numpy as np
 import pytest
 
 import vines
 from vines.errors import DeclarationError
+from vines.figures._style import FAMILIES
 from vines.logs import read
 from vines.pipeline import Input
 from vines.stages import find_logs, load_pipeline, run
@@ -84,6 +85,73 @@ def test_fig4_panels_lines_and_bifurcations(root):
     # The impact speeds of both ends are the same, so only flight times and places show that symmetry is broken.
     broken = drawn(root, "fig4", "broken_symmetry").axes
     assert [ax.get_ylabel().split("  ")[0] for ax in broken] == ["time to next impact", "displacement at impact"]
+
+
+def test_fig5_shows_regular_motion_solid_and_chaos_pale(root):
+    coarse = {"from": 0.002, "to": 0.065, "step": 0.001}
+    sweeps = ["up", "down", "from_rest", "from_swinging"]
+    small = {f"stages.{name}.vary.A": coarse for name in sweeps} | {f"stages.{name}.settle": 100 for name in sweeps}
+    branches = ["one_one", "two_one", "one_two"]
+    small |= {f"stages.{name}.points": 40 for name in branches}
+    run("fig5", stages=[*sweeps, *branches], overrides=small)
+    (ax,) = drawn(root, "fig5", "figure").axes
+    low, high = ax.get_xlim()
+    assert low <= 0.002 < 0.065 <= high
+    assert not ax.get_title(loc="left")
+    dots = ax.collections
+    assert len(dots) == 2 * len(sweeps)
+    places = dots[0].get_offsets()[:, 0]
+    regular = dots[0].get_alpha()[(places > 0.0105) & (places < 0.0195)]
+    chaos = dots[0].get_alpha()[(places > 0.04) & (places < 0.0415)]
+    assert len(regular)
+    assert len(chaos)
+    assert regular.min() > 0.95 > 0.1 > chaos.max()
+    colours = {line.get_color() for line in ax.lines}
+    assert {colour for name in ("symmetric", "asymmetric", "unequal") for colour in FAMILIES[name]} <= colours
+
+
+def test_fig6_has_two_panels_against_mu_and_one_against_omega(root):
+    sweeps = {f"stages.mass_{way}.vary.mu": {"from": 0.38, "to": 0.82, "step": 0.02} for way in ("up", "down")}
+    sweeps |= {f"stages.frequency_{way}.vary.Omega": {"from": 1.15, "to": 1.85, "step": 0.05} for way in ("up", "down")}
+    small = {f"{key.split('.vary')[0]}.settle": 100 for key in sweeps}
+    branches = [f"mass_{word}" for word in ("one_one", "two_one", "one_two")] + ["frequency_one_one"]
+    small |= {f"stages.{name}.points": 30 for name in branches} | sweeps
+    run("fig6", stages=[key.split(".")[1] for key in small if key.endswith(("settle", "points"))], overrides=small)
+    axes = drawn(root, "fig6", "figure").axes
+    assert [ax.get_xlabel() for ax in axes] == [
+        r"mass ratio  $\mu$",
+        r"mass ratio  $\mu$",
+        r"frequency ratio  $\Omega$",
+    ]
+    assert [ax.get_xlim() for ax in axes] == [(0.4, 0.8), (0.66, 0.8), (1.2, 1.8)]
+    drawn_colours = [{line.get_color() for line in ax.lines} for ax in axes]
+    assert set(FAMILIES["unequal"]) <= drawn_colours[0]
+    assert not set(FAMILIES["unequal"]) & (drawn_colours[1] | drawn_colours[2])
+    assert set(FAMILIES["asymmetric"]) <= drawn_colours[1] & drawn_colours[2]
+
+
+def test_fig10_has_a_row_a_mass_ratio(root):
+    runs = {"peak_run": "1:1", "beyond_run": "1:1", "two_one_run": "2:1", "complex_run": "chaotic"}
+    run("fig10", stages=list(runs), overrides={f"stages.{name}.settle": 400 for name in runs})
+    assert {name: read(*find_logs(f"fig10.{name}")).attractor for name in runs} == runs
+    axes = drawn(root, "fig10", "figure").axes
+    assert [ax.get_title(loc="left") for ax in axes] == ["(a)", "", "(b)", "", "(c)", "", "(d)", ""]
+    assert [ax.get_title() for ax in axes[::2]] == [rf"$\mu = {mu}$" for mu in (0.4, 0.45, 0.24, 0.6)]
+    assert {ax.get_xlabel() for ax in axes[-2:]} == {"gap  $w$", "time  $t/T$"}
+
+
+def test_fig11_has_two_attractors_at_the_same_parameters(root):
+    small = {"stages.up.settle": 300, "stages.down.settle": 100}
+    small |= {f"stages.{name}.settle": 100 for name in ("one_one_run", "complex_run")}
+    run("fig11", stages=["figure"], overrides=small)
+    assert len(list(root.glob("data/results/*/picture.svg"))) == 1
+    one, other = (read(*find_logs(f"fig11.{name}")) for name in ("one_one_run", "complex_run"))
+    assert one.parameters == other.parameters
+    assert one.parameters["Omega"] == 1.17
+    sizes = [np.abs(log.states["x1"].to_numpy()).max() for log in (one, other)]
+    assert sizes[0] < 0.2 < 0.4 < sizes[1]
+    axes = drawn(root, "fig11", "figure").axes
+    assert [ax.get_title(loc="left") for ax in axes] == ["(a)", "", "(b)", ""]
 
 
 CARRIED = """

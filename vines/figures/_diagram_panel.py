@@ -25,7 +25,10 @@ __all__ = ["BranchLine", "DiagramPanel", "ImpactDots", "Marker", "runs"]
 Floats = npt.NDArray[np.float64]
 
 _MANY = 4_000
-"""Dots beyond which they are small, translucent and drawn as pixels, so that chaos does not cover what is regular."""
+"""Dots beyond which they are drawn as pixels, and small and translucent where they are not regular, as in chaos."""
+
+_REGULAR = 4
+"""Returns while a point was observed from which a dot is regular."""
 
 _FEW = 8
 """Bifurcations beyond which their symbols are small."""
@@ -48,12 +51,15 @@ class ImpactDots:
         What the panels show, by the names of :data:`PANELS`; ``dt`` in forcing periods.
     label : str
         For the legend.
+    repeats : (n,) array, optional
+        How often each dot came back while a point was observed; once if not given.
     """
 
     x: Floats
     side: npt.NDArray[np.integer[Any]]
     values: dict[str, Floats]
     label: str = "simulation"
+    repeats: Floats | None = None
 
 
 @dataclass(frozen=True)
@@ -113,9 +119,12 @@ class DiagramPanel:
     title : str
         Above the panel.
     opacity : float, optional
-        Of the dots, which then have the full colours of the two ends; where they repeat they add up to solid.
+        Of a dot that came once. Dots then have the full colours of the two ends, and are the more solid the more often
+        they came back.
     names : dict of str to str
         What is written beside the bifurcations of a type, such as ``{"symmetry_breaking": "$B_1$"}``.
+    places : bool
+        Whether the legend gives the places of all bifurcations, or of those with names only.
     """
 
     axis: str
@@ -128,6 +137,7 @@ class DiagramPanel:
     title: str = ""
     opacity: float | None = None
     names: Mapping[str, str] = field(default_factory=dict)
+    places: bool = True
 
     def draw(self, ax: Axes) -> None:
         """Draw it."""
@@ -153,7 +163,7 @@ class DiagramPanel:
     def entries(self) -> list[Entry]:
         """Return what the legend says of it."""
         dots, lines, markers = self._shown()
-        return legend_entries(dots, lines, markers, names=self.names, full=self.opacity is not None)
+        return legend_entries(dots, lines, markers, names=self.names, places=self.places, full=self.opacity is not None)
 
     def _shown(self) -> tuple[Sequence[ImpactDots], Sequence[BranchLine], Sequence[Marker]]:
         if self.window is None:
@@ -166,18 +176,26 @@ class DiagramPanel:
             many = total > _MANY
             for side, name in ((1, "L"), (-1, "R")):
                 mine = group.side == side
-                ax.plot(
-                    group.x[mine],
-                    group.values[self.quantity][mine],
-                    linestyle="none",
-                    marker=".",
-                    markersize=2.8 if many else 4.2,
-                    markeredgewidth=0,
-                    alpha=self.opacity or (0.6 if many else 1.0),
-                    color=COLOURS[name if self.opacity is not None else f"{name} light"],
-                    rasterized=many,
-                    zorder=1,
-                )
+                x, values = group.x[mine], group.values[self.quantity][mine]
+                times = np.ones(x.shape) if group.repeats is None else group.repeats[mine]
+                if self.opacity is not None:
+                    solid: Any = 1 - (1 - self.opacity) ** times
+                    ax.scatter(x, values, s=3.5, c=COLOURS[name], alpha=solid, linewidths=0, rasterized=many, zorder=1)
+                    continue
+                regular = (times >= _REGULAR) | (not many)
+                for chosen, size, alpha in ((~regular, 2.8, 0.6), (regular, 4.2, 1.0)):
+                    ax.plot(
+                        x[chosen],
+                        values[chosen],
+                        linestyle="none",
+                        marker=".",
+                        markersize=size,
+                        markeredgewidth=0,
+                        alpha=alpha,
+                        color=COLOURS[f"{name} light"],
+                        rasterized=many,
+                        zorder=1,
+                    )
 
     def _lines(self, ax: Axes, lines: Sequence[BranchLine]) -> None:
         for line in lines:
@@ -219,10 +237,10 @@ def _within(
     low, high = min(window), max(window)
 
     def cut(group: Any, keep: npt.NDArray[Any], *names: str) -> Any:
-        columns = {name: getattr(group, name)[keep] for name in ("x", *names)}
+        columns = {name: getattr(group, name)[keep] for name in ("x", *names) if getattr(group, name) is not None}
         return replace(group, **columns, values={q: v[keep] for q, v in group.values.items()})
 
-    shown = [cut(one, (low <= one.x) & (one.x <= high), "side") for one in dots]
+    shown = [cut(one, (low <= one.x) & (one.x <= high), "side", "repeats") for one in dots]
     parts = [
         # One point more at either end, so that a line reaches the border.
         cut(line, np.arange(max(start - 1, 0), min(stop + 1, len(line.x))), "stable")

@@ -28,6 +28,7 @@ def legend_entries(
     markers: Sequence[Marker],
     *,
     names: Mapping[str, str] | None = None,
+    places: bool = True,
     full: bool = False,
 ) -> list[Entry]:
     """Return the entries: left end, then right end.
@@ -38,6 +39,8 @@ def legend_entries(
         What is drawn.
     names : mapping of str to str, optional
         What is written beside the bifurcations of a type.
+    places : bool
+        Whether the places of all bifurcations are given, or of those with names only.
     full : bool
         Whether dots have the colours of the ends in full.
     """
@@ -58,18 +61,18 @@ def legend_entries(
     for word, style, there in styles:
         if there:
             entries.append((word, (Line2D([], [], color=COLOURS["ink"], linewidth=1.4, linestyle=style),)))
-    return entries + mark_entries([(marker.type, marker.x) for marker in markers], names or {})
+    return entries + mark_entries([(marker.type, marker.x) for marker in markers], names or {}, places=places)
 
 
-def mark_entries(marks: Sequence[tuple[str, float]], names: Mapping[str, str]) -> list[Entry]:
-    """Return an entry for each type of bifurcation with its places, given as (type, place)."""
+def mark_entries(marks: Sequence[tuple[str, float]], names: Mapping[str, str], *, places: bool = True) -> list[Entry]:
+    """Return an entry for each type of bifurcation, given as (type, place)."""
     from matplotlib.lines import Line2D
 
     entries: list[Entry] = []
     for kind in dict.fromkeys(kind for kind, _ in marks):
         _, word = MARKS.get(kind, ("x", kind))
-        places = list(dict.fromkeys(f"{place:.5g}" for each, place in marks if each == kind))
-        listed = f" ({', '.join(places)})" if len(places) <= _LISTED else ""
+        where = list(dict.fromkeys(f"{place:.5g}" for each, place in marks if each == kind))
+        listed = f" ({', '.join(where)})" if len(where) <= _LISTED and (places or kind in names) else ""
         name = f"{names[kind]}: " if kind in names else ""
         entries.append((f"{name}{word}{listed}", (Line2D([], [], linestyle="none", **mark_style(kind)),)))
     return entries

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any, Protocol
+from string import ascii_lowercase
+from typing import TYPE_CHECKING, Any, Literal, Protocol
 
 from vines.figures._legend import add_legend
 from vines.figures._style import RC, new_figure
@@ -30,7 +31,13 @@ class Panel(Protocol):
 
 
 def sheet_figure(
-    panels: Sequence[Panel], *, columns: int = 1, caption: str = "", width: float = 7.0, height: float = 2.4
+    panels: Sequence[Panel],
+    *,
+    columns: int = 1,
+    letters: Literal["panels", "rows"] = "panels",
+    caption: str = "",
+    width: float = 7.0,
+    height: float = 2.4,
 ) -> Figure:
     """Draw panels on a grid.
 
@@ -40,6 +47,8 @@ def sheet_figure(
         Row by row; letters follow this order.
     columns : int
         Panels in a row.
+    letters : {"panels", "rows"}
+        What is lettered.
     caption : str
         Written above everything.
     width : float
@@ -54,11 +63,12 @@ def sheet_figure(
         figure = new_figure(width, 0.85 + height * rows)
         grid = figure.subplots(rows, columns, squeeze=False)
         axes = grid.ravel()
-        for letter, panel, ax in zip("abcdefghijklmnopqrstuvwxyz", panels, axes, strict=False):
+        for panel, ax in zip(panels, axes, strict=False):
             panel.draw(ax)
             ax.locator_params(axis="x", nbins=max(4, 11 - 2 * columns))
-            title = ax.get_title()
-            ax.set_title(title, fontsize=8.5, loc="center")
+        lettered = axes[: len(panels)] if letters == "panels" else grid[:, 0]
+        lettered = lettered if len(lettered) > 1 else ()
+        for letter, ax in zip(ascii_lowercase, lettered, strict=False):
             ax.set_title(f"({letter})", fontsize=9, fontweight="bold", loc="left")
         for ax in axes[len(panels) :]:
             ax.set_axis_off()

@@ -91,7 +91,18 @@ def _dots(stage: Input, axis: str, shared: dict[str, float]) -> ImpactDots:
             "phase": column("phase"),
         },
         label=_label("simulation", stage, shared),
+        repeats=_repeats(impacts),
     )
+
+
+def _repeats(impacts: pa.Table) -> np.ndarray:
+    """Return how often each impact came back while its point was observed: of a periodic one a repetition is kept."""
+    if not impacts.num_rows:
+        return np.ones(0)
+    point = impacts["point_id"].combine_chunks().dictionary_encode().indices.to_numpy()
+    flight = _numpy(impacts)("dt_next") * _numpy(impacts)("Omega")
+    kept = np.bincount(point, weights=flight)
+    return (kept.max() / kept)[point]
 
 
 def _lines(

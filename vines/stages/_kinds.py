@@ -190,7 +190,8 @@ class FigureOptions(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """A picture of the needed stages; `panels` are the quantities shown, by default those of the plot.
 
     `window` is the part of the varied parameter that is shown; with `mirror` the mirror images of asymmetric orbits are
-    drawn too. A sheet has `cells` of several kinds in `columns`, in rows of the `height` given in inches.
+    drawn too. A sheet has `cells` of several kinds in `columns`, in rows of the `height` given in inches,
+    with `letters` on each panel or each row.
     """
 
     plot: Literal["bifurcation", "reduced", "multipliers", "chart", "basins", "sheet"]
@@ -201,6 +202,7 @@ class FigureOptions(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     mirror: bool = False
     cells: tuple[Cell, ...] = ()
     columns: int = 1
+    letters: Literal["panels", "rows"] = "panels"
     height: float = 2.3
 
 

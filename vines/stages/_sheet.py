@@ -39,6 +39,7 @@ def sheet(inputs: Mapping[str, Input], options: Any) -> Figure:
     return sheet_figure(
         panels,
         columns=options.columns,
+        letters=options.letters,
         caption=options.title or listed(shared_params(list(inputs.values()))),
         width=options.width,
         height=options.height,
@@ -59,4 +60,5 @@ def _panel(cell: Any, stages: list[Input], *, mirror: bool) -> Panel:
         met = [(kind, place) for kind, place in branch.marks if not cell.marks or kind in cell.marks]
         return MultiplierPanel(axis, replace(branch, marks=met), cell.window, names=names, **look)
     parts = diagram_parts(stages, mirror=mirror, families=cell.families, marks=cell.marks)
-    return DiagramPanel(axis, cell.show, *parts, window=cell.window, opacity=cell.opacity, names=names, **look)
+    look |= {"window": cell.window, "opacity": cell.opacity, "names": names, "places": False}
+    return DiagramPanel(axis, cell.show, *parts, **look)
