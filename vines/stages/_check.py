@@ -5,14 +5,16 @@ from __future__ import annotations
 from typing import Any
 
 from vines.catalogue import connect_tables
-from vines.errors import DeclarationError, nearest
+from vines.errors import DeclarationError, QueryError, nearest
 from vines.pipeline import Batch, Input, WholeJob
 from vines.stages._claims import Claim, read_claims
 
-__all__ = ["compute", "verdict"]
+__all__ = ["UNEXPLAINED", "compute", "verdict"]
 
 
 NO_VALUE = "no value of ours: the query of the claim gave no row"
+UNEXPLAINED = "unexplained"
+"""Reason of a difference that the claim does not know of."""
 
 
 def compute(job: WholeJob) -> Batch:
@@ -37,28 +39,40 @@ def _by_table(inputs: dict[str, Input]) -> dict[str, dict[str, Any]]:
 
 
 def _row(name: str, claim: Claim, query: Any) -> dict[str, Any]:
-    value = None if claim.not_reproducible else _one_value(name, query(claim.ours))
+    value, detail = _answer(name, claim.ours, query) if claim.ours.strip() else (None, None)
     number = isinstance(claim.published, int | float)
+    found = verdict(claim, value)
     return {
         "id": name,
         "source": claim.source,
         "statement": claim.statement,
-        "published": f"{claim.published:.10g}" if number else claim.published,
-        "ours": None if value is None else (f"{value:.10g}" if isinstance(value, float) else str(value)),
+        "published": claim.printed or (f"{claim.published:.10g}" if number else claim.published),
+        "ours": None if value is None else (f"{value:.7g}" if isinstance(value, float) else str(value)),
+        "detail": detail,
         "published_value": float(claim.published) if number else None,
         "our_value": float(value) if number and value is not None else None,
         "tolerance": claim.tolerance,
-        "verdict": verdict(claim, value),
+        "verdict": found,
+        "reason": (claim.reason or UNEXPLAINED) if found == "differs" else None,
         "remark": claim.not_reproducible or (claim.remark if value is not None else NO_VALUE),
     }
 
 
-def _one_value(name: str, rows: list[tuple[Any, ...]]) -> Any:
-    if len(rows) > 1 or (rows and len(rows[0]) != 1):
+def _answer(name: str, sql: str, query: Any) -> tuple[Any, str | None]:
+    """Return the value that the query of a claim gives and the numbers behind it; nothing if it gives no row."""
+    try:
+        rows: list[tuple[Any, ...]] = query(sql)
+    except QueryError as error:
+        raise QueryError(f"claim {name!r}: {error}") from None
+    if len(rows) > 1 or (rows and len(rows[0]) > 2):
         raise DeclarationError(
-            f"claim {name!r}: its query gives {len(rows)} rows; it has to give one value (add a limit or an aggregate)"
+            f"claim {name!r}: its query gives {len(rows)} rows of {len(rows[0])} columns; it has to give one row, the "
+            "value and perhaps a text behind it (add a limit or an aggregate)"
         )
-    return rows[0][0] if rows else None
+    if not rows:
+        return None, None
+    value, *rest = rows[0]
+    return value, str(rest[0]) if rest and rest[0] is not None else None
 
 
 def verdict(claim: Claim, value: Any) -> str:

@@ -23,6 +23,7 @@ __all__ = [
     "Cell",
     "CheckOptions",
     "CurveOptions",
+    "DimensionlessOptions",
     "FigureOptions",
     "Grid",
     "OptimumOptions",
@@ -34,6 +35,10 @@ __all__ = [
 ]
 
 PARAMETERS: dict[str, float | None] = {"mu": None, "A": None, "Omega": 1.0, "r": 0.65, "lam": LAM_TABLE_1}
+
+
+TABLE_1: dict[str, float | None] = {"M": 3.807, "c": 2.53, "k": 11680.0, "b": 0.015, "r": 0.65}
+"""The rig of the paper in SI units (Table 1)."""
 
 
 class Start(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -128,6 +133,10 @@ class AtlasOptions(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 class ReducedOptions(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """The multiple-scales approximation of the symmetric 1:1 response beside the exact orbit; nothing to choose."""
+
+
+class DimensionlessOptions(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """A rig in SI units, Table 1 of the paper by default, and its dimensionless parameters; nothing to choose."""
 
 
 class OptimumOptions(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -228,6 +237,14 @@ def _check_simulation(params: dict[str, float], options: Any) -> None:
 def _check_model(params: dict[str, float], options: Any) -> None:
     del options
     Params(**params)
+
+
+def _check_rig(params: dict[str, float], options: Any) -> None:
+    from vines.model import PhysicalParams
+
+    del options
+    rig = PhysicalParams(**{name: params[name] for name in TABLE_1})
+    rig.dimensionless(**{name: value for name, value in params.items() if name not in TABLE_1})
 
 
 def _check_optimum(params: dict[str, float], options: Any) -> None:
@@ -391,6 +408,19 @@ def register_kinds() -> None:
             parameters=PARAMETERS,
             vary="grid",
             check=_check_model,
+        )
+    )
+    register(
+        Kind(
+            name="dimensionless",
+            summary="a rig in SI units and its dimensionless parameters",
+            shape="points",
+            options=DimensionlessOptions,
+            body="vines.stages._dimensionless:compute",
+            tables=("dimensionless",),
+            parameters={**TABLE_1, "E": None, "omega": None, "m": None},
+            vary="grid",
+            check=_check_rig,
         )
     )
     register(

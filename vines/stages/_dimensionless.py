@@ -1,0 +1,29 @@
+"""Body of the kind ``dimensionless``: what a rig in SI units is in the model."""
+
+from __future__ import annotations
+
+from vines.model import PhysicalParams
+from vines.pipeline import Batch, Job
+
+__all__ = ["compute"]
+
+RIG = ("M", "c", "k", "b", "r")
+
+
+def compute(job: Job) -> Batch:
+    """Convert every point of the job by (6) of the paper."""
+    rows = []
+    for point in job.points:
+        rig = PhysicalParams(**{name: point.params[name] for name in RIG})
+        p = rig.dimensionless(**{name: point.params[name] for name in ("E", "omega", "m")})
+        rows.append(
+            {
+                "point_id": point.id,
+                **point.params,
+                "omega0": rig.omega0,
+                **{name: getattr(p, name) for name in ("mu", "A", "Omega", "lam")},
+                "status": "ok",
+                "reason": "",
+            }
+        )
+    return Batch(tables={"dimensionless": rows})
