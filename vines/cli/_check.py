@@ -44,9 +44,7 @@ def _show(rows: Sequence[Row]) -> None:
 
     print_rows(
         ["check", "source", "statement", "published", "ours", "tolerance", "verdict"],
-        [
-            [r["id"], r["source"], r["statement"], r["published"], r["ours"], r["tolerance"], outcome(r)] for r in rows
-        ],
+        [[r["id"], r["source"], r["statement"], r["published"], r["ours"], r["tolerance"], outcome(r)] for r in rows],
         wrap=2,
     )
     for row in rows:
@@ -97,9 +95,9 @@ def page(rows: Sequence[Row]) -> Iterator[str]:
     """Yield the lines of docs/claims.md: a table a pipeline, and under it what explains each difference."""
     yield "# What the paper claims, and what comes out"
     yield ""
-    yield "Made by `vines run paper && vines check paper --markdown > docs/claims.md`; do not edit. The claims and the queries"
-    yield "that find our values are in `pipelines/claims.toml`; docs/tables.md says what the verdicts mean. A published number is"
-    yield "reproduced when ours lies within the tolerance, which is the precision of the print."
+    yield "Made by `vines run paper && vines check paper --markdown > docs/claims.md`; do not edit. The claims, and the"
+    yield "queries that find our values, are in `pipelines/claims.toml`; docs/tables.md says what the verdicts mean. A"
+    yield "published number is reproduced when ours lies within the tolerance, which is the precision of the print."
     yield ""
     yield f"**{summary(rows)}.**"
     for pipeline, members in groupby(rows, key=lambda row: row["pipeline"]):

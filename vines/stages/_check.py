@@ -71,8 +71,8 @@ def _answer(name: str, sql: str, query: Any) -> tuple[Any, str | None]:
         )
     if not rows:
         return None, None
-    value, *rest = rows[0]
-    return value, str(rest[0]) if rest and rest[0] is not None else None
+    value, detail = (*rows[0], None)[:2]
+    return value, None if detail is None else str(detail)
 
 
 def verdict(claim: Claim, value: Any) -> str:

@@ -5,13 +5,14 @@ A body is named by its dotted path and imported only when there is something to 
 
 from __future__ import annotations
 
+import dataclasses
 from pathlib import Path
 from typing import Any, Literal
 
 import msgspec
 
 from vines.errors import FileMissingError, ParameterError, StateError
-from vines.model import LAM_TABLE_1, Params
+from vines.model import LAM_TABLE_1, Params, PhysicalParams
 from vines.pipeline import Kind, register
 from vines.places import shipped
 
@@ -36,8 +37,7 @@ __all__ = [
 
 PARAMETERS: dict[str, float | None] = {"mu": None, "A": None, "Omega": 1.0, "r": 0.65, "lam": LAM_TABLE_1}
 
-
-TABLE_1: dict[str, float | None] = {"M": 3.807, "c": 2.53, "k": 11680.0, "b": 0.015, "r": 0.65}
+TABLE_1: dict[str, float | None] = dataclasses.asdict(PhysicalParams())
 """The rig of the paper in SI units (Table 1)."""
 
 
@@ -240,8 +240,6 @@ def _check_model(params: dict[str, float], options: Any) -> None:
 
 
 def _check_rig(params: dict[str, float], options: Any) -> None:
-    from vines.model import PhysicalParams
-
     del options
     rig = PhysicalParams(**{name: params[name] for name in TABLE_1})
     rig.dimensionless(**{name: value for name, value in params.items() if name not in TABLE_1})
