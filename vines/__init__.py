@@ -57,6 +57,7 @@ __all__ = [
     "__version__",
     "all_orbits",
     "ball_locked",
+    "classify_many",
     "continue_orbit",
     "ensemble",
     "find_orbit",
@@ -70,6 +71,7 @@ __all__ = [
 
 if TYPE_CHECKING:
     from vines.attractors import Attractor as Attractor
+    from vines.attractors import classify_many as classify_many
     from vines.attractors import settle as settle
     from vines.dynamics import Ensemble as Ensemble
     from vines.dynamics import Scatter as Scatter

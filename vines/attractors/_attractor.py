@@ -54,6 +54,8 @@ class Attractor:
         Estimated forcing periods still needed if not settled, nan where no estimate can be made; else 0.
     transient : float
         Forcing periods run before the recording: those asked for and those that patience added.
+    recorded : float
+        Forcing periods recorded.
     status : str
         ``complete``, ``impact_cap`` or ``step_limit``.
     reason : str
@@ -82,5 +84,6 @@ class Attractor:
     multipliers: npt.NDArray[np.complex128] | None
     remaining: float
     transient: float
+    recorded: float
     status: str
     reason: str

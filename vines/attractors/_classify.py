@@ -1,262 +1,315 @@
-"""Name what a recorded window of a run shows: periodic, quasi-periodic, chaotic, no impact, or not settled yet.
-
-The rules are in docs/dynamics.md, "What a run has settled to".
-"""
+"""What many runs settle to: the transients in lanes, the decisions as for a single run."""
 
 from __future__ import annotations
 
-import math
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 
 import numpy as np
 import numpy.typing as npt
 
-from vines.attractors._contacts import contacts, mirror_difference, repetition
+from vines.attractors import _verdict as v
+from vines.attractors._attractor import Attractor
+from vines.attractors._look import look_at_block
+from vines.attractors._naming import attractor_from, word_of
+from vines.attractors._settle import NUDGE, ROUNDS, Patience
 from vines.dynamics import _advance as col
-from vines.dynamics._constants import Constants
-from vines.dynamics._simulate import record as run_on
-from vines.dynamics._tangent import exponents_of, lyapunov_blocks, tangent_product
-from vines.model import Params, Word
+from vines.dynamics import _totals as entry
+from vines.dynamics import ensemble
+from vines.dynamics._ensemble import STATUS_NAMES, _measures, each_thread, threads_allowed
+from vines.dynamics._simulate import EVENTS_PER_PERIOD
+from vines.dynamics._trajectory import impacts_of
+from vines.model import PARAMETER_NAMES, Params
 
-__all__ = ["MAX_P", "Recording", "Verdict", "classify"]
+__all__ = ["Classified", "classify_many"]
 
-MAX_P = 32
-"""Largest number of forcing periods over which a repetition is looked for."""
+Floats = npt.NDArray[np.float64]
 
-LONGER = (512, 1536, 6144)
-"""Forcing periods run on, after the recording, where nothing repeats: each stage only if those before left it open."""
+START_NAMES = ("x1", "v1", "x2", "v2", "phase")
 
-BLOCK = 32
-"""Forcing periods in each of the blocks from whose scatter the error of an exponent is taken."""
+STAGES = (4.0, 16.0)
+"""Forcing periods after which a recording is looked at before its end: most runs repeat soon."""
 
-FLAT = 1.5e-3
-"""Largest standard error of an exponent that is called zero."""
+BLOCK = 512
+"""Most runs in one call of the kernel; a thread takes one block after the other."""
 
-UNSTABLE = 1e-5
-"""How far the largest multiplier must lie outside the unit circle for a repeating orbit to be called unstable."""
-
-NEAR = 1e-3
-"""Runs that repeat to within this, but not to the tolerance, come to or leave a periodic orbit; they are no torus."""
-
-FOREVER = 1e6
-"""A ball that would take more than this many forcing periods to the next wall is called without impact."""
+_NO_IMPACTS = impacts_of(np.empty((0, col.ROW)))
 
 
-@dataclass(frozen=True, slots=True)
-class Recording:
-    """A recorded window: rows, its end, and what is needed to run on from there."""
+@dataclass(frozen=True)
+class Classified:
+    """What many runs settled to; row k of every array belongs to run k. `attractor` gives one as an `Attractor`.
 
-    params: Params
-    c: Constants
-    rows: npt.NDArray[np.float64]
-    length: float
-    state: npt.NDArray[np.float64]
-    cap: int
+    Attributes
+    ----------
+    parameters : ndarray, shape (n, 5)
+        mu, A, Omega, r, lam.
+    starts : ndarray, shape (n, 5)
+        x1, v1, x2, v2 and phase [rad].
+    words : ndarray of object, shape (n,)
+        `Word` of the contacts of one repetition, None where the run is not periodic.
+    verdicts : ndarray, shape (n, VERDICT)
+        The numbers behind everything else, as the kernels wrote them.
+    totals : ndarray, shape (n, TOTALS)
+        Totals of the window that the measures are taken over.
+    hits : list of structured ndarray, or None
+        Recorded impacts of each run, as `Attractor.impacts`, where they were asked for.
+    """
+
+    parameters: Floats
+    starts: Floats
+    words: npt.NDArray[np.object_]
+    verdicts: Floats = field(repr=False)
+    totals: Floats = field(repr=False)
+    hits: list[npt.NDArray[np.void]] | None = field(default=None, repr=False)
+
+    def __len__(self) -> int:
+        return len(self.verdicts)
+
+    def attractor(self, k: int) -> Attractor:
+        """Return run k as `settle` would: one object with names for everything."""
+        p = Params(**dict(zip(PARAMETER_NAMES, self.parameters[k].tolist(), strict=True)))
+        hits = _NO_IMPACTS if self.hits is None else self.hits[k]
+        return attractor_from(p, self.verdicts[k], self.totals[k], self.words[k], hits, 0.0, True)
+
+    def _whole(self, column: int) -> npt.NDArray[np.int64]:
+        return self.verdicts[:, column].astype(np.int64)
 
     @property
-    def speed(self) -> float:
-        """Scale of velocities and displacements, at least 1e-3 so that rest is no special case."""
-        hits = self.rows[self.rows[:, col.KIND] == col.IMPACT]
-        return max(float(np.max(np.abs(hits[:, [col.V1, col.V2]]), initial=0.0)), 1e-3)
+    def regime(self) -> npt.NDArray[np.str_]:
+        """``periodic``, ``quasiperiodic``, ``chaotic``, ``no_impact`` or ``unsettled``."""
+        return np.array(v.REGIMES)[self._whole(v.REGIME)]
+
+    @property
+    def settled(self) -> npt.NDArray[np.bool_]:
+        """Whether the run reached its attractor."""
+        return self.verdicts[:, v.SETTLED] > 0
+
+    @property
+    def n(self) -> npt.NDArray[np.int64]:
+        """Contacts on L in p forcing periods, 0 where the run is not periodic."""
+        return self._whole(v.LEFT)
+
+    @property
+    def m(self) -> npt.NDArray[np.int64]:
+        """Contacts on R in p forcing periods, 0 where the run is not periodic."""
+        return self._whole(v.RIGHT)
+
+    @property
+    def p(self) -> npt.NDArray[np.int64]:
+        """Smallest number of forcing periods after which the run repeats, 0 where it does not."""
+        return self._whole(v.P)
+
+    @property
+    def name(self) -> npt.NDArray[np.object_]:
+        """Type n:m/pT, None where the run is not periodic."""
+        return np.array([word.name if word else None for word in self.words], dtype=object)
+
+    @property
+    def symmetric(self) -> npt.NDArray[np.bool_]:
+        """Whether a periodic run is its own mirror image."""
+        return self.verdicts[:, v.SYMMETRIC] > 0
+
+    @cached_property
+    def measures(self) -> npt.NDArray[np.void]:
+        """Energy measures as `Ensemble.measures`: over one repetition if periodic, else over the recorded window."""
+        return _measures(self.parameters[:, 0], self.totals)
+
+    @property
+    def sticks(self) -> Floats:
+        """Spells of sticking per forcing period."""
+        sticks = self.totals[:, entry.STICKS_LEFT] + self.totals[:, entry.STICKS_RIGHT]
+        with np.errstate(invalid="ignore", divide="ignore"):
+            return sticks * (2.0 * np.pi / self.parameters[:, 2]) / self.totals[:, entry.DURATION]
+
+    @property
+    def lyapunov(self) -> Floats:
+        """Largest Lyapunov exponent per unit of time; nan where the run is not settled and none was needed."""
+        return self.verdicts[:, v.EXPONENTS]
+
+    @property
+    def lyapunov_error(self) -> Floats:
+        """Standard error of `lyapunov`, 0 where the run is periodic."""
+        return self.verdicts[:, v.LYAPUNOV_ERROR]
+
+    @property
+    def remaining(self) -> Floats:
+        """Estimated forcing periods still needed where the run is not settled."""
+        return self.verdicts[:, v.REMAINING]
+
+    @property
+    def transient(self) -> Floats:
+        """Forcing periods run before the recording."""
+        return self.verdicts[:, v.PERIODS]
+
+    @property
+    def final(self) -> Floats:
+        """State at the end, shape (n, 5): x1, v1, x2, v2 and phase [rad]."""
+        return self.verdicts[:, v.FINAL : v.FINAL + 5]
+
+    @property
+    def status(self) -> npt.NDArray[np.str_]:
+        """``complete``, ``impact_cap`` or ``step_limit``."""
+        codes = self._whole(v.STATUS)
+        return np.where(codes == col.EVENT_CAP, STATUS_NAMES[1], np.where(codes > 0, STATUS_NAMES[2], STATUS_NAMES[0]))
+
+    @property
+    def reason(self) -> npt.NDArray[np.object_]:
+        """Why a run is called unsettled, or what was noted on the way; empty if nothing."""
+        return np.array([v.reason_text(verdict) for verdict in self.verdicts], dtype=object)
 
 
-@dataclass(slots=True)
-class Verdict:
-    """What was found; the fields are those of `Attractor`."""
-
-    regime: str
-    settled: bool
-    word: str | None = None
-    name: str | None = None
-    n: int | None = None
-    m: int | None = None
-    p: int | None = None
-    symmetric: bool | None = None
-    remaining: float = 0.0
-    reason: str = ""
-    unstable: bool = False
-    exponents: npt.NDArray[np.float64] = field(default_factory=lambda: np.full(4, np.nan))
-    lyapunov: float = math.nan
-    lyapunov_error: float = math.nan
-    multipliers: npt.NDArray[np.complex128] | None = None
-
-
-@dataclass(frozen=True, slots=True)
-class _Match:
-    """How well the contacts repeat after p periods: lag in contacts, and the difference of each repetition."""
-
-    p: int
-    lag: int
-    blocks: npt.NDArray[np.float64]
-
-
-def classify(recording: Recording, tolerance: float) -> Verdict:
-    """Name what a recording shows.
+def classify_many(
+    params: Params | Sequence[Params] | Mapping[str, npt.ArrayLike],
+    starts: Mapping[str, npt.ArrayLike] | None = None,
+    *,
+    settle: float = 400,
+    record: float = 64,
+    patience: float = 4000,
+    watch: float = 512,
+    tolerance: float = 1e-10,
+    impacts: bool = False,
+    max_impacts_per_period: int = EVENTS_PER_PERIOD,
+    threads: int | None = None,
+) -> Classified:
+    """Do as `settle` for many parameter points or starts at once, in lanes and on all cores.
 
     Parameters
     ----------
-    recording : Recording
-        The window; at least two forcing periods, or only p = 1 could show.
-    tolerance : float
-        Largest distance from the periodic orbit (velocities relative to the largest speed, times absolute).
+    params, starts
+        As for `vines.ensemble`.
+    settle, record, patience, watch, tolerance, max_impacts_per_period
+        As for `settle`, but a recording ends as soon as the run is seen to repeat.
+    impacts : bool
+        Whether to keep the recorded impacts.
+    threads : int, optional
+        Cores to use; all of this process's if left out. Results do not depend on it, nor on what else is in the call.
+
+    Returns
+    -------
+    Classified
+
+    Raises
+    ------
+    ParameterError, StateError
+        If a parameter, start or option is not allowed; the message gives the first one.
+
+    Examples
+    --------
+    >>> many = classify_many({"mu": 0.01, "A": [0.015, 0.02, 0.021, 0.023, 0.03]})
+    >>> many.name.tolist(), many.regime[-1].item()
+    (['1:1', '1:1', '2:2/2T', '2:1', None], 'chaotic')
     """
-    kept = contacts(recording.rows, len(recording.rows), 0.0)
-    if len(kept) == 0:
-        return _without_impact(recording, tolerance)
-    scale = recording.speed
-    best: _Match | None = None
-    for p in range(1, min(MAX_P, int(recording.length / recording.params.period / 2 + 1e-9)) + 1):
-        match = _match(recording.rows, kept, p, p * recording.params.period, scale)
-        if match is None:
-            continue
-        # A run within the tolerance of its orbit repeats to twice that, and to less after 2 p periods where a
-        # multiplier is near -1: with a tighter bound here the orbit would be named with twice its period.
-        if match.blocks[-1] <= 2.5 * tolerance:
-            return _periodic(recording, kept, match, scale, tolerance)
-        if best is None or match.blocks[-1] < 0.5 * best.blocks[-1]:
-            best = match
-    return _not_repeating(recording, best, scale, tolerance)
+    how = Patience(settle, record, patience, watch, tolerance, max_impacts_per_period)
+    # Before anything is waited for, the parameters and starts are checked and laid out.
+    first = ensemble(
+        params, starts, periods=max(settle, 1.0), max_impacts_per_period=max_impacts_per_period, threads=threads
+    )
+    work = _Many(first.parameters, first.starts.copy(), how, impacts, threads)
+    everyone = np.arange(len(first))
+    if settle > 0:
+        work.place(everyone, first.final, first.codes)
+    work.decide(everyone)
+    return Classified(first.parameters, first.starts, work.words, work.verdicts, work.totals, work.hits)
 
 
-def _match(
-    rows: npt.NDArray[np.float64], kept: npt.NDArray[np.int64], p: int, span: float, scale: float
-) -> _Match | None:
-    blocks = np.empty(len(kept))
-    lag, filled = repetition(rows, kept, span, scale, blocks)
-    return _Match(p, lag, blocks[:filled]) if filled else None
+class _Many:
+    """Runs on their way: where each is, and what was seen of it last."""
 
+    def __init__(self, parameters: Floats, states: Floats, how: Patience, impacts: bool, threads: int | None) -> None:
+        n = len(parameters)
+        self.parameters, self.states, self.how = parameters, states, how
+        self.cores = threads_allowed() if threads is None else max(1, threads)
+        self.waited = np.zeros(n, dtype=np.int64)
+        self.verdicts = np.zeros((n, v.VERDICT))
+        self.totals = np.zeros((n, entry.TOTALS))
+        self.words = np.full(n, None, dtype=object)
+        self.hits = [_NO_IMPACTS] * n if impacts else None
+        self.stages = np.array([*(stage for stage in STAGES if stage < how.record), float(how.record)])
 
-def _periodic(
-    recording: Recording, kept: npt.NDArray[np.int64], match: _Match, scale: float, tolerance: float
-) -> Verdict:
-    """Judge a run that repeats: it may still be creeping towards its orbit, or sit on an unstable one."""
-    rows, period = recording.rows, recording.params.period
-    product = tangent_product(recording.c, rows, kept[-1 - match.lag], kept[-1])
-    multipliers = np.linalg.eigvals(product).astype(np.complex128)
-    sizes = np.abs(multipliers)
-    span = rows[kept[-1 - match.lag] + 1 : kept[-1] + 1]
-    if np.any(span[:, col.KIND] == col.STICK):
-        # After a merge only the common motion is left, two directions of four; what else shows is rounding.
-        dead = np.argsort(sizes, kind="stable")[:2]
-        multipliers[dead] = sizes[dead] = 0.0
-    order = np.argsort(-sizes, kind="stable")
-    multipliers, sizes = multipliers[order], sizes[order]
-    with np.errstate(divide="ignore"):
-        exponents = np.log(sizes) / (match.p * period)
-    largest = float(sizes[0])
-    found = Verdict("periodic", True, exponents=exponents, multipliers=multipliers)
-    found.lyapunov, found.lyapunov_error = float(exponents[0]), 0.0
-    last = float(match.blocks[-1])
-    if largest > 1.0 + UNSTABLE:
-        found.regime, found.settled, found.unstable = "unsettled", False, True
-        found.remaining = match.p * math.log(NEAR / max(last, 1e-15)) / math.log(largest)
-        found.reason = f"on an unstable periodic orbit: its largest multiplier is {largest:.6g}"
-        return found
-    # The difference of one repetition is |1 - multiplier| of the distance that is left.
-    distance = last / float(np.min(np.abs(1.0 - multipliers))) if largest < 1.0 else math.inf
-    if distance > tolerance and last > 1e-12:
-        found.regime, found.settled = "unsettled", False
-        found.remaining = (
-            match.p * math.log(distance / tolerance) / -math.log(largest) if math.isfinite(distance) else math.inf
+    def place(self, runs: npt.NDArray[np.int64], final: npt.NDArray[np.void], codes: npt.NDArray[np.int64]) -> None:
+        """Put runs where an ensemble left them."""
+        for k, name in enumerate(START_NAMES):
+            self.states[runs, k] = final[name]
+        # The kernels of lanes and of a single run number their ends differently.
+        self.waited[runs] = np.array([col.COMPLETE, col.EVENT_CAP, col.STEP_LIMIT])[codes]
+
+    def decide(self, runs: npt.NDArray[np.int64]) -> None:
+        """Look at every run, and wait for those that are seen to come to their attractor."""
+        n = len(runs)
+        spare = np.full(n, float(self.how.patience))
+        ran = np.full(n, float(self.how.settle))
+        nudged = np.full(n, np.nan)
+        for turn in range(ROUNDS + 1):
+            self.look(runs)
+            found = self.verdicts[runs]
+            found[:, v.NUDGED], found[:, v.PERIODS] = nudged[runs], ran[runs]
+            self.verdicts[runs] = found
+            free = (found[:, v.UNSTABLE] > 0) & np.isnan(nudged[runs])
+            with np.errstate(invalid="ignore"):
+                come = ~free & (found[:, v.SETTLED] == 0) & (found[:, v.REMAINING] <= spare[runs])
+            if turn == ROUNDS or not np.any(free | come):
+                return
+            wait = np.where(free, float(self.how.settle), _next_wait(np.where(come, found[:, v.REMAINING], 0.0)))
+            nudged[runs[free]] = found[free, v.VALUE]
+            self.states[runs[free], 3] += NUDGE
+            spare[runs[come]] -= wait[come]
+            on = free | come
+            runs, wait = runs[on], wait[on]
+            ran[runs] += found[on, v.RECORDED] + wait
+            for length in np.unique(wait[wait > 0]):
+                self.wait(runs[wait == length], float(length))
+
+    def wait(self, runs: npt.NDArray[np.int64], periods: float) -> None:
+        """Let runs go on for so many forcing periods, in lanes."""
+        later = ensemble(
+            dict(zip(PARAMETER_NAMES, self.parameters[runs].T, strict=True)),
+            dict(zip(START_NAMES, self.states[runs].T, strict=True)),
+            periods=periods,
+            max_impacts_per_period=self.how.cap,
+            threads=self.cores,
         )
-        found.reason = f"still {distance:.2g} from a periodic orbit whose largest multiplier is {largest:.6g}"
-        return found
-    letters = "".join("L" if rows[i, col.SIDE] > 0 else "R" for i in kept[len(kept) - match.lag :])
-    word = Word(letters if match.p == 1 else f"{letters}/{match.p}T")
-    found.word, found.name = str(word), word.name
-    found.n, found.m, found.p = word.n, word.m, word.p
-    mirrored = mirror_difference(rows, kept, match.lag, match.p * period, scale)
-    found.symmetric = bool(mirrored <= 1e3 * max(tolerance, distance))
-    return found
+        self.place(runs, later.final, later.codes)
+
+    def look(self, runs: npt.NDArray[np.int64]) -> None:
+        """Record every run and decide what it shows."""
+        size = min(BLOCK, max(16, -(-len(runs) // (4 * self.cores))))
+        blocks = [slice(k, min(k + size, len(runs))) for k in range(0, len(runs), size)]
+        each_thread(lambda block: self._look_at(runs[block]), blocks, self.cores)
+
+    def _look_at(self, runs: npt.NDArray[np.int64]) -> None:
+        verdicts, totals = np.empty((len(runs), v.VERDICT)), np.empty((len(runs), entry.TOTALS))
+        sides, rows = look_at_block(
+            self.parameters[runs],
+            self.states[runs],
+            self.waited[runs],
+            self.stages,
+            float(self.how.watch),
+            self.how.cap,
+            self.how.tolerance,
+            self.hits is not None,
+            verdicts,
+            totals,
+        )
+        self.verdicts[runs], self.totals[runs] = verdicts, totals
+        self.states[runs] = verdicts[:, v.FINAL : v.FINAL + 5]
+        at = 0
+        lags, periods = verdicts[:, v.LAG].astype(int).tolist(), verdicts[:, v.P].astype(int).tolist()
+        for run, lag, p in zip(runs.tolist(), lags, periods, strict=True):
+            self.words[run] = word_of(sides[at : at + lag], p) if lag else None
+            at += lag
+        if self.hits is not None:
+            ends = np.searchsorted(rows[:, col.ROW], np.arange(len(runs) + 1))
+            for k, run in enumerate(runs.tolist()):
+                self.hits[run] = impacts_of(rows[ends[k] : ends[k + 1]])
 
 
-def _without_impact(recording: Recording, tolerance: float) -> Verdict:
-    """Judge a run without impacts: a drifting ball will hit a wall one day; the oscillator's start must die out."""
-    p, last = recording.params, recording.rows[-1]
-    exponents = np.array([0.0, 0.0, -0.5 * p.lam, -0.5 * p.lam])
-    found = Verdict("no_impact", True, exponents=exponents, lyapunov=0.0, lyapunov_error=0.0)
-    drift = abs(float(last[col.A_V2])) if last[col.MODE] == 0 else 0.0
-    periods = 2.0 / (drift * p.period) if drift > 0 else math.inf
-    if periods < FOREVER:
-        found.regime, found.settled, found.remaining = "unsettled", False, periods
-        found.reason = "no impact while recorded, but the ball drifts towards a wall"
-        return found
-    response = recording.c.free
-    phase = float(last[col.PHASE])
-    q = complex(response.qr, response.qi) * complex(math.cos(phase), math.sin(phase))
-    excess = math.hypot(float(last[col.X1]) - q.real, float(last[col.V1]) + p.Omega * q.imag)
-    if excess > max(tolerance, 1e-15):
-        found.settled = False
-        found.remaining = math.log(excess / tolerance) / (0.5 * p.lam * p.period) if p.lam > 0 else math.inf
-        found.reason = f"the oscillator is still {excess:.2g} from its steady motion"
-    return found
+def _next_wait(remaining: Floats) -> Floats:
+    """Return how long to wait: 5 % more than is left, up to the next of 32, 48, 64, 96, 128, … forcing periods.
 
-
-def _not_repeating(recording: Recording, best: _Match | None, scale: float, tolerance: float) -> Verdict:
-    """Tell a slow approach, a torus and chaos apart, by running on for as long as it takes, within LONGER."""
-    period = recording.params.period
-    state, Y = recording.state.copy(), np.eye(4)
-    found = Verdict("unsettled", False, remaining=math.nan)
-    blocks: list[npt.NDArray[np.float64]] = []
-    elapsed = recording.length
-    for stage, periods in enumerate(LONGER):
-        col.shift_time(state, elapsed)
-        elapsed = length = periods * period
-        rows, status = run_on(recording.c, state, length, recording.cap, 4 * periods)
-        if status != "complete":
-            found.reason = "more events in a forcing period than allowed while running on"
-            return found
-        # The first quarter of the first stage is left to the directions to align.
-        skip = 0.25 * length if stage == 0 else 0.0
-        count = round((length - skip) / (BLOCK * period))
-        blocks.append(lyapunov_blocks(recording.c, rows, len(rows), skip, length, count, Y))
-        grown = np.concatenate(blocks)
-        found.exponents, errors = exponents_of(grown)
-        found.lyapunov = float(found.exponents[0])
-        # A finite run cannot tell rates apart that differ by less than about one over its length.
-        found.lyapunov_error = math.hypot(float(errors[0]), 1.0 / float(grown[:, 4].sum()))
-        if stage == 0 and best and _coming_or_leaving(recording, rows, length, best, scale, tolerance, found):
-            return found
-        if found.lyapunov > 3.0 * found.lyapunov_error:
-            found.regime, found.settled, found.remaining = "chaotic", True, 0.0
-            return found
-        if found.lyapunov < -3.0 * found.lyapunov_error:
-            found.remaining = math.log(1.0 / tolerance) / -found.lyapunov / period
-            found.reason = "disturbances decay, but no repetition shows yet"
-            return found
-    if found.lyapunov_error < FLAT:
-        found.regime, found.settled, found.remaining = "quasiperiodic", True, 0.0
-    else:
-        found.reason = f"its exponent {found.lyapunov:.2g} +- {found.lyapunov_error:.2g} is not told from 0"
-    return found
-
-
-def _coming_or_leaving(
-    recording: Recording,
-    rows: npt.NDArray[np.float64],
-    length: float,
-    best: _Match,
-    scale: float,
-    tolerance: float,
-    found: Verdict,
-) -> bool:
-    """Say whether the run comes to, or leaves, a periodic orbit, and if so note how long that will take."""
-    periods = LONGER[0]
-    kept = contacts(rows, len(rows), length - recording.length)
-    later = _match(rows, kept, best.p, best.p * recording.params.period, scale) if len(kept) > 1 else None
-    before = float(np.max(best.blocks))
-    after = float(np.max(later.blocks)) if later else math.inf
-    chaotic = found.lyapunov > 3.0 * found.lyapunov_error
-    if min(before, after) >= NEAR and (chaotic or after >= 0.5 * before):
-        return False
-    if after < 0.5 * before:
-        rate = math.log(before / max(after, 1e-15)) / periods
-        left = float(best.blocks[-1]) / -math.expm1(-rate * best.p)
-        found.remaining = max(math.log(left / tolerance) / rate, 0.0)
-        found.reason = f"still comes to a periodic orbit: {math.exp(-rate):.6g} of the distance is left each period"
-        return True
-    found.reason = "near a periodic orbit, neither settled on it nor clearly leaving it"
-    if before < after < math.inf:
-        found.remaining = math.log(1.0 / after) / (math.log(after / before) / periods) if after < 1.0 else 0.0
-        found.reason = "leaves an unstable periodic orbit"
-    return True
+    Waits of few lengths keep the lanes full.
+    """
+    least = np.maximum(1.05 * remaining + 1.0, 32.0)
+    power = 2.0 ** np.floor(np.log2(least))
+    return np.where(least <= power, power, np.where(least <= 1.5 * power, 1.5 * power, 2.0 * power))

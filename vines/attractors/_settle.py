@@ -4,34 +4,63 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
 
+from vines.attractors import _verdict as v
 from vines.attractors._attractor import Attractor
-from vines.attractors._classify import Recording, Verdict, classify
+from vines.attractors._look import look
+from vines.attractors._naming import attractor_from, word_of
 from vines.dynamics import _advance as col
 from vines.dynamics._advance import new_state, pass_over, set_state, shift_time, state_now
 from vines.dynamics._constants import constants
-from vines.dynamics._measures import Measures, measures_from
-from vines.dynamics._simulate import EVENTS_PER_PERIOD, STATUS
-from vines.dynamics._simulate import record as run_on
+from vines.dynamics._simulate import EVENTS_PER_PERIOD
 from vines.dynamics._start import check_start
-from vines.dynamics._totals import window_totals
 from vines.dynamics._trajectory import impacts_of
 from vines.errors import StateError
 from vines.model import Params
 
-__all__ = ["settle", "settle_from"]
-
-BLOCKS = 8
-"""Blocks of the recorded window from whose scatter standard errors are taken."""
+__all__ = ["NUDGE", "ROUNDS", "Patience", "settle", "settle_from", "wait_longer"]
 
 ROUNDS = 8
 """How often a run may be taken on because it had not arrived."""
 
 NUDGE = 1e-6
 """Change of the ball's velocity that frees a run from an unstable orbit on which it sits exactly."""
+
+
+@dataclass(frozen=True, slots=True)
+class Patience:
+    """How long to run, and how exactly a run must repeat; see `settle`.
+
+    Raises
+    ------
+    StateError
+        If an option is out of range.
+    """
+
+    settle: float = 400
+    record: float = 64
+    patience: float = 4000
+    watch: float = 512
+    tolerance: float = 1e-10
+    cap: int = EVENTS_PER_PERIOD
+
+    def __post_init__(self) -> None:
+        for name, value, least in (
+            ("settle", self.settle, 0),
+            ("record", self.record, 2),
+            ("patience", self.patience, 0),
+            ("watch", self.watch, 16),
+        ):
+            if not (isinstance(value, int | float) and math.isfinite(value) and value >= least):
+                raise StateError(f"{name} is {value!r} periods; give a finite number >= {least}")
+        if not self.tolerance > 0:
+            raise StateError(f"tolerance is {self.tolerance!r}; give a number > 0")
+        if self.cap < 1:
+            raise StateError(f"max_impacts_per_period is {self.cap!r}; give an integer >= 1")
 
 
 def settle(
@@ -46,6 +75,7 @@ def settle(
     settle: float = 400,
     record: float = 64,
     patience: float = 4000,
+    watch: float = 512,
     tolerance: float = 1e-10,
     lyapunov: bool = True,
     max_impacts_per_period: int = EVENTS_PER_PERIOD,
@@ -65,6 +95,9 @@ def settle(
     patience : float
         Forcing periods to run on, in all, where a run is seen to come to its attractor (or to leave an unstable orbit)
         but has not yet done so; 0 to take it as it is.
+    watch : float
+        Forcing periods, >= 16, to run on where nothing repeats, before an exponent is believed; up to 16 times as many
+        where it does not differ from 0.
     tolerance : float
         Largest distance from a periodic orbit at which the run counts as settled on it.
     lyapunov : bool
@@ -93,18 +126,8 @@ def settle(
     ('periodic', '2:1', 'LLR', False)
     """
     check_start(x1=x1, v1=v1, x2=x2, v2=v2, t=t, phi=phi)
-    phase = math.fmod(p.Omega * t, 2 * math.pi) + phi
-    start = {"x1": x1, "v1": v1, "x2": x2, "v2": v2, "t": t, "phase": phase}
-    return settle_from(
-        p,
-        start,
-        settle=settle,
-        record=record,
-        patience=patience,
-        tolerance=tolerance,
-        lyapunov=lyapunov,
-        max_impacts_per_period=max_impacts_per_period,
-    )
+    begin = (x1, v1, x2, v2, math.fmod(p.Omega * t, 2 * math.pi) + phi)
+    return _settled(p, begin, t, Patience(settle, record, patience, watch, tolerance, max_impacts_per_period), lyapunov)
 
 
 def settle_from(
@@ -114,6 +137,7 @@ def settle_from(
     settle: float = 400,
     record: float = 64,
     patience: float = 4000,
+    watch: float = 512,
     tolerance: float = 1e-10,
     lyapunov: bool = True,
     max_impacts_per_period: int = EVENTS_PER_PERIOD,
@@ -126,7 +150,7 @@ def settle_from(
         Dimensionless parameters.
     start : mapping
         x1, v1, x2, v2 and phase [rad]; t, if given, is only the origin of `Attractor.final["t"]`.
-    settle, record, patience, tolerance, lyapunov, max_impacts_per_period
+    settle, record, patience, watch, tolerance, lyapunov, max_impacts_per_period
         As for `settle`.
 
     Returns
@@ -147,133 +171,49 @@ def settle_from(
     x1, v1, x2, v2, phase = (float(start[name]) for name in ("x1", "v1", "x2", "v2", "phase"))
     t = float(start.get("t", 0.0))
     check_start(x1=x1, v1=v1, x2=x2, v2=v2, phase=phase, t=t)
-    for name, value, least in (("settle", settle, 0), ("record", record, 2), ("patience", patience, 0)):
-        if not (isinstance(value, int | float) and math.isfinite(value) and value >= least):
-            raise StateError(f"{name} is {value!r} periods; give a finite number >= {least}")
-    if not tolerance > 0:
-        raise StateError(f"tolerance is {tolerance!r}; give a number > 0")
-    run = _Run(p, (x1, v1, x2, v2, phase), max_impacts_per_period)
-    recording = run.record(settle, record)
-    found = _verdict(recording, run.status, tolerance)
-    note = ""
-    spare = patience
-    for _ in range(ROUNDS):
-        if found.unstable and not note:
-            note = f"nudged: {found.reason}"
-            run.nudge()
-            wait = settle
-        elif found.settled or not found.remaining <= spare:
+    begin = (x1, v1, x2, v2, phase)
+    return _settled(p, begin, t, Patience(settle, record, patience, watch, tolerance, max_impacts_per_period), lyapunov)
+
+
+def _settled(
+    p: Params, begin: tuple[float, float, float, float, float], t: float, how: Patience, lyapunov: bool
+) -> Attractor:
+    c, cap = constants(p), how.cap
+    state = new_state()
+    set_state(state, *begin, 0.0)
+    room = np.empty((int(4 * how.record) + 64, col.ROW))
+    verdict = np.empty(v.VERDICT)
+    stages = np.array([float(how.record)])
+    wait, spare, ran, nudged = float(how.settle), float(how.patience), 0.0, math.nan
+    turn = 0
+    while True:
+        waited = pass_over(c, state, wait * p.period, cap, room)
+        shift_time(state, wait * p.period)
+        rows, count, sides, totals = look(c, state, waited, stages, float(how.watch), cap, how.tolerance, room, verdict)
+        shift_time(state, how.record * p.period)
+        ran += wait + how.record
+        again = wait_longer(verdict, how, spare, nudged)
+        turn += 1
+        if again is None or turn > ROUNDS:
             break
-        else:
-            wait = float(math.ceil(1.05 * found.remaining)) + 1.0
-            spare -= wait
-        recording = run.record(wait, record)
-        found = _verdict(recording, run.status, tolerance)
-    measures, errors = _measure(recording, found)
-    known = lyapunov or (not math.isnan(found.lyapunov_error) and found.regime not in ("periodic", "no_impact"))
-    return Attractor(
-        params=p,
-        regime=found.regime,
-        settled=found.settled,
-        word=found.word,
-        name=found.name,
-        n=found.n,
-        m=found.m,
-        p=found.p,
-        symmetric=found.symmetric,
-        sticks=measures.sticks_per_period,
-        measures=measures,
-        kinetic_ratio_error=errors[0],
-        max_abs_x1_error=errors[1],
-        rms_x1_error=errors[2],
-        impacts=_recorded_impacts(recording),
-        final=_final(recording) | {"t": t + run.periods * p.period},
-        lyapunov=found.lyapunov if known else math.nan,
-        lyapunov_error=found.lyapunov_error if known else math.nan,
-        exponents=found.exponents if known else np.full(4, np.nan),
-        multipliers=found.multipliers,
-        remaining=found.remaining,
-        transient=run.periods - record,
-        status=run.status,
-        reason=found.reason or note,
-    )
+        wait, spare = again
+        if verdict[v.UNSTABLE] and math.isnan(nudged):
+            nudged = float(verdict[v.VALUE])
+            x1, v1, x2, v2, phase, _ = state_now(c, state, 0.0)
+            set_state(state, x1, v1, x2, v2 + NUDGE, phase, 0.0)
+    verdict[v.NUDGED], verdict[v.PERIODS] = nudged, ran - how.record
+    hits = impacts_of(rows[1:count][rows[1:count, col.TIME] > 0.0])
+    word = word_of(sides, int(verdict[v.P])) if len(sides) else None
+    return attractor_from(p, verdict, totals, word, hits, t, lyapunov)
 
 
-class _Run:
-    """A run that can wait, record, and go on; `periods` counts all of it."""
-
-    def __init__(self, p: Params, begin: tuple[float, float, float, float, float], cap: int) -> None:
-        self.p, self.cap = p, cap
-        self.c = constants(p)
-        self.state = new_state()
-        set_state(self.state, *begin, 0.0)
-        self.periods = 0.0
-        self.status = "complete"
-        self._recorded = 0.0
-
-    def record(self, wait: float, length: float) -> Recording:
-        """Run on for `wait` forcing periods, then record `length` of them, time counted from there."""
-        period = self.p.period
-        shift_time(self.state, self._recorded)
-        code = pass_over(self.c, self.state, wait * period, self.cap, np.empty((64, col.ROW)))
-        shift_time(self.state, wait * period)
-        self.periods += wait + length
-        self._recorded = length * period
-        # Where the run had to stop before, only the instant of the stop is recorded.
-        stop = self._recorded if code == col.COMPLETE else float(self.state[col.S_T])
-        rows, status = run_on(self.c, self.state, stop, self.cap, int(4 * length) + 64)
-        self.status = STATUS[code] if code != col.COMPLETE else status
-        return Recording(self.p, self.c, rows, self._recorded, self.state, self.cap)
-
-    def nudge(self) -> None:
-        """Change the ball's velocity by NUDGE, to leave an unstable orbit."""
-        x1, v1, x2, v2, phase, _ = state_now(self.c, self.state, self._recorded)
-        set_state(self.state, x1, v1, x2, v2 + NUDGE, phase, self._recorded)
-
-
-def _verdict(recording: Recording, status: str, tolerance: float) -> Verdict:
-    if status != "complete":
-        return Verdict(
-            "unsettled", False, remaining=math.nan, reason="more events in a forcing period than the cap allows"
-        )
-    return classify(recording, tolerance)
-
-
-def _measure(recording: Recording, found: Verdict) -> tuple[Measures, tuple[float, float, float]]:
-    """Return the measures and the standard errors of kinetic_ratio, max_abs_x1, rms_x1."""
-    p, c, rows = recording.params, recording.c, recording.rows
-    stop = float(rows[-1, col.TIME])
-    if found.p is not None:
-        stop = _quiet_time(rows, found.p * p.period)
-        start = stop - found.p * p.period
-        return measures_from(p, window_totals(c, rows, len(rows), start, stop)), (0.0, 0.0, 0.0)
-    whole = measures_from(p, window_totals(c, rows, len(rows), 0.0, stop))
-    width = stop / BLOCKS
-    if not width > 0:
-        return whole, (math.nan, math.nan, math.nan)
-    parts = [
-        measures_from(p, window_totals(c, rows, len(rows), k * width, min((k + 1) * width, stop)))
-        for k in range(BLOCKS)
-    ]
-    values = np.array([(m.kinetic_ratio, m.max_abs_x1, m.rms_x1) for m in parts])
-    scatter = np.std(values, axis=0, ddof=1) / math.sqrt(BLOCKS)
-    return whole, (float(scatter[0]), float(scatter[1]), float(scatter[2]))
-
-
-def _quiet_time(rows: npt.NDArray[np.float64], span: float) -> float:
-    """Return the middle of the longest pause in the last `span`, so that no event lies on the edge of a window."""
-    times = rows[rows[:, col.TIME] >= rows[-1, col.TIME] - span, col.TIME]
-    gaps = np.diff(times)
-    k = int(np.argmax(gaps))
-    return float(times[k] + 0.5 * gaps[k])
-
-
-def _recorded_impacts(recording: Recording) -> npt.NDArray[np.void]:
-    rows = recording.rows
-    return impacts_of(rows[1:][rows[1:, col.TIME] > 0.0])
-
-
-def _final(recording: Recording) -> dict[str, float]:
-    last = recording.rows[-1]
-    names = {"x1": col.X1, "v1": col.A_V1, "x2": col.X2, "v2": col.A_V2, "phase": col.PHASE}
-    return {name: float(last[column]) for name, column in names.items()}
+def wait_longer(
+    verdict: npt.NDArray[np.float64], how: Patience, spare: float, nudged: float
+) -> tuple[float, float] | None:
+    """Return how long to run on and what is left of the patience then; nothing if the run is taken as it is."""
+    if verdict[v.UNSTABLE] and math.isnan(nudged):
+        return float(how.settle), spare
+    if verdict[v.SETTLED] or not verdict[v.REMAINING] <= spare:
+        return None
+    wait = math.ceil(1.05 * float(verdict[v.REMAINING])) + 1.0
+    return wait, spare - wait

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
+from vines.attractors._classify import classify_many
 from vines.attractors._settle import settle
 from vines.dynamics._warm_up import timed
 from vines.dynamics._warm_up import warm_up as warm_up_dynamics
@@ -22,4 +23,5 @@ def warm_up(report: Callable[[str], object] = print) -> None:
     """
     warm_up_dynamics(report)
     p = Params(mu=0.01, A=0.015)
-    timed("repetition, attractors", lambda: settle(p, settle=200), report)
+    timed("attractors, one run", lambda: settle(p, settle=200), report)
+    timed("attractors, many runs", lambda: classify_many(p, settle=200), report)

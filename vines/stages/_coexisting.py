@@ -1,14 +1,16 @@
-"""The attractors that coexist at a point of a sweep: that of its own start, and those of random starts."""
+"""The attractors that coexist at the points of a sweep: those of their own starts, and those of random starts."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 
-from vines.attractors import Attractor, settle
+from vines.attractors import Attractor, Classified, classify_many
 from vines.dynamics import no_ball
-from vines.model import Word
+from vines.model import PARAMETER_NAMES, Params, Word
+from vines.stages._rows import STATE
 
 __all__ = ["attractor_rows", "coexisting"]
 
@@ -16,51 +18,72 @@ SAME = 1e-6
 """Two periodic attractors of one name are one, or mirror images, if their max|x1| and K2/K1 differ by less."""
 
 
-def coexisting(own: Attractor, *, random: int, seed: int, settle_for: int, record: int) -> list[tuple[Attractor, int]]:
-    """Return the attractors at a point, no two alike, and how many of the random starts came to each.
+def coexisting(
+    own: Sequence[Attractor], *, random: int, seed: int, settle: float, record: float, watch: float
+) -> list[list[tuple[Attractor, int]]]:
+    """Return for each point its attractors, no two alike, and how many of the random starts came to each.
 
     Parameters
     ----------
-    own : Attractor
-        That of the point's own start; it comes first.
+    own : sequence of Attractor
+        Those of the points' own starts; each comes first in its list.
     random : int
-        Number of random starts: the oscillator within twice its amplitude without a ball (at most 3), the ball
-        anywhere in the cavity and as fast.
+        Number of random starts at each point: the oscillator within twice its amplitude without a ball (at most 3), the
+        ball anywhere in the cavity and as fast.
     seed : int
         Seed; the starts of a point follow from it and the parameters alone.
-    settle_for, record : int
-        Forcing periods, as for the point itself.
+    settle, record, watch : float
+        Forcing periods, as for the points themselves.
     """
-    found = [own]
-    counts = [0]
-    p = own.params
+    found = [[(attractor, 0)] for attractor in own]
+    if not random:
+        return found
+    starts = np.concatenate([_random_starts(attractor.params, random, seed) for attractor in own])
+    columns = np.array([[getattr(attractor.params, name) for name in PARAMETER_NAMES] for attractor in own])
+    many = classify_many(
+        dict(zip(PARAMETER_NAMES, np.repeat(columns, random, axis=0).T, strict=True)),
+        dict(zip(STATE, starts.T, strict=False)),
+        settle=settle,
+        record=record,
+        watch=watch,
+    )
+    ratio, size = many.measures["kinetic_ratio"].tolist(), many.measures["max_abs_x1"].tolist()
+    regimes, settled = many.regime.tolist(), many.settled.tolist()
+    for point, listed in enumerate(found):
+        for k in range(point * random, (point + 1) * random):
+            word: Word | None = many.words[k]
+            kind = (regimes[k], settled[k], word.p if word else 0, sorted((word.n, word.m)) if word else [])
+            _count(listed, kind, (size[k], ratio[k]), many, k)
+    return found
+
+
+def _count(
+    listed: list[tuple[Attractor, int]], kind: tuple[Any, ...], sizes: tuple[float, float], many: Classified, k: int
+) -> None:
+    """Count run k with the attractor that it came to, or list it as a new one."""
+    for at, (known, count) in enumerate(listed):
+        # n:m and its mirror image m:n are one attractor.
+        sides = sorted((known.n or 0, known.m or 0)) if known.p else []
+        same = kind == (known.regime, known.settled, known.p or 0, sides)
+        if same and known.p:
+            pairs = zip((known.measures.max_abs_x1, known.measures.kinetic_ratio), sizes, strict=True)
+            same = all(abs(x - y) <= SAME * (1.0 + abs(x)) for x, y in pairs)
+        if same:
+            listed[at] = (known, count + 1)
+            return
+    listed.append((many.attractor(k), 1))
+
+
+def _random_starts(p: Params, random: int, seed: int) -> np.ndarray:
+    """Return random starts, shape (random, 4): x1, v1, x2, v2."""
     bits = np.array(list(p.as_dict().values())).view(np.uint32)
     rng = np.random.default_rng([seed, *bits.tolist()])
     size = float(np.clip(2.0 * no_ball(p), 0.1, 3.0))
-    for _ in range(random):
+    starts = np.empty((random, 4))
+    for k in range(random):
         x1, v1, v2 = rng.uniform(-size, size, 3).tolist()
-        x2 = x1 - float(rng.uniform(-1.0, 1.0))
-        other = settle(p, x1=x1, v1=v1, x2=x2, v2=v2, settle=settle_for, record=record)
-        for k, known in enumerate(found):
-            if _same(known, other):
-                counts[k] += 1
-                break
-        else:
-            found.append(other)
-            counts.append(1)
-    return list(zip(found, counts, strict=True))
-
-
-def _same(a: Attractor, b: Attractor) -> bool:
-    if (a.regime, a.settled, a.word is None) != (b.regime, b.settled, b.word is None):
-        return False
-    if a.name is None or b.name is None:
-        return True
-    # n:m and its mirror image m:n are one attractor.
-    if (a.p, sorted((a.n or 0, a.m or 0))) != (b.p, sorted((b.n or 0, b.m or 0))):
-        return False
-    pairs = ((a.measures.max_abs_x1, b.measures.max_abs_x1), (a.measures.kinetic_ratio, b.measures.kinetic_ratio))
-    return all(abs(x - y) <= SAME * (1.0 + abs(x)) for x, y in pairs)
+        starts[k] = x1, v1, x1 - float(rng.uniform(-1.0, 1.0)), v2
+    return starts
 
 
 def attractor_rows(point_id: str, found: list[tuple[Attractor, int]], random: int) -> list[dict[str, Any]]:

@@ -66,14 +66,16 @@ class TrajectoryOptions(msgspec.Struct, frozen=True, forbid_unknown_fields=True)
 class SweepOptions(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """The settled attractor of each point: `settle` periods, then `record` periods that are classified and measured.
 
-    `keep` is the number of recorded periods whose impacts are kept where the attractor is not periodic; of a periodic
-    one, one repetition is. At each point `random` further starts are drawn with `seed`, and the table ``attractors``
-    lists every attractor that they come to beside the point's own.
+    Where nothing repeats, a point runs on for `watch` periods before its Lyapunov exponent is believed. `keep` is the
+    number of recorded periods whose impacts are kept where the attractor is not periodic; of a periodic one, one
+    repetition is; 0 keeps no impacts. At each point `random` further starts are drawn with `seed`, and the table
+    ``attractors`` lists every attractor that they come to beside the point's own.
     """
 
     start: Start = msgspec.field(default_factory=Start)
     settle: int = 400
     record: int = 64
+    watch: int = 512
     keep: int = 64
     random: int = 0
     seed: int = 0
@@ -223,7 +225,8 @@ class CheckOptions(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 def _check_simulation(params: dict[str, float], options: Any) -> None:
     Params(**params)
-    for name, least in (("settle", 0), ("record", 2), ("per_period", 2), ("keep", 1), ("random", 0), ("seed", 0)):
+    limits = {"settle": 0, "record": 2, "watch": 16, "per_period": 2, "keep": 0, "random": 0, "seed": 0}
+    for name, least in limits.items():
         value = getattr(options, name, least)
         if value < least:
             raise ParameterError(f"{name} is {value}, allowed is {name} >= {least}")

@@ -25,7 +25,6 @@ def point_row(
     *,
     carry: str | None,
     before: float,
-    record: float,
 ) -> dict[str, Any]:
     """Return the row of ``points`` for one simulated point.
 
@@ -41,8 +40,6 @@ def point_row(
         The carried axis, if the start was the end of another point.
     before : float
         Forcing periods that were run before the attractor was settled for.
-    record : float
-        Forcing periods of the recording.
     """
     p = attractor.params
     m = attractor.measures
@@ -54,7 +51,7 @@ def point_row(
         **{name: start[name] for name in STATE},
         **{f"end_{name}": attractor.final[name] for name in STATE},
         "settle_periods": before + attractor.transient,
-        "record_periods": record,
+        "record_periods": attractor.recorded,
         "regime": attractor.regime,
         "settled": attractor.settled,
         "remaining": attractor.remaining,

@@ -7,23 +7,48 @@ from typing import Any
 import numpy as np
 import pyarrow as pa
 
-from vines.attractors import Attractor, settle
-from vines.model import Params
+from vines.attractors import Attractor, classify_many, settle
+from vines.model import PARAMETER_NAMES, Params
 from vines.pipeline import Batch, Job
 from vines.stages._coexisting import attractor_rows, coexisting
 from vines.stages._rows import STATE, impact_rows, point_row
 
-__all__ = ["compute"]
+__all__ = ["compute", "representative"]
 
 
 def compute(job: Job) -> Batch:
-    """Settle every point of the job; carried points start where the one before them ended."""
+    """Settle every point of the job; carried points start where the one before them ended, all others run at once."""
     options: Any = job.options
-    at_rest = {name: getattr(options.start, name) for name in STATE[:4]} | {"phase": 0.0}
-    start = at_rest if job.start is None else {name: float(job.start[f"end_{name}"]) for name in STATE}
+    starts, own = _along_the_chain(job) if job.carry is not None else _each_for_itself(job)
+    listed = coexisting(
+        own,
+        random=options.random,
+        seed=options.seed,
+        settle=options.settle,
+        record=options.record,
+        watch=options.watch,
+    )
     rows: list[dict[str, Any]] = []
     impacts: list[dict[str, Any]] = []
     attractors: list[dict[str, Any]] = []
+    for identity, start, attractor, found in zip(job.points.ids, starts, own, listed, strict=True):
+        rows.append(point_row(identity, attractor, start, carry=job.carry, before=0))
+        if options.keep:
+            impacts.append(impact_rows(identity, attractor.params, representative(attractor, options.keep)))
+        attractors += attractor_rows(identity, found, options.random)
+    if not impacts:
+        impacts.append(impact_rows("", own[0].params, own[0].impacts[:0]))
+    columns = {name: np.concatenate([part[name] for part in impacts]) for name in impacts[0]}
+    return Batch(tables={"points": rows, "impacts": pa.table(columns), "attractors": attractors})
+
+
+def _along_the_chain(job: Job) -> tuple[list[dict[str, float]], list[Attractor]]:
+    """Return starts and attractors where each point starts from the end of the one before."""
+    options: Any = job.options
+    start = _start(job)
+    if job.start is not None:
+        start = {name: float(job.start[f"end_{name}"]) for name in STATE}
+    starts, own = [], []
     for point in job.points:
         attractor = settle(
             Params(**point.params),
@@ -34,17 +59,32 @@ def compute(job: Job) -> Batch:
             phi=start["phase"],
             settle=options.settle,
             record=options.record,
+            watch=options.watch,
         )
-        rows.append(point_row(point.id, attractor, start, carry=job.carry, before=0, record=options.record))
-        impacts.append(impact_rows(point.id, attractor.params, representative(attractor, options.keep)))
-        found = coexisting(
-            attractor, random=options.random, seed=options.seed, settle_for=options.settle, record=options.record
-        )
-        attractors += attractor_rows(point.id, found, options.random)
-        if job.carry is not None:
-            start = {name: attractor.final[name] for name in STATE}
-    columns = {name: np.concatenate([part[name] for part in impacts]) for name in impacts[0]}
-    return Batch(tables={"points": rows, "impacts": pa.table(columns), "attractors": attractors})
+        starts.append(start)
+        own.append(attractor)
+        start = {name: attractor.final[name] for name in STATE}
+    return starts, own
+
+
+def _each_for_itself(job: Job) -> tuple[list[dict[str, float]], list[Attractor]]:
+    """Return starts and attractors where every point starts as the options say."""
+    options: Any = job.options
+    start = _start(job)
+    many = classify_many(
+        {name: job.points.column(name) for name in PARAMETER_NAMES},
+        start,
+        settle=options.settle,
+        record=options.record,
+        watch=options.watch,
+        impacts=options.keep > 0,
+    )
+    return [start] * len(many), [many.attractor(k) for k in range(len(many))]
+
+
+def _start(job: Job) -> dict[str, float]:
+    options: Any = job.options
+    return {name: float(getattr(options.start, name)) for name in STATE[:4]} | {"phase": 0.0}
 
 
 def representative(attractor: Attractor, keep: int) -> np.ndarray:

@@ -43,7 +43,7 @@ def compute(job: Job) -> Batch:
         wait = 0 if options.settle else CLASSIFY_AFTER
         attractor = settle(p, **_initial(run.final), settle=wait, record=CLASSIFY_OVER)
         before = options.settle + options.record
-        rows.append(point_row(point.id, attractor, start, carry=job.carry, before=before, record=CLASSIFY_OVER))
+        rows.append(point_row(point.id, attractor, start, carry=job.carry, before=before))
         impacts.append(impact_rows(point.id, p, representative(attractor, CLASSIFY_OVER)))
         logs[point.id] = f"{point.id}.mcap"
         write_run(

@@ -1,0 +1,199 @@
+"""Say what a recorded window shows: a repetition, no impact, or nothing yet (docs/dynamics.md)."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from vines.attractors import _verdict as v
+from vines.attractors._contacts import contacts, mirror_difference, repetition
+from vines.dynamics import _advance as col
+from vines.dynamics._jit import njit
+from vines.dynamics._tangent import tangent_product
+from vines.orbits._eigenvalues import eigenvalues_kernel
+
+__all__ = ["MAX_P", "NEAR", "clear", "judge_window", "note_approach"]
+
+MAX_P = 32
+"""Largest number of forcing periods over which a repetition is looked for."""
+
+UNSTABLE = 1e-5
+"""How far the largest multiplier must lie outside the unit circle for a repeating orbit to be called unstable."""
+
+NEAR = 1e-3
+"""Runs that repeat to within this, but not to the tolerance, come to or leave a periodic orbit; they are no torus."""
+
+CLEAR = 16.0
+"""Shortest window, in forcing periods, in which a decay of these differences is believed."""
+
+HALVED = 1e-6
+"""A run that repeats, and nearly does so in half the time, is not yet known to need the whole of it."""
+
+ROUNDING = 1e-12
+"""Differences of repetitions below this are rounding: the run comes no nearer."""
+
+FOREVER = 1e6
+"""A ball that would take more than this many forcing periods to the next wall is called without impact."""
+
+
+@njit
+def clear(verdict):
+    """Make a verdict say nothing yet."""
+    verdict[:] = 0.0
+    verdict[v.NUDGED] = math.nan
+    verdict[v.LYAPUNOV_ERROR] = math.nan
+    verdict[v.EXPONENTS : v.MULTIPLIERS_IM + 4] = math.nan
+    verdict[v.BEST_LAST] = math.inf
+
+
+@njit
+def judge_window(c, rows, n, periods, tolerance, verdict):
+    """Fill a verdict with what a window shows; its regime is OPEN where nothing repeats within the tolerance.
+
+    Parameters
+    ----------
+    c : Constants
+    rows : ndarray, shape (m, ROW)
+        The first n of them are the window, from time 0 to the row of its end.
+    n : int
+    periods : float
+        Length of the window in forcing periods; repetitions of at most half of it are looked for.
+    tolerance : float
+        Largest distance from the periodic orbit (velocities relative to the largest speed, times absolute).
+    verdict : ndarray, shape (VERDICT,)
+        Overwritten.
+
+    Returns
+    -------
+    ndarray of int8
+        Sides of the contacts in one repetition, in order of time; empty if there is none.
+    """
+    clear(verdict)
+    none = np.empty(0, dtype=np.int8)
+    kept = contacts(rows, n, 0.0)
+    if kept.shape[0] == 0:
+        _without_impact(c, rows, n, tolerance, verdict)
+        return none
+    period = 2.0 * math.pi / c.Omega
+    scale = _largest_speed(rows, n)
+    verdict[v.SCALE] = scale
+    blocks = np.empty(kept.shape[0])
+    lasts = np.full(MAX_P + 1, math.inf)
+    for p in range(1, min(MAX_P, int(periods / 2.0 + 1e-9)) + 1):
+        lag, filled = repetition(rows, kept, p * period, scale, blocks)
+        if filled == 0:
+            continue
+        last = blocks[filled - 1]
+        lasts[p] = last
+        # A run within the tolerance of its orbit repeats to twice that, and to less after 2 p periods where a
+        # multiplier is near -1: with a tighter bound here the orbit would be named with twice its period.
+        if last <= 2.5 * tolerance:
+            half = lasts[p // 2] if p % 2 == 0 else math.inf
+            return _repeats(c, rows, kept, p, lag, last, half, tolerance, verdict)
+        if last < 0.5 * verdict[v.BEST_LAST]:
+            verdict[v.BEST_P] = p
+            verdict[v.BEST_LAST] = last
+            verdict[v.BEST_WORST] = blocks[:filled].max()
+            verdict[v.BEST_FIRST], verdict[v.BEST_FILLED] = blocks[0], filled
+    verdict[v.REGIME] = v.OPEN
+    verdict[v.REMAINING] = math.nan
+    first, last = verdict[v.BEST_FIRST], verdict[v.BEST_LAST]
+    if periods >= CLEAR and last < NEAR and last < 0.5 * first:
+        verdict[v.REGIME] = v.UNSETTLED
+        note_approach(verdict, math.log(first / last) / ((verdict[v.BEST_FILLED] - 1.0) * verdict[v.BEST_P]), tolerance)
+    return none
+
+
+@njit
+def note_approach(verdict, rate, tolerance):
+    """Note that a run comes to a periodic orbit, its distance falling as exp(-rate t) with t in forcing periods."""
+    left = verdict[v.BEST_LAST] / -math.expm1(-rate * verdict[v.BEST_P])
+    verdict[v.REMAINING] = max(math.log(left / tolerance) / rate, 0.0)
+    verdict[v.REASON], verdict[v.VALUE] = v.COMES, math.exp(-rate)
+
+
+@njit
+def _largest_speed(rows, n):
+    """Return the scale of velocities and displacements, at least 1e-3 so that rest is no special case."""
+    speed = 1e-3
+    for i in range(n):
+        if rows[i, col.KIND] == col.IMPACT:
+            speed = max(speed, abs(rows[i, col.V1]), abs(rows[i, col.V2]))
+    return speed
+
+
+@njit
+def _repeats(c, rows, kept, p, lag, last, half, tolerance, verdict):
+    """Judge a run that repeats: it may still be creeping towards its orbit, or sit on an unstable one."""
+    none = np.empty(0, dtype=np.int8)
+    count = kept.shape[0]
+    span = p * 2.0 * math.pi / c.Omega
+    first, end = kept[count - 1 - lag], kept[count - 1]
+    roots = np.empty(4, dtype=np.complex128)
+    eigenvalues_kernel(tangent_product(c, rows, first, end).astype(np.complex128), roots)
+    order = np.argsort(-np.abs(roots))
+    roots = roots[order]
+    for i in range(first + 1, end + 1):
+        if rows[i, col.KIND] == col.STICK:
+            # After a merge only the common motion is left, two directions of four; what else shows is rounding.
+            roots[2:] = 0.0
+            break
+    for k in range(4):
+        size = abs(roots[k])
+        verdict[v.MULTIPLIERS_RE + k] = roots[k].real
+        verdict[v.MULTIPLIERS_IM + k] = roots[k].imag
+        verdict[v.EXPONENTS + k] = math.log(size) / span if size > 0.0 else -math.inf
+    verdict[v.LYAPUNOV_ERROR] = 0.0
+    largest = abs(roots[0])
+    if largest > 1.0 + UNSTABLE:
+        verdict[v.UNSTABLE] = 1.0
+        verdict[v.REMAINING] = p * math.log(NEAR / max(last, 1e-15)) / math.log(largest)
+        verdict[v.REASON], verdict[v.VALUE] = v.ON_UNSTABLE, largest
+        return none
+    # The difference of one repetition is |1 - multiplier| of the distance that is left.
+    distance = last / np.min(np.abs(1.0 - roots)) if largest < 1.0 else math.inf
+    reason = v.CREEPS
+    if half < HALVED and half > 2.0 * max(distance, tolerance):
+        distance, reason = 0.5 * half, v.DOUBLES
+    if distance > tolerance and (last > ROUNDING or reason == v.DOUBLES):
+        verdict[v.REASON], verdict[v.VALUE], verdict[v.OTHER] = reason, distance, largest
+        verdict[v.REMAINING] = math.inf
+        if distance < math.inf and largest < 1.0:
+            verdict[v.REMAINING] = p * math.log(distance / tolerance) / -math.log(largest)
+        return none
+    sides = np.empty(lag, dtype=np.int8)
+    for k in range(lag):
+        sides[k] = 1 if rows[kept[count - lag + k], col.SIDE] > 0.0 else -1
+        verdict[v.LEFT if sides[k] > 0 else v.RIGHT] += 1.0
+    verdict[v.REGIME], verdict[v.SETTLED] = v.PERIODIC, 1.0
+    verdict[v.P], verdict[v.LAG] = p, lag
+    mirrored = mirror_difference(rows, kept, lag, span, verdict[v.SCALE])
+    verdict[v.SYMMETRIC] = 1.0 if mirrored <= 1e3 * max(tolerance, distance) else 0.0
+    return sides
+
+
+@njit
+def _without_impact(c, rows, n, tolerance, verdict):
+    """Judge a run without impacts: a drifting ball will hit a wall one day; the oscillator's start must die out."""
+    last = rows[n - 1]
+    period = 2.0 * math.pi / c.Omega
+    verdict[v.REGIME], verdict[v.LYAPUNOV_ERROR] = v.NO_IMPACT, 0.0
+    verdict[v.EXPONENTS], verdict[v.EXPONENTS + 1] = 0.0, 0.0
+    verdict[v.EXPONENTS + 2], verdict[v.EXPONENTS + 3] = -0.5 * c.lam, -0.5 * c.lam
+    drift = abs(last[col.A_V2]) if last[col.MODE] == 0.0 else 0.0
+    periods = 2.0 / (drift * period) if drift > 0.0 else math.inf
+    if periods < FOREVER:
+        verdict[v.REGIME], verdict[v.REMAINING], verdict[v.REASON] = v.UNSETTLED, periods, v.DRIFTS
+        return
+    cosine, sine = math.cos(last[col.PHASE]), math.sin(last[col.PHASE])
+    q_re = c.free.qr * cosine - c.free.qi * sine
+    q_im = c.free.qr * sine + c.free.qi * cosine
+    excess = math.hypot(last[col.X1] - q_re, last[col.V1] + c.Omega * q_im)
+    if excess > max(tolerance, 1e-15):
+        verdict[v.REASON], verdict[v.VALUE] = v.RINGS, excess
+        verdict[v.REMAINING] = math.inf
+        if c.lam > 0.0:
+            verdict[v.REMAINING] = math.log(excess / tolerance) / (0.5 * c.lam * period)
+        return
+    verdict[v.SETTLED] = 1.0

@@ -1,0 +1,94 @@
+"""From the numbers of a verdict to an `Attractor`."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import numpy.typing as npt
+
+from vines.attractors import _verdict as v
+from vines.attractors._attractor import Attractor
+from vines.dynamics._measures import measures_from
+from vines.dynamics._simulate import STATUS
+from vines.model import Params, Word
+
+__all__ = ["attractor_from", "word_of"]
+
+_WORDS: dict[tuple[bytes, int], Word] = {}
+
+
+def word_of(sides: npt.NDArray[np.int8], p: int) -> Word:
+    """Return the word of the contacts in one repetition of p forcing periods; each is worked out once."""
+    key = (sides.tobytes(), p)
+    word = _WORDS.get(key)
+    if word is None:
+        letters = "".join("L" if side > 0 else "R" for side in sides)
+        word = _WORDS[key] = Word(letters if p == 1 else f"{letters}/{p}T")
+    return word
+
+
+def attractor_from(
+    p: Params,
+    verdict: npt.NDArray[np.float64],
+    totals: npt.NDArray[np.float64],
+    word: Word | None,
+    impacts: npt.NDArray[np.void],
+    t: float,
+    lyapunov: bool,
+) -> Attractor:
+    """Return the attractor that a verdict describes.
+
+    Parameters
+    ----------
+    p : Params
+        Parameters.
+    verdict, totals : ndarray
+        As `look` fills them, NUDGED and PERIODS (those before the recording) included.
+    word : Word or None
+        Its contacts, if it is periodic.
+    impacts : structured ndarray
+        Recorded impacts.
+    t : float
+        Time at the start of the run.
+    lyapunov : bool
+        Whether exponents were asked for.
+    """
+    value = verdict.tolist()
+    regime = int(value[v.REGIME])
+    measures = measures_from(p, totals)
+    known = lyapunov or bool(value[v.KNOWN])
+    exponents = np.full(4, math.nan)
+    if known:
+        exponents = verdict[v.EXPONENTS : v.EXPONENTS + 4].copy()
+    multipliers = None
+    if not math.isnan(value[v.MULTIPLIERS_RE]):
+        multipliers = verdict[v.MULTIPLIERS_RE : v.MULTIPLIERS_RE + 4] + 1j * verdict[v.MULTIPLIERS_IM :][:4]
+    final = dict(zip(("x1", "v1", "x2", "v2", "phase"), value[v.FINAL : v.FINAL + 5], strict=True))
+    return Attractor(
+        params=p,
+        regime=v.REGIMES[regime],
+        settled=bool(value[v.SETTLED]),
+        word=str(word) if word else None,
+        name=word.name if word else None,
+        n=word.n if word else None,
+        m=word.m if word else None,
+        p=word.p if word else None,
+        symmetric=bool(value[v.SYMMETRIC]) if word else None,
+        sticks=measures.sticks_per_period,
+        measures=measures,
+        kinetic_ratio_error=value[v.KINETIC_RATIO_ERROR],
+        max_abs_x1_error=value[v.MAX_ABS_X1_ERROR],
+        rms_x1_error=value[v.RMS_X1_ERROR],
+        impacts=impacts,
+        final=final | {"t": t + (value[v.PERIODS] + value[v.RECORDED]) * p.period},
+        lyapunov=float(exponents[0]),
+        lyapunov_error=value[v.LYAPUNOV_ERROR] if known else math.nan,
+        exponents=exponents,
+        multipliers=multipliers,
+        remaining=value[v.REMAINING],
+        transient=value[v.PERIODS],
+        recorded=value[v.RECORDED],
+        status=STATUS[int(value[v.STATUS])],
+        reason=v.reason_text(verdict),
+    )

@@ -1,0 +1,125 @@
+"""A recorded window of a run: its rows, grown as needed, and the measures taken over it."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from vines.attractors import _verdict as v
+from vines.dynamics import _advance as col
+from vines.dynamics import _totals as entry
+from vines.dynamics._advance import advance, begin, state_now
+from vines.dynamics._jit import njit
+from vines.dynamics._totals import window_totals
+
+__all__ = ["measure_window", "open_window", "run_window"]
+
+BLOCKS = 8
+"""Blocks of the recorded window from whose scatter standard errors are taken."""
+
+
+@njit
+def open_window(state, rows):
+    """Begin a window at the time of the state; return the number of rows that it has."""
+    begin(state, rows)
+    return 1
+
+
+@njit
+def run_window(c, state, stop, cap, rows, count):
+    """Run on to `stop` with every row kept, and write the row of the end behind them.
+
+    Parameters
+    ----------
+    c : Constants
+    state : ndarray
+        The run, changed in place.
+    stop : float
+        Time at which to stop.
+    cap : int
+        Most events in one forcing period.
+    rows : ndarray, shape (m, ROW)
+        Room; where it is not enough, more is taken.
+    count : int
+        Rows of the window so far, that of an end left out: the window can be run on.
+
+    Returns
+    -------
+    (rows, count, status)
+        The rows, how many there are without that of the end, and COMPLETE, EVENT_CAP or STEP_LIMIT.
+    """
+    count, code = advance(c, state, stop, cap, rows, count)
+    while code == col.BUFFER_FULL:
+        wider = np.empty((2 * rows.shape[0], col.ROW))
+        wider[:count] = rows[:count]
+        rows = wider
+        count, code = advance(c, state, stop, cap, rows, count)
+    if count == rows.shape[0]:
+        wider = np.empty((2 * rows.shape[0], col.ROW))
+        wider[:count] = rows[:count]
+        rows = wider
+    end = stop if code == col.COMPLETE else state[col.S_T] + state[col.S_CLEAR]
+    x1, v1, x2, v2, phase, tau = state_now(c, state, end)
+    last = rows[count]
+    last[:] = 0.0
+    last[col.KIND], last[col.TIME], last[col.TAU] = col.END, end, tau
+    last[col.PHASE], last[col.MODE] = phase, state[col.S_MODE]
+    last[col.X1], last[col.V1], last[col.X2], last[col.V2] = x1, v1, x2, v2
+    last[col.A_V1], last[col.A_V2] = v1, v2
+    return rows, count, code
+
+
+@njit
+def measure_window(c, rows, n, verdict):
+    """Return the totals of a window: over one repetition if it is periodic, else over all of it with its errors."""
+    stop = rows[n - 1, col.TIME]
+    if verdict[v.REGIME] == v.PERIODIC:
+        span = verdict[v.P] * 2.0 * math.pi / c.Omega
+        stop = _quiet_time(rows, n, span)
+        return window_totals(c, rows, n, stop - span, stop)
+    total = np.zeros(entry.TOTALS)
+    width = stop / BLOCKS
+    if not width > 0.0:
+        verdict[v.KINETIC_RATIO_ERROR] = verdict[v.MAX_ABS_X1_ERROR] = verdict[v.RMS_X1_ERROR] = math.nan
+        return total
+    values = np.empty((3, BLOCKS))
+    for k in range(BLOCKS):
+        part = window_totals(c, rows, n, k * width, stop if k == BLOCKS - 1 else (k + 1) * width)
+        values[0, k] = c.mu * part[entry.V2_SQUARE] / part[entry.V1_SQUARE] if part[entry.V1_SQUARE] > 0.0 else math.nan
+        values[1, k] = part[entry.MAX_ABS_X1]
+        values[2, k] = math.sqrt(max(part[entry.X1_SQUARE] / part[entry.DURATION], 0.0))
+        if part[entry.MAX_ABS_X1] > total[entry.MAX_ABS_X1] or k == 0:
+            total[entry.MAX_ABS_X1] = part[entry.MAX_ABS_X1]
+            total[entry.T_MAX_ABS_X1] = part[entry.T_MAX_ABS_X1]
+        for j in range(entry.TOTALS):
+            if j not in (entry.MAX_ABS_X1, entry.T_MAX_ABS_X1):
+                total[j] += part[j]
+    verdict[v.KINETIC_RATIO_ERROR] = _error_of_mean(values[0])
+    verdict[v.MAX_ABS_X1_ERROR] = _error_of_mean(values[1])
+    verdict[v.RMS_X1_ERROR] = _error_of_mean(values[2])
+    return total
+
+
+@njit
+def _error_of_mean(values):
+    n = values.shape[0]
+    mean = values.sum() / n
+    return math.sqrt(((values - mean) ** 2).sum() / (n - 1) / n)
+
+
+@njit
+def _quiet_time(rows, n, span):
+    """Return the middle of the longest pause in the last `span`, so that no event lies on the edge of a window."""
+    last = rows[n - 1, col.TIME]
+    longest = -1.0
+    middle = last
+    for i in range(n - 1, 0, -1):
+        if rows[i - 1, col.TIME] < last - span:
+            break
+        pause = rows[i, col.TIME] - rows[i - 1, col.TIME]
+        # Of equal pauses the first in time.
+        if pause >= longest:
+            longest = pause
+            middle = rows[i - 1, col.TIME] + 0.5 * pause
+    return middle
