@@ -74,6 +74,28 @@ class Scatter:
         if not 0 <= self.seed < 2**53:
             raise ParameterError(f"seed is {self.seed!r}; allowed is 0 to 2**53 - 1")
 
+    def check(self, table: npt.NDArray[np.float64]) -> None:
+        """Raise where the model with scatter, which is written over the steady response, does not exist.
+
+        Parameters
+        ----------
+        table : ndarray, shape (n, 5)
+            mu, A, Omega, r, lam.
+
+        Raises
+        ------
+        ParameterError
+            If damping vanishes at the resonance of a harmonic with the oscillator, alone or with the ball on a wall.
+        """
+        for k, (mu, _, Omega, _, lam) in enumerate(table.tolist() if not table[:, 4].all() else ()):
+            for mass in (1.0, 1.0 + mu):
+                for w in (Omega, 2.0 * Omega) if self.second > 0 else (Omega,):
+                    if math.hypot(1.0 - mass * w * w, lam * w) < 1e-9:
+                        raise ParameterError(
+                            f"lam is {lam:g} at the resonance of mass {mass:g} in run {k}; allowed with scatter is "
+                            "lam > 0 there"
+                        )
+
     def numbers(self) -> npt.NDArray[np.float64]:
         """Return the fields as an array, for the kernel."""
         return np.array(
