@@ -296,7 +296,7 @@ class _Work:
         return out
 
 
-def _measures(mu: Floats, totals: Floats, errors: Floats | None) -> npt.NDArray[np.void]:
+def _measures(mu: Floats, totals: Floats, errors: Floats | None = None) -> npt.NDArray[np.void]:
     out = np.empty(len(totals), dtype=MEASURES)
     duration = totals[:, entry.DURATION]
     v1, v2 = totals[:, entry.V1_SQUARE], totals[:, entry.V2_SQUARE]

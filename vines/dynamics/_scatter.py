@@ -87,14 +87,16 @@ class Scatter:
         ParameterError
             If damping vanishes at the resonance of a harmonic with the oscillator, alone or with the ball on a wall.
         """
-        for k, (mu, _, Omega, _, lam) in enumerate(table.tolist() if not table[:, 4].all() else ()):
-            for mass in (1.0, 1.0 + mu):
-                for w in (Omega, 2.0 * Omega) if self.second > 0 else (Omega,):
-                    if math.hypot(1.0 - mass * w * w, lam * w) < 1e-9:
-                        raise ParameterError(
-                            f"lam is {lam:g} at the resonance of mass {mass:g} in run {k}; allowed with scatter is "
-                            "lam > 0 there"
-                        )
+        mu, Omega, lam = table[:, 0], table[:, 2], table[:, 4]
+        for w in (Omega, 2.0 * Omega) if self.second > 0 else (Omega,):
+            for mass in (np.ones_like(mu), 1.0 + mu):
+                bad = np.hypot(1.0 - mass * w * w, lam * w) < 1e-9
+                if bad.any():
+                    k = int(np.flatnonzero(bad)[0])
+                    raise ParameterError(
+                        f"lam is {lam[k]:g} at the resonance of mass {mass[k]:g} in run {k}; allowed with scatter is "
+                        "lam > 0 there"
+                    )
 
     def numbers(self) -> npt.NDArray[np.float64]:
         """Return the fields as an array, for the kernel."""
@@ -127,7 +129,9 @@ def _oscillator(o, mass, p, numbers):
     q1 = A * complex(lam * Omega, -1.0) / complex(1.0 - mass * Omega * Omega, lam * Omega)
     w = 2.0 * Omega
     shift = complex(math.cos(numbers[5]), math.sin(numbers[5]))
-    q2 = numbers[4] * A * complex(lam * w, -1.0) / complex(1.0 - mass * w * w, lam * w) * shift
+    q2 = complex(0.0, 0.0)
+    if numbers[4] > 0.0:
+        q2 = numbers[4] * A * complex(lam * w, -1.0) / complex(1.0 - mass * w * w, lam * w) * shift
     o[Q1R], o[Q1I], o[Q2R], o[Q2I], o[STATIC] = q1.real, q1.imag, q2.real, q2.imag, 1.0
 
 
