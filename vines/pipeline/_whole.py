@@ -70,6 +70,7 @@ def compute_whole(prepared: Prepared, store: Store, planner: Planner, *, replace
 
 def _input(name: str, result: Result) -> Input:
     form = result.manifest["ingredients"]
+    carry = form["carry"] or {}
     return Input(
         name=name,
         kind=result.manifest["kind"],
@@ -79,6 +80,8 @@ def _input(name: str, result: Result) -> Input:
         tables=result.tables,
         logs=result.logs,
         folder=result.folder,
+        carried=carry.get("axis", ""),
+        direction=carry.get("direction", ""),
     )
 
 

@@ -19,7 +19,14 @@ SAME = 1e-6
 
 
 def coexisting(
-    own: Sequence[Attractor], *, random: int, seed: int, settle: float, record: float, watch: float
+    own: Sequence[Attractor],
+    *,
+    random: int,
+    seed: int,
+    settle: float,
+    record: float,
+    watch: float,
+    impacts: bool = False,
 ) -> list[list[tuple[Attractor, int]]]:
     """Return for each point its attractors, no two alike, and how many of the random starts came to each.
 
@@ -34,6 +41,8 @@ def coexisting(
         Seed; the starts of a point follow from it and the parameters alone.
     settle, record, watch : float
         Forcing periods, as for the points themselves.
+    impacts : bool
+        Whether the attractors of random starts keep their impacts.
     """
     found = [[(attractor, 0)] for attractor in own]
     if not random:
@@ -46,6 +55,7 @@ def coexisting(
         settle=settle,
         record=record,
         watch=watch,
+        impacts=impacts,
     )
     ratio, size = many.measures["kinetic_ratio"].tolist(), many.measures["max_abs_x1"].tolist()
     regimes, settled = many.regime.tolist(), many.settled.tolist()

@@ -175,7 +175,7 @@ class BasinsOptions(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 
 class Cell(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """A panel of a sheet: what it shows of which of the needed stages.
+    """A panel of a figure with panels of several kinds: what it shows of which of the needed stages.
 
     Of runs it shows the two ends of the cavity with the ball (`ends`) or gap and relative velocity (`gap`) over
     `periods` forcing periods, or the phase plane of all of them. Of sweeps and branches that vary one parameter it
@@ -184,9 +184,13 @@ class Cell(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     `families` are the labels of branches, such as ``1:1 symmetric``, all by default. `marks` are the types of
     bifurcations that are marked, each with what is written beside it; all by default. `opacity` is that of simulated
     impacts, where they repeat they add up to solid. `window` and `y` are the parts of the axes that are shown.
+
+    In a ``response`` it shows `energy` (K2/K1 and max|x1|), `max_abs_x1` alone, or `w_dot` of sweeps that are carried
+    along one axis, of their points those that agree with `where`. What then differs beside the carried axis tells
+    curves apart; they get `colours` in ascending order.
     """
 
-    show: Literal["ends", "gap", "phase_plane", "multipliers", "w_dot", "dt", "x1", "phase"]
+    show: Literal["ends", "gap", "phase_plane", "multipliers", "w_dot", "dt", "x1", "phase", "energy", "max_abs_x1"]
     of: tuple[str, ...]
     title: str = ""
     periods: float = 3.0
@@ -195,6 +199,8 @@ class Cell(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     opacity: float | None = None
     window: tuple[float, float] | None = None
     y: tuple[float, float] | None = None
+    where: dict[str, float] = {}
+    colours: tuple[Literal["red", "green", "blue", "black", "orange"], ...] = ("red", "green", "blue")
 
 
 class FigureOptions(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -202,10 +208,11 @@ class FigureOptions(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
     `window` is the part of the varied parameter that is shown; with `mirror` the mirror images of asymmetric orbits are
     drawn too. A sheet has `cells` of several kinds in `columns`, in rows of the `height` given in inches,
-    with `letters` on each panel or each row.
+    with `letters` on each panel or each row. A response has `cells` of sweeps with all attractors that coexist, and a
+    strip with the reduction of max|x1| below each that shows energies.
     """
 
-    plot: Literal["bifurcation", "reduced", "multipliers", "chart", "basins", "sheet"]
+    plot: Literal["bifurcation", "reduced", "multipliers", "chart", "basins", "sheet", "response"]
     panels: tuple[str, ...] = ()
     title: str = ""
     width: float = 7.0

@@ -90,7 +90,7 @@ def point_row(
     }
 
 
-def impact_rows(point_id: str, params: Params, impacts: np.ndarray) -> dict[str, Any]:
+def impact_rows(point_id: str, params: Params, impacts: np.ndarray, number: int = 0) -> dict[str, Any]:
     """Return columns of ``impacts`` for a run of impacts; the last one has no successor and is left out.
 
     Parameters
@@ -101,11 +101,14 @@ def impact_rows(point_id: str, params: Params, impacts: np.ndarray) -> dict[str,
         Its parameters, repeated in each row so that the table answers alone.
     impacts : (n + 1,) structured array
         As :attr:`Trajectory.impacts`.
+    number : int
+        Number of the attractor at the point.
     """
     n = max(len(impacts) - 1, 0)
     kept = impacts[:n]
     columns: dict[str, Any] = {"point_id": np.full(n, point_id, dtype=object)}
     columns |= {name: np.full(n, value) for name, value in params.as_dict().items()}
+    columns["attractor"] = np.full(n, number, dtype=np.int64)
     columns["index"] = np.arange(n, dtype=np.int64)
     for name in ("t", "side", "phase", "x1", "v1", "x2", "v2", "w_dot", "v1_after", "v2_after"):
         columns[name] = kept[name]

@@ -27,6 +27,7 @@ def compute(job: Job) -> Batch:
         settle=options.settle,
         record=options.record,
         watch=options.watch,
+        impacts=options.keep > 0,
     )
     rows: list[dict[str, Any]] = []
     impacts: list[dict[str, Any]] = []
@@ -34,7 +35,9 @@ def compute(job: Job) -> Batch:
     for identity, start, attractor, found in zip(job.points.ids, starts, own, listed, strict=True):
         rows.append(point_row(identity, attractor, start, carry=job.carry, before=0))
         if options.keep:
-            impacts.append(impact_rows(identity, attractor.params, representative(attractor, options.keep)))
+            for number, (each, _) in enumerate(found):
+                kept = representative(each, options.keep)
+                impacts.append(impact_rows(identity, each.params, kept, number))
         attractors += attractor_rows(identity, found, options.random)
     if not impacts:
         impacts.append(impact_rows("", own[0].params, own[0].impacts[:0]))
