@@ -12,7 +12,7 @@ from vines.dynamics import no_ball
 from vines.model import PARAMETER_NAMES, Params, Word
 from vines.stages._rows import STATE
 
-__all__ = ["attractor_rows", "coexisting"]
+__all__ = ["attractor_rows", "coexisting", "random_starts"]
 
 SAME = 1e-6
 """Two periodic attractors of one name are one, or mirror images, if their max|x1| and K2/K1 differ by less."""
@@ -47,7 +47,7 @@ def coexisting(
     found = [[(attractor, 0)] for attractor in own]
     if not random:
         return found
-    starts = np.concatenate([_random_starts(attractor.params, random, seed) for attractor in own])
+    starts = np.concatenate([random_starts(attractor.params, random, seed) for attractor in own])
     columns = np.array([[getattr(attractor.params, name) for name in PARAMETER_NAMES] for attractor in own])
     many = classify_many(
         dict(zip(PARAMETER_NAMES, np.repeat(columns, random, axis=0).T, strict=True)),
@@ -84,7 +84,7 @@ def _count(
     listed.append((many.attractor(k), 1))
 
 
-def _random_starts(p: Params, random: int, seed: int) -> np.ndarray:
+def random_starts(p: Params, random: int, seed: int) -> np.ndarray:
     """Return random starts, shape (random, 4): x1, v1, x2, v2."""
     bits = np.array(list(p.as_dict().values())).view(np.uint32)
     rng = np.random.default_rng([seed, *bits.tolist()])

@@ -69,10 +69,11 @@ class SweepOptions(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     Where nothing repeats, a point runs on for `watch` periods before its Lyapunov exponent is believed. `keep` is the
     number of recorded periods whose impacts are kept where the attractor is not periodic; of a periodic one, one
     repetition is; 0 keeps no impacts. At each point `random` further starts are drawn with `seed`, and the table
-    ``attractors`` lists every attractor that they come to beside the point's own.
+    ``attractors`` lists every attractor that they come to beside the point's own. With `start = "random"` the own
+    start is drawn in the same way.
     """
 
-    start: Start = msgspec.field(default_factory=Start)
+    start: Start | Literal["random"] = msgspec.field(default_factory=Start)
     settle: int = 400
     record: int = 64
     watch: int = 512
@@ -237,6 +238,8 @@ def _check_simulation(params: dict[str, float], options: Any) -> None:
         value = getattr(options, name, least)
         if value < least:
             raise ParameterError(f"{name} is {value}, allowed is {name} >= {least}")
+    if options.start == "random":
+        return
     gap = options.start.x1 - options.start.x2
     if abs(gap) > 1:
         raise StateError(

@@ -25,6 +25,7 @@ def point_row(
     *,
     carry: str | None,
     before: float,
+    seed: int | None = None,
 ) -> dict[str, Any]:
     """Return the row of ``points`` for one simulated point.
 
@@ -40,6 +41,8 @@ def point_row(
         The carried axis, if the start was the end of another point.
     before : float
         Forcing periods that were run before the attractor was settled for.
+    seed : int, optional
+        With which the start was drawn, if it was.
     """
     p = attractor.params
     m = attractor.measures
@@ -48,6 +51,7 @@ def point_row(
         "point_id": point_id,
         **p.as_dict(),
         "carry": carry,
+        "seed": seed,
         **{name: start[name] for name in STATE},
         **{f"end_{name}": attractor.final[name] for name in STATE},
         "settle_periods": before + attractor.transient,
