@@ -6,6 +6,7 @@ stage together with those it needs.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -123,10 +124,11 @@ def _response(stage: Stage, pipeline: Pipeline) -> None:
             raise _refuse(stage, pipeline, f"{where} shows stages of kind 'sweep' that are carried along one axis")
         for name, value in cell.where.items():
             for one in shown:
-                there = {axis.name: axis.values() for axis in one.axes}.get(name, (one.params.get(name),))
+                there = {axis.name: axis.values() for axis in one.axes}.get(name) or (one.params.get(name, math.nan),)
                 if value not in there:
-                    known = nearest(f"{value:g}", (f"{each:g}" for each in there if each is not None))
-                    raise _refuse(stage, pipeline, f"{where}: {one.name} has no {name} = {value:g}: {known}")
+                    near = min(there, key=lambda each: abs(each - value))
+                    known = f"the nearest of its {len(there)} values is {near:.10g}"
+                    raise _refuse(stage, pipeline, f"{where}: {one.name} has no {name} = {value:g}; {known}")
 
 
 def _sheet(stage: Stage, pipeline: Pipeline) -> None:
