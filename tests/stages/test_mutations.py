@@ -9,12 +9,15 @@ import re
 import shutil
 import subprocess
 import sys
+import tomllib
 
 import pytest
 
 from tests.conftest import REPOSITORY
 
 REDUCED = {
+    "fig8": ("stages.mass_up.vary.mu.step=0.01", "stages.mass_down.vary.mu.step=0.02", "stages.mass_up.random=0",
+             "stages.zoom_up.vary.mu.step=0.01", "stages.zoom_down.vary.mu.step=0.05", "stages.zoom_up.random=0"),
     "fig2": (),
     "fig4": (
         "stages.up.vary.A.step=0.00005", "stages.down.vary.A.step=0.0005", "stages.up.settle=400",
@@ -82,7 +85,10 @@ class Study:
         numeric = {}
         for name, settings in pipelines.items():
             chosen = [word for text in settings for word in ("--set", text)]
-            self._vines("run", name, "checks", "--quiet", *chosen)
+            stages = tomllib.loads((self.folder / "pipelines" / f"{name}.toml").read_text())["stages"]
+            for stage, form in stages.items():
+                if form["kind"] == "check":  # each alone: a stage that fails takes only its own claims with it
+                    self._vines("run", name, stage, "--quiet", *chosen)
             told = self._vines("check", name, "--json")
             rows = json.loads(told) if told.strip() else []
             numeric |= {row["id"]: row for row in rows if row["published_value"] is not None}
