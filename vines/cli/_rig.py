@@ -7,6 +7,10 @@ import click
 from vines.cli import LazyGroup
 
 COMMANDS = {
+    "init": ("vines.cli._rig_init", "Write a commented template of a run folder."),
+    "inspect": ("vines.cli._rig_inspect", "Show what a raw file holds: channels, units, rates, gaps, clipping."),
+    "ingest": ("vines.cli._rig_ingest", "Read run folders into the catalogue and as MCAP logs."),
+    "campaign": ("vines.cli._rig_campaign", "Make a synthetic sweep up and down with ring-downs."),
     "synth": ("vines.cli._rig_synth", "Make a run folder of a synthetic rig, its truth sealed."),
 }
 

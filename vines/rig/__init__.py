@@ -7,9 +7,11 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from vines.rig._inspect import channel_facts, draw_file, spark
     from vines.rig._read_run import Ingested, read_run
     from vines.rig._recording import ROLES, Recording, RunInfo, Sampled, Uncertain
     from vines.rig._run_folder import find_runs, read_folder
+    from vines.rig._template import write_template
 
 __all__ = [
     "ROLES",
@@ -18,9 +20,13 @@ __all__ = [
     "RunInfo",
     "Sampled",
     "Uncertain",
+    "channel_facts",
+    "draw_file",
     "find_runs",
     "read_folder",
     "read_run",
+    "spark",
+    "write_template",
 ]
 
 _HOME = {
@@ -30,9 +36,13 @@ _HOME = {
     "RunInfo": "_recording",
     "Sampled": "_recording",
     "Uncertain": "_recording",
+    "channel_facts": "_inspect",
+    "draw_file": "_inspect",
     "find_runs": "_run_folder",
     "read_folder": "_run_folder",
     "read_run": "_read_run",
+    "spark": "_inspect",
+    "write_template": "_template",
 }
 
 

@@ -70,6 +70,12 @@ class RunFolder:
         """The files that the channels name, each once, in their order."""
         return tuple(dict.fromkeys(self.path / "raw" / row.file for row in self.rows))
 
+    @property
+    def sidecars(self) -> tuple[Path, ...]:
+        """The sidecars of the raw files that have one: ``<file>.json``."""
+        beside = (path.with_name(path.name + ".json") for path in self.raw_files)
+        return tuple(path for path in beside if path.is_file())
+
 
 def run_info(form: RunForm) -> RunInfo:
     """Return ``run.json`` as a `RunInfo`."""
@@ -256,7 +262,7 @@ def _cell(value: object) -> str:
 def raw_sums(folder: RunFolder) -> dict[str, str]:
     """Return the SHA-256 of each raw file by its path in the run folder."""
     sums = {}
-    for path in folder.raw_files:
+    for path in (*folder.raw_files, *folder.sidecars):
         with path.open("rb") as stream:
             sums[path.relative_to(folder.path).as_posix()] = hashlib.file_digest(stream, "sha256").hexdigest()
     return sums

@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from vines.stages._kinds import register_kinds
     from vines.stages._orbit_log import orbit_log
     from vines.stages._parts import load_pipeline, members_of
+    from vines.stages._rig_running import ingest_folder
     from vines.stages._running import compile_if_cold, list_pipelines, open_store, run, status, warm_up
     from vines.stages._study import init_study
 
@@ -28,6 +29,7 @@ __all__ = [
     "find_logs",
     "found",
     "graph",
+    "ingest_folder",
     "init_study",
     "list_pipelines",
     "list_tables",
@@ -59,6 +61,7 @@ _HOME = {
     "find_logs": "_finding",
     "found": "_found",
     "graph": "_keeping",
+    "ingest_folder": "_rig_running",
     "init_study": "_study",
     "list_pipelines": "_running",
     "list_tables": "_asking",

@@ -15,6 +15,7 @@ from vines.errors import FileMissingError, ParameterError, StateError
 from vines.model import LAM_TABLE_1, Params, PhysicalParams
 from vines.pipeline import Kind, register
 from vines.places import shipped
+from vines.stages._rig_kinds import register_rig_kinds
 
 __all__ = [
     "Amplitudes",
@@ -482,3 +483,4 @@ def register_kinds() -> None:
             files=_claims_file,
         )
     )
+    register_rig_kinds()

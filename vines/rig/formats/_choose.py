@@ -5,12 +5,11 @@ from __future__ import annotations
 import importlib
 import warnings
 from pathlib import Path
-from types import ModuleType
 
 from vines.errors import FileMissingError, RigError
 from vines.rig.formats._raw import RawFile
 
-__all__ = ["FORMS", "needs", "read_file"]
+__all__ = ["FORMS", "read_file"]
 
 FORMS = {
     "tdms": ("NI TDMS", (".tdms",)),
@@ -58,7 +57,7 @@ def read_file(path: Path) -> RawFile:
         raise RigError(f"{path.name}: its header asks for more memory than there is; the file is damaged") from None
     except Exception as error:
         # The libraries raise whatever they stumble over in a damaged file; it is theirs, and the reason is in it.
-        reason = " ".join(str(error).split()) or type(error).__name__
+        reason = " ".join(str(error).replace(str(path), "it").split()) or type(error).__name__
         raise RigError(f"{path.name} cannot be read as {FORMS[form][0]}: {reason[:200]}") from None
     if not found.channels:
         other = f"; it holds {', '.join(found.other[:4])}" if found.other else ""
@@ -88,8 +87,3 @@ def _form(path: Path) -> str:
             return key
     known = ", ".join(f"{name} ({', '.join(suffixes)})" for name, suffixes in FORMS.values())
     raise RigError(f"{path.name}: no known format; read are {known}")
-
-
-def needs(module: str) -> ModuleType:
-    """Import a library that a format needs, or let the reader say how to get it."""
-    return importlib.import_module(module)

@@ -31,8 +31,9 @@ r (v/reference)^-exponent; `pause` the length of a step in contact."""
 (_M, _m, _c, _k, _E, _omega, _phi, _h2, _phi2, _h3, _phi3, _left, _right, _K, _friction, _pull) = range(16)
 (_softening, _T0, _T1, _span, _r, _exponent, _reference, _pause) = range(16, 24)
 
-IMPACT = ("t", "side", "x1", "v1", "x2", "v2", "w_dot", "w_dot_after", "v1_after", "v2_after", "r", "t_end")
-"""Columns of the impacts: SI, state when contact begins and velocities when it ends; `r` is the restitution set."""
+IMPACT = ("t", "side", "x1", "v1", "x2", "v2", "w_dot", "w_dot_after", "v1_after", "v2_after", "r", "t_end", "t_mid")
+"""Columns of the impacts: SI, state when contact begins and velocities when it ends; `r` is the restitution set,
+`t_mid` the centroid of the force."""
 
 _SLOW = 1e-3
 """[m/s] Below this speed of approach the loss stays what it is there: the law would else damp without bound."""
@@ -165,7 +166,7 @@ def advance(state, first, count, h, p, draws, quiet, table_r, table_a, modes, ga
     out : ndarray, shape (5, count + 1)
         Gets x1, v1, x2, v2 at the steps and, from the second, what the accelerometer saw over the step before [m/s^2]:
         the mean, as a converter that integrates over its sample time; without columns nothing is recorded.
-    rows : ndarray, shape (n, 12)
+    rows : ndarray, shape (n, 13)
         Gets the impacts, see `IMPACT`; more than n are not recorded.
 
     Returns
@@ -177,6 +178,7 @@ def advance(state, first, count, h, p, draws, quiet, table_r, table_a, modes, ga
     row = int(state[6])
     number = int(state[7])
     found = 0
+    pushed = 0.0
     rings = gains[1]
     record = out.shape[1] > 0
     if record:
@@ -212,11 +214,26 @@ def advance(state, first, count, h, p, draws, quiet, table_r, table_a, modes, ga
                 r = min(max(r, table_r[0]), table_r[-1])
                 chi = np.interp(r, table_r, table_a) / speed
                 number += 1
+                pushed = 0.0
                 row = -1
                 if record and found < len(rows):
                     row = found
-                    values = (start + done, side, x1, v1, x2, v2, v1 - v2, math.nan, math.nan, math.nan, r, math.nan)
-                    for i in range(12):
+                    values = (
+                        start + done,
+                        side,
+                        x1,
+                        v1,
+                        x2,
+                        v2,
+                        v1 - v2,
+                        math.nan,
+                        math.nan,
+                        math.nan,
+                        r,
+                        math.nan,
+                        0.0,
+                    )
+                    for i in range(13):
                         rows[row, i] = values[i]
                     found += 1
                 continue
@@ -228,6 +245,9 @@ def advance(state, first, count, h, p, draws, quiet, table_r, table_a, modes, ga
                 y1, u1, y2, u2 = _step(t, part, x1, v1, x2, v2, side, chi, p)
             _ring(rings, modes, part)
             struck = -(p[_m] / p[_M]) * (u2 - v2) * (0.02 if quiet[(number - 1) % len(quiet)] else 1.0)
+            pushed += u2 - v2
+            if row >= 0:
+                rows[row, 12] += (u2 - v2) * (t + 0.5 * part)
             for i in range(len(rings)):
                 rings[i] += struck * gains[0, i]
             x1, v1, x2, v2 = y1, u1, y2, u2
@@ -235,6 +255,7 @@ def advance(state, first, count, h, p, draws, quiet, table_r, table_a, modes, ga
             if leaves and side * (v1 - v2) <= 0.0:
                 if row >= 0:
                     rows[row, 7], rows[row, 8], rows[row, 9], rows[row, 11] = v1 - v2, v1, v2, start + done
+                    rows[row, 12] /= pushed
                 side = 0.0
         if record:
             now = v1 + _modal_velocity(rings, modes)

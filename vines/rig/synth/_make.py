@@ -147,15 +147,19 @@ def _in_volts(channel: RawChannel) -> RawChannel:
     return RawChannel(channel.name, values, channel.unit, channel.rate, channel.start)
 
 
-def make_run(folder: Path, settings: RigSettings, seed: int, state: np.ndarray | None = None) -> RawRun:
+def make_run(
+    folder: Path, settings: RigSettings, seed: int, state: np.ndarray | None = None, sealed: Path | None = None
+) -> RawRun:
     """Write a synthetic run as a run folder, and its truth beside it in ``sealed/<run_id>.json``.
 
     Parameters
     ----------
     folder : Path
-        The run folder, which must not exist; the truth goes to ``folder.parent/"sealed"``.
+        The run folder, which must not exist.
     settings, seed, state
         As of :func:`raw_run`.
+    sealed : Path, optional
+        Folder of the truth; ``sealed`` beside the run folder if left out.
 
     Raises
     ------
@@ -174,7 +178,7 @@ def make_run(folder: Path, settings: RigSettings, seed: int, state: np.ndarray |
     text = msgspec.json.format(msgspec.json.encode(run.form), indent=2).decode()
     (folder / "run.json").write_text(text + "\n", encoding="utf-8")
     (folder / "channels.tsv").write_text(channels_text(run.rows), encoding="utf-8")
-    sealed = folder.parent / "sealed"
+    sealed = sealed or folder.parent / "sealed"
     sealed.mkdir(exist_ok=True)
     (sealed / f"{folder.name}.json").write_text(json.dumps(run.truth, indent=1) + "\n", encoding="utf-8")
     return run
@@ -204,8 +208,9 @@ def _truth(s: RigSettings, seed: int, motion: Motion, step: float) -> dict[str, 
     p = motion.parameters
     pace = step * s.rate
     rows = motion.impacts
-    t = (rows["t"] - LEAD) / pace
-    kept = (t >= 0) & (t < s.duration)
+    # An impact is where its force has its centroid; one that still lasts at the end of the record has none.
+    t = (rows["t_mid"] - LEAD) / pace
+    kept = np.isfinite(rows["t_end"]) & (t >= 0) & (t < s.duration)
     # The truth counts from the first sample; a fault of the clock is not in it.
     i = round(LEAD / step) + np.arange(round(s.duration * s.rate))
     warm = s.softening * (0.5 * (p["T0"] + p["T1"]))

@@ -37,8 +37,8 @@ class Motion:
         Acceleration of the oscillator where its accelerometer sits, ringing included, mean over the step before.
     impacts : structured ndarray
         Columns of :data:`vines.rig.synth._kernel.IMPACT`; times since `start`.
-    end : ndarray of float64, shape (8,)
-        State of the kernel at the end, from which another run can go on.
+    end : ndarray of float64, shape (9,)
+        State of the kernel at the end and phase of the base there, from which another run can go on.
     parameters : mapping of str to float
         What the kernel was given.
     quiet : ndarray of bool
@@ -103,17 +103,20 @@ def move(s: RigSettings, rng: np.random.Generator, step: float, extra: int, stat
         Seconds between rows.
     extra : int
         Rows beyond those of the record, so that clocks and delays stay inside.
-    state : ndarray, shape (8,), optional
+    state : ndarray, shape (9,), optional
         End of the run before; `s.start` if left out.
     """
     p = kernel_parameters(s, rng)
+    if state is not None:
+        # The generator runs on from the run before.
+        p["phi"] = float(state[8])
     values = np.array([p[name] for name in NAMES])
     modes = np.array([complex(-z, np.sqrt(1 - z * z)) * 2 * np.pi * f for f, z, _ in s.modes], np.complex128)
     gains = np.zeros((2, len(modes)), np.complex128)
     gains[0] = [gain for *_, gain in s.modes]
     draws = rng.normal(0.0, s.sigma_r, _MANY) if s.sigma_r else np.zeros(1)
     quiet = rng.random(_MANY) < s.missed
-    state = np.array([*s.start, 0.0, 0.0, -1.0, 0.0]) if state is None else state.copy()
+    state = np.array([*s.start, 0.0, 0.0, -1.0, 0.0, 0.0]) if state is None else state.copy()
     state[6] = -1.0
     state[7] = 0.0
     tables = damping_table()
@@ -128,10 +131,12 @@ def move(s: RigSettings, rng: np.random.Generator, step: float, extra: int, stat
     found = advance(
         state, _COARSE * before, count, step, values, draws, quiet, *tables, modes, gains, s.ball, out, rows
     )
+    state[8] = (p["omega"] * (_COARSE * before + count) * step + p["phi"]) % (2 * np.pi)
     impacts = np.rec.fromarrays(rows[:found].T.copy(), dtype=np.dtype([(name, np.float64) for name in IMPACT]))
     start = _COARSE * before * step
     impacts["t"] -= start
     impacts["t_end"] -= start
+    impacts["t_mid"] -= start
     return Motion(
         step=step, start=start, x1=out[0], v1=out[1], x2=out[2], v2=out[3], acc=out[4], impacts=impacts, end=state,
         parameters=p, quiet=quiet[(first + np.arange(found)) % _MANY],
