@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from vines.stages._asking import checks, list_tables, query, rows_of, save_query, table
+    from vines.stages._export import export
     from vines.stages._finding import all_logs, find_logs, recordings_folder
     from vines.stages._found import found
     from vines.stages._keeping import Difference, clean, declaration_schema, diff, graph
@@ -16,15 +17,18 @@ if TYPE_CHECKING:
     from vines.stages._parts import load_pipeline, members_of
     from vines.stages._running import compile_if_cold, list_pipelines, open_store, run, status, warm_up
     from vines.stages._study import init_study
+    from vines.stages.audit import Verification, verify
 
 __all__ = [
     "Difference",
+    "Verification",
     "all_logs",
     "checks",
     "clean",
     "compile_if_cold",
     "declaration_schema",
     "diff",
+    "export",
     "find_logs",
     "found",
     "graph",
@@ -43,10 +47,13 @@ __all__ = [
     "save_query",
     "status",
     "table",
+    "verify",
     "warm_up",
 ]
 
 _HOME = {
+    "Verification": "audit",
+    "verify": "audit",
     "all_logs": "_finding",
     "orbit_log": "_orbit_log",
     "recordings_folder": "_finding",
@@ -56,6 +63,7 @@ _HOME = {
     "clean": "_keeping",
     "declaration_schema": "_keeping",
     "diff": "_keeping",
+    "export": "_export",
     "find_logs": "_finding",
     "found": "_found",
     "graph": "_keeping",
