@@ -44,6 +44,7 @@ _HOMES: dict[str, str] = {
     "metadata_disagreements": "vines.schema._validate",
     "units": "vines.schema._validate",
     "digest": "vines.schema._tables",
+    "reference": "vines.schema._reference",
     "table": "vines.schema._tables",
     "tables": "vines.schema._tables",
     "WireFormat": "vines.schema._messages",

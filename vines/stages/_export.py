@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Collection, Iterable
 from pathlib import Path
-from typing import Any
 
-from vines.errors import FileMissingError, UnknownNameError, VinesError, nearest
+from vines.errors import FileMissingError, UnknownNameError
 from vines.pipeline import available, with_included
 from vines.places import find_root, shipped
-from vines.stages._running import members_of, open_store
+from vines.stages._running import open_store
+from vines.stages._stored import stored_pipelines
 
 __all__ = ["export"]
 
@@ -47,8 +47,7 @@ def export(
     from vines.catalogue import Collected, export_results, stage_results
 
     store = open_store()
-    pinned = store.pinned()
-    wanted = list(dict.fromkeys(member for name in names for member in _members(name, pinned))) or sorted(pinned)
+    wanted = stored_pipelines(names, store.pinned())
     results = [
         (pipeline, stage, result)
         for pipeline, stage, result in stage_results(store, wanted)
@@ -56,7 +55,7 @@ def export(
     ]
     if not results:
         raise UnknownNameError("nothing is stored yet that could be exported; run 'vines run quickstart' first")
-    declarations, titles = _declared(wanted)
+    declarations, titles = _declared(wanted, names)
     return export_results(
         Collected(
             results=results,
@@ -70,29 +69,17 @@ def export(
     )
 
 
-def _members(name: str, pinned: dict[str, Any]) -> Iterable[str]:
-    """Return the pipelines that a name stands for, of which something is stored."""
-    if name in pinned:
-        return (name,)
-    try:
-        members = [member for member in members_of(name) if member in pinned]
-    except VinesError:
-        members = []
-    if not members:
-        raise UnknownNameError(f"nothing is stored of a pipeline {name!r}: {nearest(name, pinned)}")
-    return members
-
-
-def _declared(names: Iterable[str]) -> tuple[dict[str, str], dict[str, str]]:
-    """Return the text of the declarations by file name, and the title of each pipeline."""
+def _declared(pipelines: Collection[str], names: Iterable[str]) -> tuple[dict[str, str], dict[str, str]]:
+    """Return the text of the declarations by file name, those of collections too, and the title of each pipeline."""
     files = available(find_root())
     texts: dict[str, str] = {}
     titles: dict[str, str] = {}
-    for name in names:
+    for name in dict.fromkeys([*pipelines, *names]):
         if name not in files:
             continue
         texts[files[name].name] = files[name].read_text("utf-8")
-        titles[name] = str(with_included(files[name]).get("title", ""))
+        if name in pipelines:
+            titles[name] = str(with_included(files[name]).get("title", ""))
         claims = files[name].parent / "claims.toml"
         if claims.is_file():
             texts[claims.name] = claims.read_text("utf-8")

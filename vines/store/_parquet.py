@@ -167,6 +167,28 @@ def write_parquet(
     return file.rows
 
 
+def check_form(path: Path, name: str) -> None:
+    """See that columns, units and version of a stored table are those of the schema; reads no rows.
+
+    Raises
+    ------
+    SchemaError
+        If they are not; one line with the first disagreement and how many more there are.
+    OSError
+        If the file cannot be read.
+    """
+    import pyarrow as pa
+    import pyarrow.parquet as pq
+
+    try:
+        wrong = schema.disagreements(name, pq.read_schema(path))
+    except pa.ArrowException as error:
+        raise OSError(f"{path}: {str(error).splitlines()[0]}") from None
+    if wrong:
+        more = f" (and {len(wrong) - 1} more)" if len(wrong) > 1 else ""
+        raise SchemaError(f"{path}: {wrong[0]}{more}; run its pipeline again, with --force if the file was changed")
+
+
 def read_parquet(path: Path, name: str) -> pa.Table:
     """Return a stored table, once its columns, units and version are those of the schema.
 
@@ -179,19 +201,14 @@ def read_parquet(path: Path, name: str) -> pa.Table:
 
     Raises
     ------
-    SchemaError
-        If it is not; one line with the first disagreement and how many more there are.
-    OSError
-        If it cannot be read.
+    SchemaError, OSError
+        As :func:`check_form`.
     """
     import pyarrow as pa
     import pyarrow.parquet as pq
 
+    check_form(path, name)
     try:
-        wrong = schema.disagreements(name, pq.read_schema(path))
-        if not wrong:
-            return pq.read_table(path)
+        return pq.read_table(path)
     except pa.ArrowException as error:
         raise OSError(f"{path}: {str(error).splitlines()[0]}") from None
-    more = f" (and {len(wrong) - 1} more)" if len(wrong) > 1 else ""
-    raise SchemaError(f"{path}: {wrong[0]}{more}; run its pipeline again, with --force if the file was changed")

@@ -69,6 +69,21 @@ class Result:
 
         return read_parquet(self.folder / f"{wanted}.parquet", wanted)
 
+    def check_forms(self) -> None:
+        """See that columns, units and versions of all its tables are those of their schemas; reads no rows.
+
+        Raises
+        ------
+        SchemaError
+            If they are not; one line.
+        OSError
+            If a table cannot be read.
+        """
+        from vines.store._parquet import check_form
+
+        for name in self.tables:
+            check_form(self.folder / f"{name}.parquet", name)
+
     def damage(self) -> list[str]:
         """Return what is wrong with the files, one line each; empty if every checksum is right."""
         found = []

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from vines.errors import StoreError, UnknownNameError, nearest
+from vines.errors import StoreError, UnknownNameError
 from vines.stages._running import open_store
+from vines.stages._stored import stored_pipelines
 from vines.stages.audit._files import check_files, check_provenance, check_schema
 from vines.stages.audit._ledger import Ledger, Line
 from vines.stages.audit._links import check_links
@@ -60,7 +61,7 @@ def verify(
     Parameters
     ----------
     names : str
-        Pipelines; all that were run if left out.
+        Pipelines or collections of them; all that were run if left out.
     everything : bool
         Also the results that nothing refers to any more.
     recompute : int
@@ -108,13 +109,10 @@ def verify(
     return Verification(len(results), rows, tuple(ledger.lines))
 
 
-def _results(store: Store, names: Iterable[str], everything: bool, ledger: Ledger) -> dict[str, Result]:
+def _results(store: Store, names: tuple[str, ...], everything: bool, ledger: Ledger) -> dict[str, Result]:
     """Return the results to verify by ``<pipeline>.<stage>``; one that several stages share comes once."""
     pinned = store.pinned()
-    for name in names:
-        if name not in pinned:
-            raise UnknownNameError(f"nothing is stored of a pipeline {name!r}: {nearest(name, pinned)}")
-    chosen: dict[str, dict[str, Any]] = {name: pinned[name] for name in (names or pinned)}
+    chosen: dict[str, dict[str, Any]] = {name: pinned[name] for name in stored_pipelines(names, pinned)}
     keys: dict[str, str] = {}
     says = "a result for each pin"
     for pipeline, pins in chosen.items():
