@@ -30,6 +30,7 @@ COMMANDS = {
     "query": ("vines.cli._query", "Ask the result tables in SQL."),
     "verify": ("vines.cli._verify", "Are the stored results intact and physically consistent?"),
     "check": ("vines.cli._check", "Do the results reproduce the published values?"),
+    "report": ("vines.cli._report", "Write one HTML page: figures, checks, tables, provenance."),
     "export": ("vines.cli._export", "Copy results into a folder that needs no vines."),
     "solve": ("vines.cli._solve", "Print the periodic orbit of a word of impacts."),
     "view": ("vines.cli._view", "Look at logged runs in the Rerun viewer."),

@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from vines.stages._kinds import register_kinds
     from vines.stages._orbit_log import orbit_log
     from vines.stages._parts import load_pipeline, members_of
+    from vines.stages._report import report
     from vines.stages._running import compile_if_cold, list_pipelines, open_store, run, status, warm_up
     from vines.stages._study import init_study
     from vines.stages.audit import Verification, verify
@@ -42,6 +43,7 @@ __all__ = [
     "query",
     "recordings_folder",
     "register_kinds",
+    "report",
     "rows_of",
     "run",
     "save_query",
@@ -75,6 +77,7 @@ _HOME = {
     "open_store": "_running",
     "query": "_asking",
     "register_kinds": "_kinds",
+    "report": "_report",
     "rows_of": "_asking",
     "run": "_running",
     "save_query": "_asking",
