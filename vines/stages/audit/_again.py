@@ -62,8 +62,12 @@ class PointsAgain:
             if table == "points":
                 compare_within_errors(comparison, primary, again["points"][0])
             return comparison.told
-        comparison.same("number of rows", len(stored[table]), len(again[table]))
-        for one, other in zip(stored[table], again[table], strict=False):
+        # the impacts of other attractors at the point may be chaotic
+        ours, theirs = (
+            [row for row in rows[table] if table != "impacts" or not row["attractor"]] for rows in (stored, again)
+        )
+        comparison.same("number of rows", len(ours), len(theirs))
+        for one, other in zip(ours, theirs, strict=False):
             compare_rows(comparison, table, one, other, leave=() if _settled(one) else _ROUGH)
         return comparison.told
 

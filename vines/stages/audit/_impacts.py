@@ -41,11 +41,9 @@ def impact_defects(rows: Rows) -> Iterator[Defect]:
 
 
 def motion_defects(
-    rows: Rows, points: Rows, which: npt.NDArray[np.int64]
+    rows: Rows, points: Rows, which: npt.NDArray[np.int64], flying: npt.NDArray[np.bool_]
 ) -> Iterator[tuple[Defect, npt.NDArray[np.int64]]]:
     """Yield the checks of what lies between impacts, and the rows of ``impacts`` that their values stand for.
-
-    Points where the ball sticks are left out: between two of their impacts it may not fly.
 
     Parameters
     ----------
@@ -55,20 +53,25 @@ def motion_defects(
         The table ``points`` that they belong to.
     which : (n,) int array
         Row of `points` for each impact, -1 if there is none.
+    flying : (n,) bool array
+        Whether the ball flies from impact to impact on the attractor of the row; where it sticks it may not.
     """
-    flying = which >= 0
-    flying[flying] = (points["sticks_per_period"][which[flying]] == 0) & (points.text("status")[which[flying]] == "ok")
-    places = np.flatnonzero(flying)
+    places = np.flatnonzero(flying & (which >= 0))
     if not len(places):
         return
-    chosen = rows.take(flying)
+    chosen = rows.take(flying & (which >= 0))
     state = {name: chosen[name] for name in ("x1", "v1", "x2", "v2", "phase")}
     flights = Flights.of(chosen, slice(None), {**state, "dt": chosen["dt_next"]})
-    owner = which[flying]
+    number = np.nan_to_num(chosen["attractor"])
+    # one number for each run of impacts: the point and which of its attractors
+    owner = which[places] * (int(number.max(initial=0)) + 1) + number.astype(np.int64)
     yield Defect("next impact", "where the flight lands", 1e-9, _landing(chosen, flights, owner)), places
     beyond = np.maximum(flights.sums().largest_gap - 1, 0.0)
     yield Defect("admissibility", "|w| < 1 until the next impact", 1e-9, beyond), places
-    yield from _periodic(chosen, points, flights, owner, places)
+    own = np.flatnonzero(number == 0)
+    if len(own):
+        part = chosen.take(number == 0)
+        yield from _periodic(part, points, flights.take(own), which[places[own]], places[own])
 
 
 def _landing(rows: Rows, flights: Flights, owner: npt.NDArray[np.int64]) -> Floats:

@@ -69,7 +69,7 @@ def check_physics(ledger: Ledger, where: str, result: Result, name: str) -> None
             for defect in _CHECKS.get(name, _nothing)(rows):
                 _note(ledger, where, name, defect, rows, start)
             if motion is not None:
-                for defect, places in motion_defects(rows, motion.points, motion.which(rows)):
+                for defect, places in motion.defects(rows):
                     _note(ledger, where, name, defect, rows, start, places)
         start += len(rows)
 
@@ -140,18 +140,43 @@ def _pieces(path: Path, *, whole: bool, by_point: bool) -> Iterator[pa.Table]:
 
 
 class _Motion:
-    """The points that impacts belong to."""
+    """The points and attractors that impacts belong to."""
 
     def __init__(self, result: Result) -> None:
         import pyarrow.parquet as pq
 
         self.points = Rows(pq.read_table(result.folder / "points.parquet", columns=list(POINT_COLUMNS)))
+        self.others: Rows | None = None
+        if "attractors" in result.tables:
+            columns = ["point_id", "attractor", "sticks_per_period"]
+            self.others = Rows(pq.read_table(result.folder / "attractors.parquet", columns=columns))
 
-    def which(self, rows: Rows) -> Any:
-        """Return the row of ``points`` for each impact, -1 if there is none."""
-        import pyarrow.compute
+    def defects(self, rows: Rows) -> Iterator[tuple[Defect, Any]]:
+        """Yield the checks of the motion between impacts."""
+        which = _find(rows.table.column("point_id"), self.points.table.column("point_id"))
+        flying = which >= 0
+        quiet = (self.points["sticks_per_period"] == 0) & (self.points.text("status") == "ok")
+        flying[flying] = quiet[which[flying]]
+        if self.others is not None:
+            at = _find(_names(rows), _names(self.others))
+            random = rows["attractor"] > 0
+            flying = np.where(random, (at >= 0) & (self.others["sticks_per_period"][at] == 0), flying)
+        yield from motion_defects(rows, self.points, which, flying)
 
-        pc: Any = pyarrow.compute
-        ids: Any = self.points.table.column("point_id").combine_chunks()
-        found = pc.index_in(rows.table.column("point_id").combine_chunks(), ids)
-        return np.array(pc.fill_null(found, -1), dtype=np.int64)
+
+def _find(wanted: Any, known: Any) -> Any:
+    """Return the place of each wanted text among the known ones, -1 if it is not there."""
+    import pyarrow.compute
+
+    pc: Any = pyarrow.compute
+    found = pc.index_in(wanted.combine_chunks(), known.combine_chunks())
+    return np.array(pc.fill_null(found, -1), dtype=np.int64)
+
+
+def _names(rows: Rows) -> Any:
+    """Return a text that names the attractor of each row."""
+    import pyarrow.compute
+
+    pc: Any = pyarrow.compute
+    table: Any = rows.table
+    return pc.binary_join_element_wise(table.column("point_id"), table.column("attractor").cast("string"), "/")
