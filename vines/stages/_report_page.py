@@ -107,10 +107,11 @@ def page(name: str, title: str, source: str, sections: Sequence[Section]) -> str
 def _overview(sections: Sequence[Section]) -> str:
     checks = Counter(check["verdict"] for section in sections for check in section.checks)
     stages = [stage for section in sections for stage in section.stages]
+    figures = sum(len(section.figures) for section in sections)
     seconds = [stage.seconds for stage in stages if stage.seconds is not None]
     cards = [
         (f"{checks['reproduced']} of {checks.total()}", "published values reproduced") if checks else None,
-        (str(sum(len(section.figures) for section in sections)), "figures"),
+        (str(figures), "figure" if figures == 1 else "figures"),
         (f"{sum(head.total for section in sections for head in section.tables):,}", "rows in tables"),
         (_bytes(sum(stage.size for stage in stages)), "stored"),
         (_time(sum(seconds)), "computed, when it was last done") if seconds else None,
@@ -200,7 +201,9 @@ def _head(section: str, number: int, head: Head) -> str:
     units = {column.name: column.unit for column in schema.table(head.table).columns}
     rows = ["<tr>" + "".join(map(_data, row)) + "</tr>" for row in head.rows]
     name = f"{section}-{number}"
-    shown = f"{head.total} rows" + (f", the first {len(head.rows)}" if head.total > len(head.rows) else "")
+    shown = f"{head.total} row{'' if head.total == 1 else 's'}" + (
+        f", the first {len(head.rows)}" if head.total > len(head.rows) else ""
+    )
     command = f"vines query 'select * from \"{head.view}\"' --out {head.view}.csv"
     copy = f'<button class="tool" data-copy="{escape(command)}">copy the command for all rows</button>'
     table = _table(name, [(column, units.get(column, "")) for column in head.columns], rows)
