@@ -48,6 +48,8 @@ def compute_whole(prepared: Prepared, store: Store, planner: Planner, *, replace
             provenance=provenance,
         )
         try:
+            for need in stage.needs:
+                store.result(planner.keys[need]).check_forms()
             batch = body_of(stage.kind.body)(job)
             about = _write(prepared, batch, folder, provenance)
         except Exception as error:  # whatever it is, the other stages go on
