@@ -7,40 +7,67 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from vines.rig._compare import Calibration, calibrate, compare, compare_all
     from vines.rig._inspect import channel_facts, draw_file, spark
     from vines.rig._read_run import Ingested, read_run
+    from vines.rig._reconstruct import reconstruct
+    from vines.rig._reconstruction import QUANTITIES, Finding, Reconstruction
     from vines.rig._recording import ROLES, Recording, RunInfo, Sampled, Uncertain
+    from vines.rig._ring_down import RingDown, ring_down
     from vines.rig._run_folder import find_runs, read_folder
     from vines.rig._template import write_template
+    from vines.rig._verdict import Comparison
 
 __all__ = [
+    "QUANTITIES",
     "ROLES",
+    "Calibration",
+    "Comparison",
+    "Finding",
     "Ingested",
+    "Reconstruction",
     "Recording",
+    "RingDown",
     "RunInfo",
     "Sampled",
     "Uncertain",
+    "calibrate",
     "channel_facts",
+    "compare",
+    "compare_all",
     "draw_file",
     "find_runs",
     "read_folder",
     "read_run",
+    "reconstruct",
+    "ring_down",
     "spark",
     "write_template",
 ]
 
 _HOME = {
+    "QUANTITIES": "_reconstruction",
     "ROLES": "_recording",
+    "Calibration": "_compare",
+    "Comparison": "_verdict",
+    "Finding": "_reconstruction",
     "Ingested": "_read_run",
+    "Reconstruction": "_reconstruction",
     "Recording": "_recording",
+    "RingDown": "_ring_down",
     "RunInfo": "_recording",
     "Sampled": "_recording",
     "Uncertain": "_recording",
+    "calibrate": "_compare",
     "channel_facts": "_inspect",
+    "compare": "_compare",
+    "compare_all": "_compare",
     "draw_file": "_inspect",
     "find_runs": "_run_folder",
     "read_folder": "_run_folder",
     "read_run": "_read_run",
+    "reconstruct": "_reconstruct",
+    "ring_down": "_ring_down",
     "spark": "_inspect",
     "write_template": "_template",
 }

@@ -1,0 +1,64 @@
+"""Reconstruction against the sealed truth of a synthetic rig, whose contact is soft and whose equations are its own."""
+
+import numpy as np
+import pytest
+
+from vines.errors import RigError
+from vines.rig import compare, reconstruct, ring_down
+from vines.rig.synth import RigSettings, simulate_rig
+
+
+@pytest.fixture(scope="module")
+def ringdown():
+    """Return omega0 and lam as ten seconds without the ball give them."""
+    settings = RigSettings(
+        run_id="free", protocol="ringdown", ball=False, E=0.0, duration=10.0, settle=0.0, start=(0.004, 0.0, 0.0, 0.0)
+    )
+    return ring_down(simulate_rig(settings, 1)[0])
+
+
+@pytest.fixture(scope="module")
+def dwell(ringdown):
+    """Return a reconstructed run of twelve seconds and its truth."""
+    recording, truth = simulate_rig(RigSettings(duration=12.0, settle=30.0, sigma_r=0.01), 7)
+    return reconstruct(recording, [ringdown]), truth
+
+
+def test_a_ring_down_gives_omega0_to_a_part_in_ten_thousand_and_lam(ringdown):
+    assert ringdown.omega0.value == pytest.approx(np.sqrt(11680.0 / 3.807), rel=1e-4)
+    assert ringdown.lam.value == pytest.approx(2.53 / np.sqrt(11680.0 * 3.807), rel=1e-3)
+
+
+def test_restitution_its_scatter_and_the_mass_ratio_come_within_the_targets(dwell):
+    found, truth = dwell
+    assert found.accepted, found.reasons
+    assert found.quantities["r"].value == pytest.approx(truth["settings"]["r"], abs=0.005)
+    assert found.quantities["sigma_r"].value == pytest.approx(truth["settings"]["sigma_r"], rel=0.2)
+    assert found.quantities["mu"].value == pytest.approx(0.032 / 3.807, rel=0.01)
+    assert found.quantities["mu_momentum"].value == pytest.approx(0.032 / 3.807, rel=0.01)
+
+
+def test_impacts_are_found_where_they_were(dwell):
+    found, truth = dwell
+    true = np.array(truth["impacts"]["t"])
+    true = true[(true > found.impacts["t"][0] - 1e-3) & (true < found.impacts["t"][-1] + 1e-3)]
+    assert len(true) == len(found.impacts)
+    assert np.max(np.abs(true - found.impacts["t"])) < 20e-6
+    assert set(np.unique(found.impacts["side"])) == {-1.0, 1.0}
+
+
+def test_the_pattern_of_a_dwell_on_1_to_1_is_1_to_1(dwell):
+    found, _ = dwell
+    assert (found.pattern.name, found.pattern.p, found.pattern.fraction) == ("1:1", 1, 1.0)
+
+
+def test_a_ring_down_is_not_reconstructed(ringdown):
+    settings = RigSettings(run_id="free", protocol="ringdown", ball=False, E=0.0, duration=2.0, settle=0.0)
+    with pytest.raises(RigError, match="has no ball in it"):
+        reconstruct(simulate_rig(settings, 2)[0], [ringdown])
+
+
+@pytest.mark.full
+def test_a_clean_run_agrees_with_the_branch_of_its_pattern(dwell):
+    verdict = compare(dwell[0])
+    assert verdict.verdict == "agree", verdict.reason

@@ -1,0 +1,356 @@
+"""Velocity jumps of the oscillator by linear least squares over all flights at once.
+
+Between impacts x1 is a forced response with harmonics plus a free oscillation; at impact k the velocity jumps by dv_k
+and the position does not. Written with one jump response G(t - t_k) an impact this is a full matrix; written with the
+free part z_j of each flight as unknowns it is banded, and thousands of impacts cost milliseconds (docs/rig.md).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+from scipy.linalg import cho_solve_banded, cholesky_banded
+
+from vines.errors import RigError
+from vines.rig._bins import Bins, sinhc
+from vines.rig._motion import Motion
+from vines.rig._sine_fit import clumping
+
+__all__ = ["JumpFit", "Jumps", "fit_jumps"]
+
+Floats = npt.NDArray[np.float64]
+
+_DISTRUST = 1e-4
+"""Weight of the samples of a flight that is not one."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Jumps:
+    """State of the oscillator at K impacts; arrays of shape (K,), or (draws, K).
+
+    Attributes
+    ----------
+    t : ndarray
+        Times [s].
+    x, v_before, v_after : ndarray
+        Position and velocities of the oscillator [m, m/s].
+    """
+
+    t: Floats
+    x: Floats
+    v_before: Floats
+    v_after: Floats
+
+    @property
+    def dv(self) -> Floats:
+        """Velocity jumps [m/s]."""
+        return self.v_after - self.v_before
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class JumpFit:
+    """Solution of the least squares.
+
+    Attributes
+    ----------
+    motion : Motion
+        x1 in closed form.
+    jumps : Jumps
+        At the refined times.
+    draws : Jumps
+        The same, drawn from the distribution that noise of the signal leaves for them; shape (draws, K).
+    first : ndarray of complex, shape (draws,)
+        Draws of the first harmonic of the forced response [m].
+    shift : ndarray, shape (K,)
+        Refined less given time [s], where the given time's own uncertainty allows it.
+    u_dv : ndarray, shape (K,)
+        Standard uncertainty of the jumps [m/s].
+    residual, noise : float
+        Root mean square of what is left of the block means on trusted flights, and that of a block mean by neighbouring
+        differences, in the unit of the signal.
+    clumped : float
+        By how much the variance of longer means exceeds that of independent residuals.
+    distrusted : float
+        Fraction of flights left out because their motion is not that of one flight: an impact in them is missing.
+    left : ndarray, shape (n,)
+        What is left, at `left_t` [s].
+    """
+
+    motion: Motion
+    jumps: Jumps
+    draws: Jumps
+    first: npt.NDArray[np.complex128]
+    shift: Floats
+    u_dv: Floats
+    residual: float
+    noise: float
+    clumped: float
+    distrusted: float
+    left: Floats
+    left_t: Floats
+
+
+def fit_jumps(
+    bins: Bins,
+    s: complex,
+    omega: float,
+    times: Floats,
+    u_times: Floats | float,
+    *,
+    order: int = 0,
+    harmonics: int = 5,
+    guard: float = 2.5e-4,
+    expected: tuple[Floats, Floats] | None = None,
+    forced: tuple[npt.NDArray[np.complex128], Floats] | None = None,
+    steps: Floats | None = None,
+    draws: int = 32,
+    seed: int = 0,
+) -> JumpFit:
+    """Fit forced response, free oscillation and velocity jumps to displacement or acceleration of the oscillator.
+
+    Parameters
+    ----------
+    bins : Bins
+        Of the channel.
+    s : complex
+        -lam omega0/2 + i gamma [1/s].
+    omega : float
+        Angular frequency of the forcing [rad/s].
+    times : ndarray, shape (K,)
+        Impact times, ascending [s]; none twice.
+    u_times : ndarray, shape (K,), or float
+        Their standard uncertainty [s]. A shift of an impact by dt is, to first order, a jump -dv dt of the position,
+        so this allows such jumps; what the signal says of the time is in `JumpFit.shift` (the Gauss–Newton step).
+    order : {0, 2}
+        Derivative of x1 that the channel measures.
+    harmonics : int
+        Harmonics of the forced response.
+    guard : float
+        Blocks nearer to an impact are left out [s]: contact takes time.
+    expected : tuple of ndarray, optional
+        Velocity jumps known from elsewhere (pulses of the acceleration) and their standard uncertainties [m/s].
+    forced : tuple of ndarray, optional
+        Harmonics 2 … of the forced response as the base's harmonics ask for them [m], and their standard uncertainties:
+        a train of equal jumps and a few free harmonics are nearly the same motion.
+    steps : ndarray, shape (K + 1,), optional
+        Static displacement of each flight [m]: the ball's friction pushes the oscillator one way or the other.
+    draws : int
+        Draws for the uncertainty.
+    seed : int
+        Of the draws.
+
+    Raises
+    ------
+    RigError
+        If the record holds too few samples for so many impacts.
+    """
+    problem = _Problem(bins, s, omega, np.asarray(times, float), order, harmonics, guard)
+    problem.forced_known = forced
+    if steps is not None:
+        problem.push(steps)
+    u_times = np.broadcast_to(np.asarray(u_times, float), problem.times.shape)
+    noise = max(_noise(bins), 1e-15)
+    scale = noise
+    size = np.full(len(problem.times), 1e-2)
+    if expected is not None:
+        size = np.abs(expected[0])
+    solved = problem.solve(scale, np.maximum(size, 1e-4) * u_times, expected)
+    for _ in range(3):
+        dv = np.abs(problem.motion(*solved[:2]).after(1) - problem.motion(*solved[:2]).before(1))
+        problem.distrust(problem.left(*solved[:2]), noise)
+        left = problem.left(*solved[:2])[problem.trusted]
+        clumped = clumping(left)
+        scale = max(float(np.sqrt(np.mean(left**2) * clumped)), 1e-15)
+        solved = problem.solve(scale, np.maximum(dv, 1e-5) * u_times, expected)
+    z, linear, factor, border, schur = solved
+    left = problem.left(z, linear)
+    motion = problem.motion(z, linear)
+    trusted = left[problem.trusted]
+    jumps, shift = _read(motion, problem.steps)
+    rng = np.random.default_rng(seed)
+    drawn, first = [], []
+    lower = np.linalg.cholesky(schur)
+    for _ in range(draws):
+        move = np.linalg.solve(lower.T, rng.normal(size=len(linear)))
+        noise_z = cho_solve_banded((factor, True), _multiply(factor, rng.normal(size=factor.shape[1])))
+        other = problem.motion(z + noise_z - border @ move, linear + move)
+        drawn.append(_read(other, problem.steps)[0])
+        first.append(other.c[0])
+    together = Jumps(*(np.array([getattr(one, name) for one in drawn]) for name in ("t", "x", "v_before", "v_after")))
+    return JumpFit(
+        motion,
+        jumps,
+        together,
+        np.array(first),
+        shift,
+        together.dv.std(axis=0) if draws else np.zeros(len(shift)),
+        float(np.sqrt(np.mean(trusted**2))),
+        noise,
+        clumped,
+        1 - float(np.mean(problem.fair)),
+        left,
+        problem.t,
+    )
+
+
+def _read(motion: Motion, steps: Floats) -> tuple[Jumps, Floats]:
+    """Return the state at each impact at its refined time, and the shift of the time."""
+    x, v_before, v_after = motion.before(), motion.before(1), motion.after(1)
+    gap = motion.after() - x + np.diff(steps)
+    dv = v_after - v_before
+    # x_after(t) - x_before(t) = gap + dv (t - t_k) vanishes at the true time; far moves mean that dv is no jump at all.
+    shift = np.where(np.abs(dv) > 1e-6, -gap / np.where(dv == 0, 1.0, dv), 0.0)
+    shift = np.clip(shift, -1e-3, 1e-3)
+    x = x + v_before * shift
+    turn = 0.5 * (motion.before(2) + motion.after(2))
+    moved = Jumps(motion.starts[1:] + shift, x, v_before + turn * shift, v_after + turn * shift)
+    return moved, shift
+
+
+def _noise(bins: Bins) -> float:
+    """Return the noise of a block mean from fourth differences, which the oscillator's motion hardly reaches."""
+    return float(np.median(np.abs(np.diff(bins.mean, 4))) / 0.6745 / np.sqrt(70.0))
+
+
+def _multiply(factor: Floats, vector: Floats) -> Floats:
+    """Return L times a vector, L in banded lower form."""
+    result = factor[0] * vector
+    for d in range(1, factor.shape[0]):
+        result[d:] += factor[d, :-d] * vector[:-d]
+    return result
+
+
+class _Problem:
+    """The normal equations: unknowns (Re z_j, Im z_j) of each flight, and the forced response with an offset."""
+
+    def __init__(
+        self, bins: Bins, s: complex, omega: float, times: Floats, order: int, harmonics: int, guard: float
+    ) -> None:
+        self.s, self.omega, self.order, self.harmonics = s, omega, order, harmonics
+        self.forced_known: tuple[npt.NDArray[np.complex128], Floats] | None = None
+        start, stop = float(bins.t[0]), float(bins.t[-1])
+        self.times = times
+        if len(times) and not (np.all(np.diff(times) > 0) and start < times[0] and times[-1] < stop):
+            raise RigError("impact times must ascend and lie inside the record")
+        self.starts = np.concatenate([[start], times])
+        self.stop = stop
+        reach = guard + 0.5 * bins.width
+        keep = np.ones(len(bins.t), bool)
+        low, high = np.searchsorted(bins.t, times - reach), np.searchsorted(bins.t, times + reach)
+        for k in range(int((high - low).max(initial=0))):
+            keep[np.minimum(low + k, high - 1)[high > low]] = False
+        self.t, self.y = bins.t[keep], bins.mean[keep]
+        flights = len(self.starts)
+        if len(self.t) < 2 * flights + 2 * harmonics + 2:
+            raise RigError(f"{len(times)} impacts leave only {len(self.t)} stretches of samples between them")
+        self.flight = np.maximum(np.searchsorted(self.starts, self.t, side="right") - 1, 0)
+        free = sinhc(0.5 * s * bins.width) * s**order * np.exp(s * (self.t - self.starts[self.flight]))
+        self.free = np.stack([free.real, -free.imag])
+        self.forced = np.empty((2 * harmonics + 1, len(self.t)))
+        turn = np.exp(1j * omega * self.t)
+        power = np.ones_like(turn)
+        for n in range(1, harmonics + 1):
+            power = power * turn
+            column = sinhc(0.5j * n * omega * bins.width) * (1j * n * omega) ** order * power
+            self.forced[2 * n - 2], self.forced[2 * n - 1] = column.real, -column.imag
+        self.forced[-1] = 1.0
+        self.fair = np.ones(flights, bool)
+        self.steps = np.zeros(flights)
+        self._gather()
+
+    @property
+    def trusted(self) -> npt.NDArray[np.bool_]:
+        """Which blocks lie on trusted flights."""
+        return self.fair[self.flight]
+
+    def push(self, steps: Floats) -> None:
+        """Take a static displacement of each flight off the signal; an acceleration has none."""
+        if self.order == 0:
+            self.steps = steps
+            self.y = self.y - steps[self.flight]
+            self._gather()
+
+    def distrust(self, left: Floats, noise: float) -> None:
+        """Leave out flights whose residual is far above that of the others: an impact in them is missing."""
+        count = np.maximum(np.bincount(self.flight, minlength=len(self.starts)), 1)
+        size = np.sqrt(np.bincount(self.flight, left**2, len(self.starts)) / count)
+        usual = max(float(np.median(size[count > 8])) if (count > 8).any() else noise, noise)
+        fair = (size < 3 * usual) | (count <= 8)
+        # Half of the flights at least must stay, or nothing is left to judge by.
+        if np.mean(fair) < 0.5:
+            fair = size <= np.median(size)
+        if not np.array_equal(fair, self.fair):
+            self.fair = fair
+            self._gather()
+
+    def _gather(self) -> None:
+        flights = len(self.starts)
+        weight = np.where(self.trusted, 1.0, _DISTRUST)
+
+        def total(values: Floats) -> Floats:
+            return np.bincount(self.flight, weight * values, flights)
+
+        one, two = self.free
+        band = np.zeros((4, 2 * flights))
+        band[0, 0::2], band[0, 1::2], band[1, 0::2] = total(one * one), total(two * two), total(one * two)
+        self.band = band
+        self.right = np.empty(2 * flights)
+        self.right[0::2], self.right[1::2] = total(one * self.y), total(two * self.y)
+        self.cross = np.empty((2 * flights, len(self.forced)))
+        for k, column in enumerate(self.forced):
+            self.cross[0::2, k], self.cross[1::2, k] = total(one * column), total(two * column)
+        weighted = self.forced * weight
+        self.corner = weighted @ self.forced.T
+        self.below = weighted @ self.y
+
+    def solve(
+        self, scale: float, u_gap: Floats, expected: tuple[Floats, Floats] | None
+    ) -> tuple[Floats, Floats, Floats, Floats, Floats]:
+        """Return flights' unknowns, forced response, banded factor, its answer to the border, Schur complement."""
+        band, right = self.band / scale**2, self.right / scale**2
+        cross, corner, below = self.cross / scale**2, self.corner / scale**2, self.below / scale**2
+        if self.forced_known is not None:
+            c, u_c = self.forced_known
+            for n, (value, u_n) in enumerate(zip(c, u_c, strict=True), start=1):
+                for k, part in ((2 * n, value.real), (2 * n + 1, value.imag)):
+                    corner[k, k] += 1 / u_n**2
+                    below[k] += part / u_n**2
+        step = np.exp(self.s * np.diff(self.starts))
+        position = np.stack([-step.real, step.imag, np.ones(len(step)), np.zeros(len(step))], axis=1)
+        carried = self.s * step
+        velocity = np.stack(
+            [-carried.real, carried.imag, np.full(len(step), self.s.real), np.full(len(step), -self.s.imag)], axis=1
+        )
+        _add(band, right, position, 1 / np.maximum(u_gap, 1e-12) ** 2, -np.diff(self.steps))
+        # A jump of more than 3 m/s would need a ball of the oscillator's own mass: a bound for flights without samples.
+        mean, u = (np.zeros(len(step)), np.full(len(step), 3.0)) if expected is None else expected
+        _add(band, right, velocity, 1 / u**2, mean)
+        # Keeps the first flight solvable when it holds no samples.
+        band[0] += 1e-9 * float(np.median(band[0]))
+        factor = cholesky_banded(band, lower=True)
+        answer = cho_solve_banded((factor, True), np.column_stack([right, cross]))
+        border = answer[:, 1:]
+        schur = corner - cross.T @ border
+        schur = 0.5 * (schur + schur.T) + np.diag(1e-12 * np.diag(corner))
+        linear = np.linalg.solve(schur, below - cross.T @ answer[:, 0])
+        return answer[:, 0] - border @ linear, linear, factor, border, schur
+
+    def left(self, z: Floats, linear: Floats) -> Floats:
+        """Return what a solution leaves of the signal."""
+        one, two = self.free
+        return self.y - one * z[0::2][self.flight] - two * z[1::2][self.flight] - linear @ self.forced
+
+    def motion(self, z: Floats, linear: Floats) -> Motion:
+        """Return x1 in closed form."""
+        c = linear[0:-1:2] + 1j * linear[1:-1:2]
+        return Motion(self.s, self.omega, c, self.starts, z[0::2] + 1j * z[1::2], self.stop)
+
+
+def _add(band: Floats, right: Floats, row: Floats, weight: Floats, value: Floats) -> None:
+    """Add weighted conditions row · (z_{k-1}, z_k) = value to the normal equations."""
+    for i in range(4):
+        right[i : i + 2 * len(row) : 2] += weight * row[:, i] * value
+        for j in range(i + 1):
+            band[i - j, j : j + 2 * len(row) : 2] += weight * row[:, i] * row[:, j]

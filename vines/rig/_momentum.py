@@ -1,0 +1,129 @@
+"""Ratio of the masses, length of the cavity and forces on the ball from M dv1 + m dv2 = 0 at every impact."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from vines.rig._ball import Cavity, ball_motion
+from vines.rig._jumps import Jumps
+from vines.rig._recording import Uncertain
+
+__all__ = ["MomentumFit", "fit_momentum"]
+
+Floats = npt.NDArray[np.float64]
+
+_NAMES = ("mu", "b", "tilt")
+_FAR = 5.0
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class MomentumFit:
+    """Estimates from momentum.
+
+    Attributes
+    ----------
+    mu, b, friction, tilt : Uncertain
+        [1], [m], [m/s^2], [m/s^2].
+    misfit : ndarray, shape (K - 2,)
+        (dv1 + mu dv2)/u at each impact that has two flights; large where an impact near it is missed or false.
+    good : ndarray of bool, shape (K - 2,)
+        Which of them the fit used.
+    """
+
+    mu: Uncertain
+    b: Uncertain
+    friction: Uncertain
+    tilt: Uncertain
+    misfit: Floats
+    good: npt.NDArray[np.bool_]
+
+    @property
+    def cavity(self) -> Cavity:
+        """The cavity with these numbers."""
+        return Cavity(self.b.value, self.friction.value, self.tilt.value)
+
+
+def fit_momentum(
+    jumps: Jumps,
+    draws: Jumps,
+    side: Floats,
+    *,
+    mu: Uncertain | None,
+    b: Uncertain,
+    friction: Uncertain,
+    tilt: Uncertain,
+    usable: npt.NDArray[np.bool_] | None = None,
+) -> MomentumFit:
+    """Solve dv1 = -mu (v2_after - v2_before) for mu, b and tilt, with what is known of them beforehand.
+
+    Parameters
+    ----------
+    jumps, draws : Jumps
+        State of the oscillator at the impacts, and draws of it.
+    side : ndarray, shape (K,)
+    mu : Uncertain or None
+        From weighing; None if it is to be found by momentum alone.
+    b : Uncertain
+        From a gauge [m].
+    friction, tilt : Uncertain
+        Of the ball [m/s^2]. Momentum hardly sees friction, which slows the ball before one impact as after the one
+        before, so that it is taken as given.
+    usable : ndarray of bool, shape (K - 2,), optional
+        Impacts to use at most.
+
+    Notes
+    -----
+    Gauss–Newton on the weighted residuals and on the differences from what is known; residuals beyond five times
+    their spread are set aside. With sides that only alternate mu and b are nearly degenerate (mu ~ 1/b), so one of
+    them must be known: mu weighed gives b, b gauged gives mu.
+    """
+    value = {"mu": 0.01, "b": b.value, "friction": friction.value, "tilt": tilt.value}
+    known = {"b": b, "tilt": tilt}
+    if mu is not None:
+        known["mu"] = mu
+    usable = np.ones(len(side) - 2, bool) if usable is None else usable
+    if mu is None:
+        motion = ball_motion(jumps, side, Cavity(b.value, friction.value, tilt.value))
+        gain = motion.v2_after - motion.v2_before
+        with np.errstate(divide="ignore", invalid="ignore"):
+            guess = float(np.median((-jumps.dv[1:-1] / gain)[usable]))
+        value["mu"] = guess if np.isfinite(guess) and guess != 0 else 0.01
+    else:
+        value["mu"] = mu.value
+    step = {"mu": 1e-4 * value["mu"], "b": 1e-4 * b.value, "tilt": 1e-3}
+    good = usable.copy()
+    covariance = np.eye(len(_NAMES))
+    for _ in range(8):
+        base = _residual(jumps, side, value)
+        noise = _residual(draws, side, value)
+        u = np.sqrt(np.mean((noise - base) ** 2, axis=0) + (2e-4 * np.abs(jumps.dv[1:-1])) ** 2 + 1e-12)
+        scaled = base / u
+        spread = max(1.0, float(np.median(np.abs(scaled[good])) / 0.6745)) if good.any() else 1.0
+        good = usable & (np.abs(scaled) < _FAR * spread)
+        slope = np.stack(
+            [(_residual(jumps, side, value | {n: value[n] + step[n]}) - base) / step[n] / u for n in _NAMES], axis=1
+        )[good]
+        normal = slope.T @ slope / spread**2
+        right = -slope.T @ scaled[good] / spread**2
+        for i, name in enumerate(_NAMES):
+            if name in known:
+                normal[i, i] += 1 / known[name].u ** 2
+                right[i] += (known[name].value - value[name]) / known[name].u ** 2
+        size = np.sqrt(np.diag(normal)) + 1e-300
+        covariance = np.linalg.pinv(normal / np.outer(size, size)) / np.outer(size, size)
+        change = covariance @ right
+        for i, name in enumerate(_NAMES):
+            value[name] += float(change[i])
+        if np.all(np.abs(change) < 1e-4 * np.sqrt(np.diag(covariance))):
+            break
+    base = _residual(jumps, side, value) / u
+    found = {name: Uncertain(value[name], float(np.sqrt(covariance[i, i]))) for i, name in enumerate(_NAMES)}
+    return MomentumFit(**found, friction=friction, misfit=base, good=good)
+
+
+def _residual(jumps: Jumps, side: Floats, value: dict[str, float]) -> Floats:
+    motion = ball_motion(jumps, side, Cavity(value["b"], value["friction"], value["tilt"]))
+    return jumps.dv[..., 1:-1] + value["mu"] * (motion.v2_after - motion.v2_before)

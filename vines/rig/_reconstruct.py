@@ -1,0 +1,398 @@
+"""From a recording to the quantities of the model, with uncertainties and gates."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+import numpy.typing as npt
+
+from vines.errors import RigError
+from vines.rig._ball import BallMotion, Cavity, ball_motion
+from vines.rig._cycle import Track, slots
+from vines.rig._findings import judge
+from vines.rig._forcing import Base, Tuning, measure_base, tune
+from vines.rig._jumps import Jumps, fit_jumps
+from vines.rig._momentum import MomentumFit, fit_momentum
+from vines.rig._oscillator import Response, measure_response, pushed
+from vines.rig._pattern import Pattern, Periods, cut_into_periods, find_pattern
+from vines.rig._reconstruction import IMPACT, Reconstruction
+from vines.rig._recording import Recording, Uncertain
+from vines.rig._restitution import Restitution, restitution
+from vines.rig._ring_down import RingDown, natural
+from vines.rig._uncertainty import combined, mean_over_periods, period_weights
+
+__all__ = ["reconstruct"]
+
+Floats = npt.NDArray[np.float64]
+
+_FRICTION = Uncertain(0.06, 0.055)
+"""Deceleration of the ball where the laboratory did not measure it [m/s^2]: .001 to .02 g, evenly in the logarithm."""
+
+_TILT = Uncertain(0.0, 0.02)
+"""Acceleration along the cavity: a tenth of a degree [m/s^2]."""
+
+_CENTROID = Uncertain(5.5e-5, 1.6e-5)
+"""Centroid of the force of a contact of 70 to 200 us after the touch [s]."""
+
+_LINEARITY = 1.5e-3
+"""Relative uncertainty of a velocity by the linearity of a displacement sensor, .1 % of its range."""
+
+_SHORT = 2e-3
+"""Restitution is not taken from impacts with a shorter flight at one side [s]."""
+
+
+def reconstruct(recording: Recording, ringdowns: Sequence[RingDown], *, seed: int = 0) -> Reconstruction:
+    """Reconstruct a run.
+
+    Parameters
+    ----------
+    recording : Recording
+        Of protocol ``dwell``, ``sweep_up`` or ``sweep_down``, ball in.
+    ringdowns : sequence of RingDown
+        Before and after it, best both.
+    seed : int
+        Of the draws for uncertainties.
+
+    Returns
+    -------
+    Reconstruction
+
+    Raises
+    ------
+    RigError
+        If the run is a ring-down, a channel is missing, no ring-down is at hand, or there are fewer than six impacts.
+
+    Notes
+    -----
+    docs/rig.md, "Reconstruct".
+    """
+    run = recording.run
+    if run.protocol == "ringdown" or not run.ball:
+        raise RigError(f"run {run.run_id!r} has no ball in it; a ring-down gives omega0 and lam, see ring_down")
+    base = measure_base(recording)
+    omega0, lam = natural(tuple(ringdowns), float(np.mean(run.temperature)))
+    omega = base.fit.omega
+    root = _root(omega0.value, lam.value)
+    forced = _harmonics(base, recording, root)
+    friction = _stated(run.more.get("friction"), _FRICTION)
+    mu = run.m.value / run.M.value
+    response = measure_response(recording, root, omega, forced, friction=mu * friction.value)
+    if len(response.fit.jumps.t) < 6:
+        raise RigError(
+            f"run {run.run_id!r} shows {len(response.fit.jumps.t)} impacts, allowed are 6 and more: did the ball move?"
+        )
+    side = -np.sign(response.fit.jumps.dv)
+    tuning = _tuned(base, omega0, lam, response, forced, mu, friction, seed)
+    span = (response.bins.t[0] - response.late, response.bins.t[-1] - response.late)
+    phase = omega * (response.fit.jumps.t - response.late) + base.phase.value + tuning.phase
+    bounds = tuple(omega * t + base.phase.value + tuning.phase for t in span)
+    periods = cut_into_periods(phase, side, (bounds[0], bounds[1]))
+    pattern = find_pattern(periods, phase)
+    ball = _measure_ball(recording, response, side)
+    return _assembled(recording, base, response, side, tuning, phase, periods, pattern, ball, seed)
+
+
+def _root(omega0: float, lam: float) -> complex:
+    return omega0 * complex(-lam / 2, np.sqrt(1 - lam**2 / 4))
+
+
+def _harmonics(base: Base, recording: Recording, s: complex) -> tuple[npt.NDArray[np.complex128], Floats]:
+    """Return harmonics 2 to 5 of the forced response by the base's own, and what linearity adds to them."""
+    n = np.arange(2, 6)
+    e = np.zeros(4, complex)
+    e[: len(base.e) - 1] = base.e[1:5]
+    omega = n * base.fit.omega
+    damp = -2j * s.real * omega
+    c = e * (abs(s) ** 2 + damp) / (abs(s) ** 2 - omega**2 + damp)
+    channel = recording.role("lo_disp")
+    size = float(np.std(channel.values[channel.valid])) if channel is not None else 50 * base.E.value
+    return c, 0.03 * np.abs(c) + size * np.array([3e-4, 5e-4, 1e-4, 1e-4])
+
+
+def _asked(c: npt.NDArray[np.complex128], s: complex, omega: float) -> npt.NDArray[np.complex128]:
+    """Return the base motion that a forced response belongs to: c (omega0^2 - omega^2 + i …)/(omega0^2 + i …)."""
+    damp = -2j * s.real * omega
+    return c * (abs(s) ** 2 - omega**2 + damp) / (abs(s) ** 2 + damp)
+
+
+def _tuned(
+    base: Base,
+    omega0: Uncertain,
+    lam: Uncertain,
+    response: Response,
+    forced: tuple[npt.NDArray[np.complex128], Floats],
+    mu: float,
+    friction: Uncertain,
+    seed: int,
+) -> Tuning:
+    """Lay the forced response beside the base; its slopes by omega0 and lam are differences of two more fits."""
+    omega, fit = base.fit.omega, response.fit
+    s = _root(omega0.value, lam.value)
+    turn = np.exp(1j * omega * response.late)
+
+    steps = pushed(-np.sign(fit.jumps.dv), mu * friction.value / abs(s) ** 2)
+
+    def again(omega0_: float, lam_: float) -> complex:
+        moved = _root(omega0_, lam_)
+        other = fit_jumps(
+            response.bins,
+            moved,
+            omega,
+            fit.motion.starts[1:],
+            2e-5,
+            order=response.order,
+            draws=0,
+            seed=seed,
+            forced=forced,
+            steps=steps,
+        )
+        return complex(_asked(other.motion.c[:1], moved, omega)[0] * turn)
+
+    first = np.concatenate([fit.motion.c[:1], fit.first])
+    asked = _asked(first, s, omega) * turn
+    step = 2e-5
+    here = again(omega0.value, lam.value)
+    by_omega0 = (again(omega0.value * (1 + step), lam.value) - here) / step
+    by_lam = (again(omega0.value, lam.value * 1.02) - here) / 0.02
+    # The ball's friction drives the oscillator with mu times its deceleration, a square wave; the unknown part.
+    unknown = 4 / np.pi * mu * friction.u / abs(s) ** 2 / base.E.value
+    return tune(
+        base, omega0, lam, asked, (by_omega0, by_lam),
+        u_gain=response.channel.u_gain, u_time=response.u_late, u_noise=max(unknown, 1.5e-3),
+    )  # fmt: skip
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Ball:
+    """Momentum and the ball's motion."""
+
+    alone: MomentumFit
+    joint: MomentumFit
+    motion: BallMotion
+    u_r: Floats
+    usable: npt.NDArray[np.bool_]
+    restitution: Restitution
+    weighed: Uncertain
+    gauge: Uncertain
+
+
+def _measure_ball(recording: Recording, response: Response, side: Floats) -> _Ball:
+    run, fit = recording.run, response.fit
+    friction = _stated(run.more.get("friction"), _FRICTION)
+    tilt = _stated(run.more.get("tilt"), _TILT)
+    time = np.diff(fit.jumps.t)
+    long = (time[:-1] > _SHORT) & (time[1:] > _SHORT)
+    mu = run.m.value / run.M.value
+    weighed = combined(mu, mu * run.m.u / run.m.value, mu * run.M.u / run.M.value)
+    # The jumps are in the units of the channel, so its calibration stands between them and the masses.
+    known = combined(mu, weighed.u, mu * max(response.channel.u_gain, 1e-4))
+    gauge = _reach(run.b, fit.jumps, side)
+    alone = fit_momentum(fit.jumps, fit.draws, side, mu=None, b=gauge, friction=friction, tilt=tilt, usable=long)
+    joint = fit_momentum(fit.jumps, fit.draws, side, mu=known, b=gauge, friction=friction, tilt=tilt, usable=long)
+    motion = ball_motion(fit.jumps, side, joint.cavity)
+    noise = ball_motion(fit.draws, side, joint.cavity)
+    with np.errstate(invalid="ignore"):
+        u_r = np.sqrt(np.nanmean((noise.r - motion.r) ** 2, axis=0))
+    fair = joint.good & np.isfinite(motion.r) & np.isfinite(u_r) & (motion.w_before * motion.side > 0) & (u_r < 0.2)
+    if np.count_nonzero(fair) < 4:
+        fair = np.isfinite(motion.r) & np.isfinite(u_r) & (np.abs(motion.r) < 2)
+    middle = float(np.median(motion.r[fair])) if fair.any() else 0.5
+    spread = 1.4826 * float(np.median(np.abs(motion.r[fair] - middle))) + 1e-3
+    usable = fair & (np.abs(motion.r - middle) < 6 * np.hypot(spread, u_r))
+    if np.count_nonzero(usable) < 4:
+        raise RigError(f"run {run.run_id!r}: no restitution can be taken from its impacts; are they those of the ball?")
+    found = restitution(motion.r[usable], u_r[usable], np.abs(motion.w_before[usable]))
+    return _Ball(alone, joint, motion, u_r, usable, found, weighed, gauge)
+
+
+def _reach(b: Uncertain, jumps: Jumps, side: Floats) -> Uncertain:
+    """Return b for instantaneous impacts: in a contact that lasts, the ball turns |w'| t_c beyond where it touches.
+
+    t_c is the centroid of the force after the touch: for any law of contact the straight lines before and after meet
+    there.
+    """
+    speed = float(np.median(np.abs(ball_motion(jumps, side, Cavity(b.value)).w_before)))
+    return combined(b.value + speed * _CENTROID.value, max(b.u, 1e-6), speed * _CENTROID.u)
+
+
+def _stated(given: object, otherwise: Uncertain) -> Uncertain:
+    if isinstance(given, dict) and {"value", "u"} <= given.keys():
+        return Uncertain(float(given["value"]), max(float(given["u"]), 1e-6))
+    return otherwise
+
+
+def _assembled(
+    recording: Recording, base: Base, response: Response, side: Floats, tuning: Tuning, phase: Floats,
+    periods: Periods, pattern: Pattern, ball: _Ball, seed: int,
+) -> Reconstruction:  # fmt: skip
+    run, fit = recording.run, response.fit
+    complete = len(periods.words)
+    if complete < 8:
+        raise RigError(f"run {run.run_id!r} holds {complete} whole forcing periods, a reconstruction needs 8")
+    weights = period_weights(complete, seed=seed)
+    number = periods.number - periods.first
+    inner = number[1:-1]
+    inside = (inner >= 0) & (inner < complete)
+    use = ball.usable & inside
+
+    def mean(values: Floats, which: npt.NDArray[np.bool_]) -> Uncertain:
+        return mean_over_periods(values[which], inner[which], weights)
+
+    joint = ball.joint
+    r = combined(ball.restitution.r, mean(ball.motion.r, use).u, *_type_b(fit.jumps, side, ball, response))
+    # The contact's part of b is a mean over soft and hard impacts.
+    b = combined(joint.b.value, joint.b.u, _CENTROID.u * ball.restitution.speed)
+    gain = response.channel.u_gain
+    omega = base.fit.omega
+    quantities = {
+        "f": base.f,
+        "E": tuning.E,
+        "phase": Uncertain(base.phase.value + tuning.phase, base.phase.u),
+        "omega0": tuning.omega0,
+        "lam": tuning.lam,
+        "Omega": combined(
+            omega / tuning.omega0.value,
+            omega / tuning.omega0.value * tuning.omega0.u / tuning.omega0.value,
+            2 * np.pi * base.f.u / tuning.omega0.value,
+        ),
+        "A": combined(tuning.E.value / b.value, tuning.E.u / b.value, tuning.E.value / b.value * b.u / b.value),
+        "mu": ball.weighed,
+        "mu_momentum": combined(ball.alone.mu.value, ball.alone.mu.u, ball.alone.mu.value * gain),
+        "b": b,
+        "friction": joint.friction,
+        "tilt": joint.tilt,
+        "r": r,
+        "r_exponent": Uncertain(ball.restitution.exponent, ball.restitution.u_exponent),
+        "sigma_r": Uncertain(ball.restitution.sigma_r, ball.restitution.u_sigma_r),
+        "impacts_per_period": mean_over_periods(
+            np.array([float(len(w)) for w in periods.words]), np.arange(complete), weights
+        ),
+        "w_before": mean(np.abs(ball.motion.w_before), use),
+        "w_after": mean(np.abs(ball.motion.w_after), use),
+    }
+    begin = (periods.cut + 2 * np.pi * (periods.first + np.arange(complete + 1)) - phase[0]) / omega + fit.jumps.t[0]
+    quantities |= _energies(response, ball, b, begin, weights)
+    found = slots(periods, pattern, phase, side)
+    if found is not None:
+        first = np.exp(1j * found.phase[:, 0])
+        angle = float(np.angle(first.mean()))
+        away = np.angle(first * np.exp(-1j * angle))
+        spread = mean_over_periods(away, found.period, weights).u
+        quantities["impact_phase"] = combined(
+            (angle + periods.cut) % (2 * np.pi), spread, base.phase.u, omega * response.u_late
+        )
+    track = Track(fit.motion, fit.jumps.t, side, fit.jumps.x - side * b.value, phase)
+    return Reconstruction(
+        run=run,
+        sha256=recording.sha256,
+        quantities=quantities,
+        pattern=pattern,
+        periods=periods,
+        slots=found,
+        impacts=_rows(response, ball, side, phase, number),
+        track=track,
+        residual=fit.residual,
+        noise=fit.noise,
+        pruned=response.pruned,
+        findings=judge(
+            recording,
+            base,
+            response,
+            tuning,
+            ball.alone,
+            ball.joint,
+            ball.weighed.value,
+            ball.gauge,
+            ball.restitution,
+            ball.usable,
+        ),
+        base_harmonics=base.e,
+    )
+
+
+def _type_b(jumps: Jumps, side: Floats, ball: _Ball, response: Response) -> list[float]:
+    """Return what calibrations and the cavity leave for the mean restitution: one part each."""
+    cavity, joint = ball.joint.cavity, ball.joint
+
+    def mean(moved: Jumps, within: Cavity) -> float:
+        return float(np.mean(ball_motion(moved, side, within).r[ball.usable]))
+
+    here = mean(jumps, cavity)
+    gain = 1 + float(np.hypot(response.channel.u_gain, _LINEARITY))
+    scaled = replace(jumps, x=jumps.x * gain, v_before=jumps.v_before * gain, v_after=jumps.v_after * gain)
+    late = 1e-6
+    turn = 0.5 * (response.fit.motion.before(2) + response.fit.motion.after(2))
+    shifted = replace(
+        jumps,
+        x=jumps.x + jumps.v_before * late,
+        v_before=jumps.v_before + turn * late,
+        v_after=jumps.v_after + turn * late,
+    )
+    return [
+        mean(jumps, replace(cavity, b=cavity.b + joint.b.u)) - here,
+        mean(jumps, replace(cavity, friction=cavity.friction + joint.friction.u)) - here,
+        mean(jumps, replace(cavity, tilt=cavity.tilt + joint.tilt.u)) - here,
+        mean(scaled, cavity) - here,
+        3 * (mean(shifted, cavity) - here),
+    ]
+
+
+def _energies(response: Response, ball: _Ball, b: Uncertain, begin: Floats, weights: Floats) -> dict[str, Uncertain]:
+    """Return max|x1| a period and K2/K1; `begin` are the limits of the periods on the channel's clock."""
+    motion, jumps = response.fit.motion, response.fit.jumps
+    times, values = motion.peaks()
+    period = np.searchsorted(begin, times, side="right") - 1
+    count = len(begin) - 1
+    top = np.zeros(count)
+    inside = (period >= 0) & (period < count)
+    np.maximum.at(top, period[inside], values[inside])
+    seen = top > 0
+    largest = mean_over_periods(top[seen], np.flatnonzero(seen), weights)
+    v1 = motion.mean_square_velocity(float(jumps.t[0]), float(jumps.t[-1]))
+    time = np.diff(jumps.t)
+    mean_v2 = np.diff(ball.motion.x2) / time
+    # Constant deceleration adds its own variance, (a dt)^2/12.
+    square = mean_v2**2 + (ball.joint.friction.value * time) ** 2 / 12
+    flight = np.clip(np.searchsorted(begin, jumps.t[:-1], side="right") - 1, 0, count - 1)
+    v2 = float(np.sum(square * time) / np.sum(time))
+    sums, lengths = np.bincount(flight, square * time, count), np.bincount(flight, time, count)
+    draws = (weights @ sums) / (weights @ lengths)
+    u_v2 = float(np.std(draws))
+    of_v1 = np.array([motion.mean_square_velocity(float(a), float(c)) for a, c in itertools.pairwise(begin)])
+    u_v1 = float(np.std(weights @ of_v1 / len(of_v1)))
+    ratio = ball.weighed.value * v2 / v1
+    gain = response.channel.u_gain
+    return {
+        "max_abs_x1": combined(
+            largest.value / b.value,
+            largest.u / b.value,
+            largest.value / b.value * gain,
+            largest.value * b.u / b.value**2,
+        ),
+        "kinetic_ratio": combined(
+            ratio, ratio * u_v2 / v2, ratio * u_v1 / v1, ratio * ball.weighed.u / ball.weighed.value,
+            2 * ratio * gain, 2 * ratio * b.u / b.value,
+        ),
+    }  # fmt: skip
+
+
+def _rows(
+    response: Response, ball: _Ball, side: Floats, phase: Floats, number: npt.NDArray[np.int64]
+) -> npt.NDArray[np.void]:
+    jumps = response.fit.jumps
+    rows = np.zeros(len(side), IMPACT)
+    for name in ("v2", "v2_after", "w_dot", "w_dot_after", "r", "u_r"):
+        rows[name] = np.nan
+    rows["t"], rows["side"], rows["x1"] = jumps.t - response.late, side, jumps.x
+    rows["v1"], rows["v1_after"], rows["x2"] = jumps.v_before, jumps.v_after, ball.motion.x2
+    rows["u_t"] = np.hypot(response.fit.draws.t.std(axis=0), response.u_late)
+    rows["phase"], rows["period"] = np.mod(phase, 2 * np.pi), number
+    inner = slice(1, -1)
+    rows["v2"][inner], rows["v2_after"][inner] = ball.motion.v2_before, ball.motion.v2_after
+    rows["w_dot"][inner], rows["w_dot_after"][inner] = ball.motion.w_before, ball.motion.w_after
+    rows["r"][inner], rows["u_r"][inner] = ball.motion.r, ball.u_r
+    rows["suspect"][inner] = ~ball.usable
+    return rows
