@@ -16,8 +16,12 @@ import pytest
 from tests.conftest import REPOSITORY
 
 REDUCED = {
-    "fig8": ("stages.mass_up.vary.mu.step=0.01", "stages.mass_down.vary.mu.step=0.02", "stages.mass_up.random=0",
-             "stages.zoom_up.vary.mu.step=0.01", "stages.zoom_down.vary.mu.step=0.05", "stages.zoom_up.random=0"),
+    "fig8": (
+        "stages.mass_up.vary.mu.from=0.01", "stages.mass_up.vary.mu.step=0.01", "stages.mass_up.random=0",
+        "stages.mass_down.vary.mu.from=0.02", "stages.mass_down.vary.mu.step=0.02",
+        "stages.zoom_up.vary.mu.from=0.01", "stages.zoom_up.vary.mu.step=0.01", "stages.zoom_up.random=0",
+        "stages.zoom_down.vary.mu.from=0.05", "stages.zoom_down.vary.mu.step=0.05",
+    ),
     "fig2": (),
     "fig4": (
         "stages.up.vary.A.step=0.00005", "stages.down.vary.A.step=0.0005", "stages.up.settle=400",
