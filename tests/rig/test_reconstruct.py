@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from vines.errors import RigError
-from vines.rig import compare, reconstruct, ring_down
+from vines.rig import reconstruct, ring_down
 from vines.rig.synth import RigSettings, simulate_rig
 
 
@@ -56,9 +56,3 @@ def test_a_ring_down_is_not_reconstructed(ringdown):
     settings = RigSettings(run_id="free", protocol="ringdown", ball=False, E=0.0, duration=2.0, settle=0.0)
     with pytest.raises(RigError, match="has no ball in it"):
         reconstruct(simulate_rig(settings, 2)[0], [ringdown])
-
-
-@pytest.mark.full
-def test_a_clean_run_agrees_with_the_branch_of_its_pattern(dwell):
-    verdict = compare(dwell[0])
-    assert verdict.verdict == "agree", verdict.reason

@@ -7,7 +7,6 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from vines.rig._compare import Calibration, calibrate, compare, compare_all
     from vines.rig._inspect import channel_facts, draw_file, spark
     from vines.rig._read_run import Ingested, read_run
     from vines.rig._reconstruct import reconstruct
@@ -16,13 +15,10 @@ if TYPE_CHECKING:
     from vines.rig._ring_down import RingDown, ring_down
     from vines.rig._run_folder import find_runs, read_folder
     from vines.rig._template import write_template
-    from vines.rig._verdict import Comparison
 
 __all__ = [
     "QUANTITIES",
     "ROLES",
-    "Calibration",
-    "Comparison",
     "Finding",
     "Ingested",
     "Reconstruction",
@@ -31,10 +27,7 @@ __all__ = [
     "RunInfo",
     "Sampled",
     "Uncertain",
-    "calibrate",
     "channel_facts",
-    "compare",
-    "compare_all",
     "draw_file",
     "find_runs",
     "read_folder",
@@ -48,8 +41,6 @@ __all__ = [
 _HOME = {
     "QUANTITIES": "_reconstruction",
     "ROLES": "_recording",
-    "Calibration": "_compare",
-    "Comparison": "_verdict",
     "Finding": "_reconstruction",
     "Ingested": "_read_run",
     "Reconstruction": "_reconstruction",
@@ -58,10 +49,7 @@ _HOME = {
     "RunInfo": "_recording",
     "Sampled": "_recording",
     "Uncertain": "_recording",
-    "calibrate": "_compare",
     "channel_facts": "_inspect",
-    "compare": "_compare",
-    "compare_all": "_compare",
     "draw_file": "_inspect",
     "find_runs": "_run_folder",
     "read_folder": "_run_folder",

@@ -64,7 +64,7 @@ def bins_of(channel: Sampled, rate: float = BIN_RATE) -> Bins:
         t, mean = t[good], mean[good]
     if len(t) < 16:
         raise RigError(f"channel {channel.name!r} has {len(t)} usable stretches of samples, a fit needs at least 16")
-    return Bins(t, mean, size / channel.rate)
+    return Bins(np.asarray(t, dtype=np.float64), mean, size / channel.rate)
 
 
 def sinhc(z: complex) -> complex:
@@ -75,4 +75,4 @@ def sinhc(z: complex) -> complex:
     >>> sinhc(0), round(abs(sinhc(0.1j)), 9)
     ((1+0j), 0.998334166)
     """
-    return complex(np.sinh(z) / z) if abs(z) > 1e-6 else 1 + z * z / 6
+    return complex(np.sinh(z) / z) if abs(z) > 1e-6 else complex(1 + z * z / 6)

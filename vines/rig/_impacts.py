@@ -50,7 +50,7 @@ class Pulses:
     @property
     def t(self) -> Floats:
         """Times of the values [s]."""
-        return self.start + self.step * np.arange(len(self.values))
+        return self.start + self.step * np.arange(len(self.values), dtype=np.float64)
 
     def less(self, other: Floats) -> Pulses:
         """Return the signal without another one on the same grid."""

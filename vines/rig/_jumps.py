@@ -8,6 +8,7 @@ free part z_j of each flight as unknowns it is banded, and thousands of impacts 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -157,6 +158,7 @@ def fit_jumps(
     if expected is not None:
         size = np.abs(expected[0])
     solved = problem.solve(scale, np.maximum(size, 1e-4) * u_times, expected)
+    clumped = 1.0
     for _ in range(3):
         dv = np.abs(problem.motion(*solved[:2]).after(1) - problem.motion(*solved[:2]).before(1))
         problem.distrust(problem.left(*solved[:2]), noise)
@@ -290,7 +292,7 @@ class _Problem:
         weight = np.where(self.trusted, 1.0, _DISTRUST)
 
         def total(values: Floats) -> Floats:
-            return np.bincount(self.flight, weight * values, flights)
+            return np.asarray(np.bincount(self.flight, weight * values, flights), dtype=np.float64)
 
         one, two = self.free
         band = np.zeros((4, 2 * flights))
@@ -317,7 +319,7 @@ class _Problem:
                 for k, part in ((2 * n, value.real), (2 * n + 1, value.imag)):
                     corner[k, k] += 1 / u_n**2
                     below[k] += part / u_n**2
-        step = np.exp(self.s * np.diff(self.starts))
+        step: Any = np.exp(self.s * np.diff(self.starts))
         position = np.stack([-step.real, step.imag, np.ones(len(step)), np.zeros(len(step))], axis=1)
         carried = self.s * step
         velocity = np.stack(

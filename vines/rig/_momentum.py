@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -96,6 +97,7 @@ def fit_momentum(
     step = {"mu": 1e-4 * value["mu"], "b": 1e-4 * b.value, "tilt": 1e-3}
     good = usable.copy()
     covariance = np.eye(len(_NAMES))
+    u: Any = 1.0
     for _ in range(8):
         base = _residual(jumps, side, value)
         noise = _residual(draws, side, value)

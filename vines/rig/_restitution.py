@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -72,7 +73,7 @@ def restitution(r: Floats, u: Floats, speed: Floats) -> Restitution:
         cost = 0.5 * float(np.sum(np.log(variance) + left**2 / variance)) + 0.5 * float(np.linalg.slogdet(normal)[1])
         return cost, linear, normal
 
-    best = minimize_scalar(lambda v: fit(v)[0], bounds=(np.log(1e-5), np.log(0.5)), method="bounded")
+    best: Any = minimize_scalar(lambda v: fit(v)[0], bounds=(np.log(1e-5), np.log(0.5)), method="bounded")
     at = float(best.x)
     _, linear, normal = fit(at)
     bend = (fit(at + 0.05)[0] - 2 * fit(at)[0] + fit(at - 0.05)[0]) / 0.05**2

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -88,9 +89,13 @@ def sine_fit(bins: Bins, *, harmonics: int = 3, near: float | None = None) -> Si
         raise RigError(f"the record lasts {t[-1] - t[0]:.3g} s, less than two periods of {omega / (2 * np.pi):.4g} Hz")
     order = np.arange(1, harmonics + 1)
     change = np.inf
+    c: Any = np.zeros(harmonics, dtype=np.complex128)
+    linear: Any = np.zeros(2 * harmonics + 1)
+    columns: Any = np.empty((2 * harmonics + 2, len(t)))
+    normal: Any = np.eye(2 * harmonics + 2)
     for _ in range(_ROUNDS):
-        turn = np.exp(1j * omega * tau)
-        powers = [turn]
+        turn: Any = np.exp(1j * omega * tau)
+        powers: list[Any] = [turn]
         for _n in range(harmonics - 1):
             powers.append(powers[-1] * turn)
         smear = np.array([sinhc(0.5j * n * omega * bins.width).real for n in order])
