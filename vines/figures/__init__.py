@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from vines.figures._multipliers import MultiplierLines, MultiplierPanel, multiplier_figure
     from vines.figures._names import ERRORS, NAMES, PANELS, RUN_PANELS, SYMBOLS
     from vines.figures._reduced import ErrorMap, reduced_figure
+    from vines.figures._regimes import REGIME_CLASSES, RegimeMap, regimes_figure
     from vines.figures._runs import EndsPanel, GapPanel, PhasePlanePanel, RunCurves
     from vines.figures._sheet import Panel, sheet_figure
     from vines.figures._style import COLOURS, save
@@ -23,6 +24,7 @@ __all__ = [
     "ERRORS",
     "NAMES",
     "PANELS",
+    "REGIME_CLASSES",
     "RUN_PANELS",
     "SYMBOLS",
     "BasinMap",
@@ -38,6 +40,7 @@ __all__ = [
     "MultiplierPanel",
     "Panel",
     "PhasePlanePanel",
+    "RegimeMap",
     "Region",
     "RunCurves",
     "SpecialMark",
@@ -46,6 +49,7 @@ __all__ = [
     "chart_figure",
     "multiplier_figure",
     "reduced_figure",
+    "regimes_figure",
     "save",
     "sheet_figure",
 ]
@@ -72,6 +76,9 @@ _HOME = {
     "CurveLine": "_chart",
     "ErrorMap": "_reduced",
     "MultiplierLines": "_multipliers",
+    "REGIME_CLASSES": "_regimes",
+    "RegimeMap": "_regimes",
+    "regimes_figure": "_regimes",
     "Region": "_chart",
     "SpecialMark": "_chart",
     "basins_figure": "_basins",

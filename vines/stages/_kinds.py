@@ -205,7 +205,7 @@ class FigureOptions(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     with `letters` on each panel or each row.
     """
 
-    plot: Literal["bifurcation", "reduced", "multipliers", "chart", "basins", "sheet"]
+    plot: Literal["bifurcation", "reduced", "multipliers", "chart", "basins", "sheet", "regimes"]
     panels: tuple[str, ...] = ()
     title: str = ""
     width: float = 7.0
