@@ -31,7 +31,7 @@ class Project:
     def __init__(self, root: Path):
         self.root = root
 
-    def vines(self, *arguments, check=True, **options):
+    def vines(self, *arguments, check=True, timeout=300, **options):
         """Run the command line in a process of its own."""
         environment = {**os.environ, "VINES_ROOT": str(self.root), "COLUMNS": "160"}
         done = subprocess.run(
@@ -40,7 +40,7 @@ class Project:
             text=True,
             cwd=self.root,
             env=environment,
-            timeout=300,
+            timeout=timeout,
             check=False,
             **options,
         )

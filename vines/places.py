@@ -68,7 +68,7 @@ def cache_folder() -> Path:
 
 
 def shipped(name: str) -> Path:
-    """Return a folder that ships with vines, ``schemas`` or ``pipelines``.
+    """Return what ships with vines: the folders ``schemas`` and ``pipelines``, the files ``LICENSE``, ``CITATION.cff``.
 
     In a wheel they are package data; in a checkout they lie beside the package.
 
@@ -79,6 +79,6 @@ def shipped(name: str) -> Path:
     """
     package = Path(__file__).resolve().parent
     for folder in (package / "_shipped" / name, package.parent / name):
-        if folder.is_dir():
+        if folder.exists():
             return folder
-    raise FileMissingError(f"the folder {name!r} that ships with vines is missing; install vines again")
+    raise FileMissingError(f"{name!r} that ships with vines is missing; install vines again")

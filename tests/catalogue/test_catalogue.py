@@ -1,10 +1,16 @@
 """The catalogue: views over what is pinned, answers and messages."""
 
+import csv
+import io
+import json
+import math
+
+import pyarrow.parquet as pq
 import pytest
 
 from vines import schema
 from vines.catalogue import connect, connect_tables
-from vines.errors import QueryError, UnknownNameError
+from vines.errors import QueryError, SchemaError, UnknownNameError
 from vines.store import Store, write_parquet
 
 
@@ -59,8 +65,6 @@ def test_logs_come_from_the_manifests(store):
 
 
 def test_columns_that_an_older_result_lacks_are_null(store, monkeypatch):
-    import json
-
     path = store.results / ("a" * 64) / "manifest.json"
     manifest = json.loads(path.read_text())
     manifest["tables"]["points"]["columns"].remove("name")
@@ -99,3 +103,65 @@ def test_tables_in_memory_answer_like_the_catalogue():
         assert query("select * from orbits") == []
         with pytest.raises(QueryError, match="did you mean 'points'"):
             query("select * from point")
+
+
+def test_a_file_of_another_version_or_unit_is_one_clear_line(store):
+    path = store.results / ("a" * 64) / "points.parquet"
+    table = pq.read_table(path)
+    about = json.loads(table.schema.metadata[b"vines"])
+    for change, words in (
+        ({"version": 7}, "it is version 7 of 'points', this vines has version 1"),
+        ({"units": {**about["units"], "A": "m"}}, "the unit of 'A' is told as 'm', the schema says '1'"),
+    ):
+        pq.write_table(table.replace_schema_metadata({"vines": json.dumps(about | change)}), path)
+        for sql in (
+            "select * from points",
+            "select * from first.up",
+            "select * from second.symmetric join points p on 1",
+        ):
+            with connect(store) as catalogue, pytest.raises(SchemaError) as caught:
+                catalogue.query(sql)
+            assert words in str(caught.value)
+            assert "\n" not in str(caught.value)
+        with connect(store) as catalogue:  # what does not read the file still answers
+            assert catalogue.fetch("select count(*) from second.symmetric")[1] == [(3,)]
+
+
+def test_the_views_are_listed_where_a_query_asks_for_them(store):
+    with connect(store) as catalogue:
+        names = {row[0] for row in catalogue.fetch("select table_name from information_schema.tables")[1]}
+        assert set(catalogue.names) <= names
+        assert catalogue.fetch("select count(*) from POINTS")[1] == [(6,)]
+
+
+AWKWARD = """select * from (values (1, 'a,"b"' || chr(10) || 'é', [1.5, null], true, 1e300, null),
+    (2, '', []::double[], false, 'nan'::double, '-inf'::double)) t(i, words, list, yes, x, y)"""
+
+
+def test_awkward_values_survive_every_form(store, tmp_path):
+    with connect(store) as catalogue:
+        catalogue.save(AWKWARD, tmp_path / "a.csv", "csv")
+        catalogue.save(AWKWARD, tmp_path / "a.parquet", "parquet")
+        catalogue.save("select A from points where false", tmp_path / "empty.csv", "csv")
+        catalogue.save("select A from points where false", tmp_path / "empty.parquet", "parquet")
+    rows = list(csv.DictReader(io.StringIO((tmp_path / "a.csv").read_text("utf-8"), newline="")))
+    assert [row["words"] for row in rows] == ['a,"b"\né', ""]
+    assert [row["list"] for row in rows] == ["[1.5, NULL]", "[]"]
+    kept = pq.read_table(tmp_path / "a.parquet").to_pylist()
+    assert kept[0]["list"] == [1.5, None]
+    assert math.isnan(kept[1]["x"])
+    assert kept[1]["y"] == -math.inf
+    assert (tmp_path / "empty.csv").read_text().strip() == "A"
+    assert pq.read_table(tmp_path / "empty.parquet").schema.field("A").metadata == {b"unit": b"1"}
+
+
+def test_polars_and_pandas_read_the_files_as_they_are(store):
+    import pandas as pd
+    import polars as pl
+
+    path = store.results / ("a" * 64) / "points.parquet"
+    assert pl.scan_parquet(path).filter(pl.col("A") > 0.5).collect()["point_id"].to_list() == ["p1", "p2"]
+    assert pd.read_parquet(path)["A"].tolist() == [0.0, 1.0, 2.0]
+    with connect(store) as catalogue:
+        assert catalogue.table("points").to_pandas()["A"].max() == 3.0
+        assert pl.from_arrow(catalogue.table("points")).height == 6

@@ -6,6 +6,7 @@ import json
 import signal
 import subprocess
 import sys
+from pathlib import Path
 
 import pyarrow.parquet as pq
 import pytest
@@ -40,6 +41,28 @@ def test_query_in_every_form(quickstart, tmp_path):
     assert kept.schema.field("A").metadata == {b"unit": b"1"}
     assert (tmp_path / "answer.txt").read_text().startswith("A")
     assert {path.suffix for path in tmp_path.iterdir()} == {".csv", ".json", ".parquet", ".txt"}
+
+
+AWKWARD = (
+    "select 'a\"b' as words, [1.5, null] as list, 'nan'::double as x, 1e300 as big, date '2026-01-02' as day, "
+    "null as none"
+)
+
+
+def test_awkward_values_and_empty_answers_on_the_screen(quickstart):
+    row = json.loads(quickstart.vines("query", AWKWARD, "--format", "json").stdout)[0]
+    assert row == {"words": 'a"b', "list": [1.5, None], "x": None, "big": 1e300, "day": "2026-01-02", "none": None}
+    assert "[1.5, ]" in quickstart.vines("query", AWKWARD).stdout
+    nothing = "select A, name from points where false"
+    assert quickstart.vines("query", nothing).stdout == "A  name\n"
+    assert quickstart.vines("query", nothing, "--format", "csv").stdout == "A,name\n"
+    assert json.loads(quickstart.vines("query", nothing, "--format", "json").stdout) == []
+
+
+def test_the_reference_of_tables_is_current(quickstart):
+    said = quickstart.vines("schema", "--markdown").stdout
+    committed = (Path(__file__).resolve().parents[2] / "docs" / "reference_tables.md").read_text("utf-8")
+    assert said == committed, "run: vines schema --markdown > docs/reference_tables.md"
 
 
 @pytest.mark.parametrize("sql", ["create table x as select 1", "copy (select 1) to 'evil.csv'", "select 1; select 2"])

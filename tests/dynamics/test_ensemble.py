@@ -81,7 +81,27 @@ def test_final_states_and_measures_are_those_of_simulate() -> None:
             assert many.final[name][k] == pytest.approx(run.final[name], abs=1e-9)
         assert many.measures is not None
         for name in many.measures.dtype.names or ():
-            assert many.measures[name][k] == pytest.approx(getattr(m, name), rel=1e-7, abs=1e-9)
+            if not name.endswith("_error"):
+                assert many.measures[name][k] == pytest.approx(getattr(m, name), rel=1e-7, abs=1e-9)
+
+
+def test_a_chatter_merges_at_the_same_impact_in_lanes() -> None:
+    merges = 0
+    for mu, A in ((0.0084, 0.015), (0.05, 0.015), (0.3, 0.05)):
+        p, v2 = Params(mu=mu, A=A), np.linspace(0.05, 0.15, 60)
+        many = ensemble(p, {"v2": v2}, periods=12, record="impacts").impacts
+        assert many is not None
+        for k in range(60):
+            run = simulate(p, v2=float(v2[k]), periods=12)
+            if not len(run.sticks):
+                continue
+            # Up to the first merge, whose hops are the smallest, nothing but rounding differs.
+            merges += 1
+            ours = many["t"][many["run"] == k]
+            n = int(np.sum(run.impacts["t"] <= run.events["t"][run.events["kind"] == 2][0]))
+            assert ours[:n] == pytest.approx(run.impacts["t"][:n], abs=1e-6)
+            assert len(ours) == n or ours[n] - ours[n - 1] > 1e-3
+    assert merges >= 10
 
 
 def test_chatter_and_sticking_are_the_same_in_lanes() -> None:
@@ -134,6 +154,33 @@ def test_exponents_are_those_of_one_run_and_obey_the_sum_rule() -> None:
     assert many.exponents.sum(axis=1) == pytest.approx(sums, abs=1e-8)
     alone, errors = lyapunov_spectrum(simulate(p, periods=400))
     assert abs(many.exponents[0, 0] - alone[0]) < 5 * errors[0]
+
+
+def test_standard_errors_are_the_scatter_between_runs() -> None:
+    # Chaos: the measures of independent runs scatter as the errors that each run gives by itself.
+    p = BASE.replace(A=0.03)
+    many = ensemble(p, {"v2": np.linspace(0.05, 0.2, 96)}, settle=100, periods=400, record="measures", lyapunov=True)
+    m = many.measures
+    assert m is not None
+    assert many.exponents is not None
+    assert many.exponent_errors is not None
+    for name in ("kinetic_ratio", "rms_x1"):
+        typical = math.sqrt(np.mean(m[f"{name}_error"] ** 2))
+        assert 0.7 < np.std(m[name], ddof=1) / typical < 1.4
+    typical = math.sqrt(np.mean(many.exponent_errors[:, 0] ** 2))
+    assert 0.6 < np.std(many.exponents[:, 0], ddof=1) / typical < 1.6
+    assert np.all(np.diff(many.exponents, axis=1) <= 0)
+
+
+def test_standard_errors_vanish_on_a_periodic_orbit_and_are_nan_for_a_run_cut_short() -> None:
+    p = BASE.replace(A=0.015)
+    m = ensemble(p, {"v2": [0.1]}, settle=3000, periods=16, record="measures").measures
+    assert m is not None
+    for name in ("kinetic_ratio", "max_abs_x1", "rms_x1"):
+        assert m[f"{name}_error"][0] < 1e-8 * m[name][0]
+    cut = ensemble(Params(mu=0.0084, A=0.015), periods=20, record="measures", max_impacts_per_period=8).measures
+    assert cut is not None
+    assert math.isnan(cut["kinetic_ratio_error"][0])
 
 
 def test_a_stable_orbit_in_lanes_keeps_its_impact_velocity_to_1e_12() -> None:

@@ -21,9 +21,9 @@ parameters = st.builds(
     Params,
     mu=st.floats(-5, 1).map(lambda e: 10**e),
     A=st.floats(-3, 1).map(lambda e: 10**e),
-    Omega=st.floats(0.05, 5.0).filter(lambda w: abs(w - 1) > 1e-3),
+    Omega=st.one_of(st.floats(0.05, 5.0), st.floats(0.99, 1.01), st.just(1.0)),
     r=st.floats(0.0, 1.0),
-    lam=st.floats(0.0, 1.0),
+    lam=st.one_of(st.floats(0.0, 1.0), st.sampled_from([0.0, 1e-12, 1e-6])),
 )
 
 
@@ -62,7 +62,7 @@ def test_the_samples_stay_in_the_cavity_and_carry_a_running_balance() -> None:
     assert set(np.unique(s["stuck"])) == {-1, 0}
     stored = s["kinetic_1"] + s["kinetic_2"] + s["potential"]
     lost = s["base_work"] - s["damper_loss"] - s["impact_loss"] - (stored - stored[0])
-    assert np.max(np.abs(lost)) < 1e-15
+    assert np.max(np.abs(lost)) < 1e-13 * s["base_work"][-1]
     twice = np.isin(s["t"], run.events["t"][1:-1])
     assert twice.sum() == 2 * (len(run.events) - 2)
 

@@ -68,5 +68,9 @@ def test_bad_scatter_is_refused() -> None:
     ):
         with pytest.raises(ParameterError, match=message):
             Scatter(**options)
+    still = Params(mu=0.01, A=0.02, Omega=0.5, lam=0.0)
+    ensemble(still, periods=1, scatter=Scatter(sigma_r=0.1))
+    with pytest.raises(ParameterError, match="lam is 0 at the resonance of mass 1 in run 0"):
+        ensemble(still, periods=1, scatter=Scatter(second=0.1))
     with pytest.raises(StateError, match="lyapunov is not defined"):
         ensemble(P, lyapunov=True, scatter=Scatter())

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from vines.dynamics import ball_locked, no_ball, simulate
-from vines.errors import ParameterError, StateError
+from vines.errors import StateError
 from vines.model import Params
 
 CHATTER = Params(mu=0.0084, A=0.015)
@@ -152,8 +152,3 @@ def test_samples_outside_the_run_are_refused() -> None:
         run.sample(5, per_period=2)
     with pytest.raises(StateError, match="last is 3"):
         run.measures(last=3)
-
-
-def test_the_undamped_resonance_of_the_stuck_pair_is_refused() -> None:
-    with pytest.raises(ParameterError, match="resonance of mass 4"):
-        simulate(Params(mu=3.0, A=0.1, Omega=0.5, lam=0.0))

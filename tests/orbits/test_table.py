@@ -3,12 +3,10 @@
 import numpy as np
 import pytest
 
-from vines.dynamics._constants import constants
 from vines.errors import ParameterError
 from vines.model import Params
 from vines.orbits import symmetric_orbits, symmetric_table
 from vines.orbits._eigenvalues import eigenvalues_kernel
-from vines.orbits._table import constants_kernel
 
 
 def test_it_is_the_closed_form_at_random_points():
@@ -46,14 +44,6 @@ def test_its_eigenvalues_have_a_backward_error_of_rounding():
         assert abs(values.sum() - np.trace(M)) <= 2e-14 * size
         for z in values:
             assert np.linalg.svd(M - z * np.eye(4))[1][-1] <= 2e-14 * size
-
-
-def test_its_constants_are_those_of_the_dynamics():
-    p = Params(mu=0.2, A=0.3, Omega=1.3, r=0.5, lam=0.1)
-    ours, theirs = constants_kernel(*p.as_dict().values()), constants(p)
-    for name in theirs._fields:
-        if name not in ("stuck", "correction"):
-            assert getattr(ours, name) == pytest.approx(getattr(theirs, name), rel=1e-15)
 
 
 def test_parameters_broadcast_and_are_checked():

@@ -108,3 +108,8 @@ def test_a_query_that_fails_names_its_claim(project):
     done = project.vines("run", "short", "--quiet", check=False)
     assert done.returncode == 3
     assert "claim 'one'" in done.stderr
+
+
+def test_the_page_in_the_docs_has_every_claim():
+    told = (REPOSITORY / "docs" / "claims.md").read_text()
+    assert {line.split("`")[1] for line in told.splitlines() if line.startswith("| `")} == set(CLAIMS)

@@ -89,7 +89,7 @@ def test_fig4_panels_lines_and_bifurcations(root):
 
 def test_fig5_shows_regular_motion_solid_and_chaos_pale(root):
     coarse = {"from": 0.002, "to": 0.065, "step": 0.001}
-    sweeps = ["up", "down", "from_rest", "from_swinging"]
+    sweeps = ["up", "down", "random_1", "random_2"]
     small = {f"stages.{name}.vary.A": coarse for name in sweeps} | {f"stages.{name}.settle": 100 for name in sweeps}
     branches = ["one_one", "two_one", "one_two"]
     small |= {f"stages.{name}.points": 40 for name in branches}

@@ -8,12 +8,26 @@ import subprocess
 import sys
 import time
 
+import numpy as np
+import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
 
 from vines import schema
 from vines.errors import SchemaError, StoreError, UnknownNameError
-from vines.store import Ids, Store, TableFile, canonical, commit_part, key_of, revision, versions, write_parquet
+from vines.store import (
+    Ids,
+    Store,
+    TableFile,
+    canonical,
+    commit_part,
+    describe_table,
+    key_of,
+    read_parquet,
+    revision,
+    versions,
+    write_parquet,
+)
 
 P = [f"{i:020x}" for i in range(10)]
 ROWS = [{"point_id": P[i], "A": 0.1 * i, "status": "ok"} for i in range(5)]
@@ -227,3 +241,52 @@ def test_pins_and_manifests_need_no_heavy_package(tmp_path):
     code += "s.pinned(); s.result('k' * 64); print({'pyarrow', 'numpy', 'filelock'} & set(sys.modules))"
     out = subprocess.run([sys.executable, "-c", code, str(tmp_path)], capture_output=True, text=True, check=True)
     assert out.stdout.strip() == "set()"
+
+
+def test_a_table_is_checked_on_writing_and_on_reading(tmp_path):
+    path = tmp_path / "points.parquet"
+    for column, value, words in (("regime", "lively", "periodic, quasi"), ("r", 1.5, ">= 0 and <= 1")):
+        with pytest.raises(SchemaError, match=f"{value!r} in row 1 is not allowed: {words}"):
+            write_parquet(path, "points", [{"point_id": "a"}, {"point_id": "b", column: value}], provenance={})
+    rows = [{"point_id": "a", "regime": "chaotic", "r": 0.65, "lyapunov": float("nan"), "phase": 1.0}]
+    write_parquet(path, "points", rows, provenance={})
+    table = read_parquet(path, "points")
+    about = json.loads(table.schema.metadata[b"vines"])
+    degrees = table.schema.field("phase").with_metadata({"unit": "deg"})
+    place = table.schema.names.index("phase")
+    for changed, words in (
+        (table.set_column(place, degrees, table.column("phase")), "column 'phase' is in 'deg', the schema says 'rad'"),
+        (table.replace_schema_metadata(None), "the key 'vines' with units and provenance is missing"),
+        (told(table, about | {"version": 0}), "it is version 0 of 'points', this vines has version 1"),
+        (told(table, about | {"table": "orbits"}), "it is a table 'orbits', not 'points'"),
+        (told(table, about | {"units": about["units"] | {"A": "m"}}), "the unit of 'A' is told as 'm'"),
+        (table.append_column("mine", [[1]]), "column 'mine' is not one of 'points'"),
+        (table.set_column(place, "phase", [["1"]]), "column 'phase' is string, the schema says double"),
+    ):
+        pq.write_table(changed, path)
+        with pytest.raises(SchemaError) as caught:
+            read_parquet(path, "points")
+        assert words in str(caught.value)
+        assert "\n" not in str(caught.value)
+    path.write_bytes(b"no table")
+    with pytest.raises(OSError, match=r"points\.parquet"):
+        read_parquet(path, "points")
+
+
+def told(table, about):
+    return table.replace_schema_metadata({"vines": json.dumps(about)})
+
+
+def test_form_of_the_files(tmp_path):
+    path = tmp_path / "points.parquet"
+    rows = {"point_id": [f"{i:06d}" for i in range(130_000)], "A": np.linspace(0, 1, 130_000)}
+    write_parquet(path, "points", pa.table(rows), provenance={"key": "k"}, sorted_by=["A"])
+    meta = pq.read_metadata(path)
+    assert [meta.row_group(i).num_rows for i in range(meta.num_row_groups)] == [122_880, 7_120]
+    column = meta.row_group(0).column(meta.schema.to_arrow_schema().names.index("A"))
+    assert (column.compression, "BYTE_STREAM_SPLIT" in column.encodings) == ("ZSTD", True)
+    assert meta.row_group(0).sorting_columns[0].column_index == meta.schema.to_arrow_schema().names.index("A")
+    assert pq.read_schema(path).field("A").metadata[b"unit"] == b"1"
+    about = json.loads(pq.read_schema(path).metadata[b"vines"])
+    assert (about["units"]["A"], about["provenance"]) == ("1", {"key": "k"})
+    assert describe_table("points", 3)["units"]["phase"] == "rad"

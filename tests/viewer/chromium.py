@@ -26,7 +26,7 @@ class Browser:
         self.console = []
         target = self.call("Target.createTarget", url="about:blank")["targetId"]
         self._session = self.call("Target.attachToTarget", targetId=target, flatten=True)["sessionId"]
-        for domain in ("Network", "Page", "Runtime"):
+        for domain in ("Log", "Network", "Page", "Runtime"):
             self.call(f"{domain}.enable", session=self._session)
 
     def call(self, method, session=None, **params):
@@ -55,6 +55,10 @@ class Browser:
                 self.requests[each["params"]["requestId"]] = each["params"]["request"]["url"]
             elif each.get("method") == "Network.loadingFailed" and each["params"].get("blockedReason") == "csp":
                 self.blocked.add(each["params"]["requestId"])
+            elif each.get("method") == "Runtime.exceptionThrown":
+                self.console.append(each["params"]["exceptionDetails"].get("text", "an exception"))
+            elif each.get("method") == "Log.entryAdded":
+                self.console.append(each["params"]["entry"]["text"])
             elif each.get("method") == "Runtime.consoleAPICalled":
                 self.console.append(" ".join(str(a.get("value", "")) for a in each["params"]["args"]))
             yield each
@@ -66,6 +70,27 @@ class Browser:
     def open(self, url):
         """Load a page."""
         self.call("Page.navigate", session=self._session, url=url)
+
+    def ask(self, script):
+        """Evaluate JavaScript in the page and return its value."""
+        answer = self.call("Runtime.evaluate", session=self._session, expression=script, returnByValue=True)
+        if "exceptionDetails" in answer:
+            raise RuntimeError(answer["exceptionDetails"])
+        return answer["result"].get("value")
+
+    def wait_for(self, script, seconds=30.0):
+        """Wait until JavaScript in the page gives something true."""
+        deadline = time.monotonic() + seconds
+        while time.monotonic() < deadline:
+            if self.ask(script):
+                return
+            time.sleep(0.1)
+        raise TimeoutError(f"{script} did not come true within {seconds:g} s")
+
+    def media(self, **features):
+        """Set media features, such as prefers_color_scheme."""
+        told = [{"name": name.replace("_", "-"), "value": value} for name, value in features.items()]
+        self.call("Emulation.setEmulatedMedia", session=self._session, features=told)
 
     def picture(self):
         """Return what the page shows as PNG bytes."""

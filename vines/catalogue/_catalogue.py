@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import contextlib
 import re
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from pathlib import Path
 from types import TracebackType
 from typing import TYPE_CHECKING, Any, Literal
 
 from vines import schema
-from vines.catalogue._views import define_views, quote, select
-from vines.errors import QueryError, UnknownNameError, nearest
+from vines.catalogue._views import View, list_views, quote, select, stage_results, text
+from vines.errors import QueryError, SchemaError, UnknownNameError, nearest
 from vines.store import Store
 
 if TYPE_CHECKING:
@@ -21,6 +21,7 @@ __all__ = ["Catalogue", "connect", "connect_tables"]
 
 _NO_TABLE = re.compile(r"Table with name (\S+) does not exist")
 _NEAR = re.compile(r"syntax error at or near \"(\w+)\"")
+_ABOUT = ("information_schema", "duckdb_", "pragma", "show ", "describe ", "sqlite_master", "pg_catalog")
 _KIND = re.compile(r"^(Catalog|Parser|Binder|Conversion|Invalid Input|Out of Range) Error: ")
 
 
@@ -30,14 +31,16 @@ class Catalogue:
     Parameters
     ----------
     connection : duckdb.DuckDBPyConnection
-        In memory, with the views defined.
-    names : sequence of str
-        The views there are.
+        In memory.
+    views : sequence of View
+        The views there are. One is made when a query may use it: to make all takes longer than most queries.
     """
 
-    def __init__(self, connection: Any, names: list[str]) -> None:
+    def __init__(self, connection: Any, views: Iterable[View]) -> None:
         self._connection = connection
-        self.names = tuple(names)
+        self._views = {view.name: view for view in views}
+        self._made: set[str] = set()
+        self.names = tuple(self._views)
 
     def __enter__(self) -> Catalogue:
         return self
@@ -58,6 +61,8 @@ class Catalogue:
         ------
         QueryError
             If the query cannot be answered; one line, with the nearest table if one was misspelt.
+        SchemaError
+            If a file that it reads is not what the schema of its table says.
         """
         return _with_units(self._run(sql, lambda relation: relation.to_arrow_table()))
 
@@ -67,6 +72,8 @@ class Catalogue:
         Raises
         ------
         QueryError
+            As :meth:`query`.
+        SchemaError
             As :meth:`query`.
         """
         return self._run(sql, lambda relation: (list(relation.columns), relation.fetchall()))
@@ -119,9 +126,37 @@ class Catalogue:
             ):
                 shown = " ".join(sql.split())[:60]
                 raise QueryError(f"{shown!r} is not one query; the catalogue is read only, ask with a single select")
+            self._make(sql)
             return take(self._connection.sql(sql))
         except duckdb.Error as error:
             raise QueryError(self._say(str(error))) from None
+
+    def _make(self, sql: str) -> None:
+        """Make the views that a query may use: those whose names stand in it, or all if it asks what there is."""
+        words = sql.lower()
+        everything = any(word in words for word in _ABOUT)
+        for view in self._views.values():
+            if view.name in self._made or not (everything or all(word in words for word in view.words)):
+                continue
+            self._made.add(view.name)
+            if not everything:
+                self._check(view)
+            for statement in view.statements:
+                self._connection.execute(statement)
+
+    def _check(self, view: View) -> None:
+        """See that the files of a view tell the units and version of their schemas."""
+        if not view.sources:
+            return
+        files = ", ".join(text(str(path)) for _, path in view.sources)
+        found = self._connection.execute(
+            f"SELECT file_name, value FROM parquet_kv_metadata([{files}]) WHERE key = 'vines'"
+        ).fetchall()
+        told = {Path(name): value for name, value in found}
+        for name, path in view.sources:
+            wrong = schema.metadata_disagreements(name, told.get(path))
+            if wrong:
+                raise SchemaError(f"{path}: {wrong[0]}; run its pipeline again, with --force if the file was changed")
 
     def _say(self, text: str) -> str:
         unknown = _NO_TABLE.search(text)
@@ -173,8 +208,7 @@ def connect(store: Store) -> Catalogue:
     ...     catalogue.fetch("select count(*) from points")
     (['count_star()'], [(0,)])
     """
-    connection = _open()
-    return Catalogue(connection, define_views(connection, store))
+    return Catalogue(_open(), list_views(stage_results(store)))
 
 
 @contextlib.contextmanager
@@ -202,7 +236,7 @@ def connect_tables(
                 pieces.append(select(spec, "", stage, f"vines_{name}_{i}", table.column_names))
             view = " UNION ALL ".join(pieces) or select(spec, "", "", None, ())
             connection.execute(f"CREATE VIEW {quote(name)} AS {view}")
-        catalogue = Catalogue(connection, list(schema.tables()))
+        catalogue = Catalogue(connection, [View(name, (), (), (name,)) for name in schema.tables()])
         yield lambda sql: catalogue.fetch(sql)[1]
     finally:
         connection.close()

@@ -28,46 +28,60 @@ COMMANDS = {
     "tables": ("vines.cli._tables", "List the result tables."),
     "schema": ("vines.cli._schema", "Describe the columns of a table, with units."),
     "query": ("vines.cli._query", "Ask the result tables in SQL."),
+    "verify": ("vines.cli._verify", "Are the stored results intact and physically consistent?"),
     "check": ("vines.cli._check", "Do the results reproduce the published values?"),
+    "report": ("vines.cli._report", "Write one HTML page: figures, checks, tables, provenance."),
+    "export": ("vines.cli._export", "Copy results into a folder that needs no vines."),
     "solve": ("vines.cli._solve", "Print the periodic orbit of a word of impacts."),
     "view": ("vines.cli._view", "Look at logged runs in the Rerun viewer."),
     "browse": ("vines.cli._browse", "Browse all logs as a table in the Rerun viewer."),
     "recover": ("vines.cli._recover", "Save what is intact in a damaged log."),
     "diff": ("vines.cli._diff", "Compare two results, parameters and values."),
     "gc": ("vines.cli._gc", "Remove results that nothing refers to."),
+    "rig": ("vines.cli._rig", "Measured data of a rig: ingest it, or make a synthetic one."),
     "warm-up": ("vines.cli._warm_up", "Compile the kernels now, not at the first run."),
 }
 
 
 class LazyGroup(click.Group):
-    """A group that knows the names and summaries of its commands and imports one when it is called."""
+    """A group that knows the names and summaries of its commands and imports one when it is called.
+
+    Parameters
+    ----------
+    known : dict of str to (str, str)
+        Module, and line for ``--help``, of each command, in the order in which a user meets them.
+    """
+
+    def __init__(self, *args: Any, known: dict[str, tuple[str, str]], **kwargs: Any) -> None:
+        super().__init__(*args, **kwargs)
+        self.known = known
 
     def list_commands(self, ctx: click.Context) -> list[str]:
-        """Return the commands in the order in which a user meets them."""
+        """Return the names of the commands."""
         del ctx
-        return list(COMMANDS)
+        return list(self.known)
 
     def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
         """Import a command."""
         del ctx
-        if cmd_name not in COMMANDS:
+        if cmd_name not in self.known:
             return None
-        return importlib.import_module(COMMANDS[cmd_name][0]).command
+        return importlib.import_module(self.known[cmd_name][0]).command
 
     def resolve_command(self, ctx: click.Context, args: list[str]) -> Any:
         """Name the nearest command if there is none of that name."""
-        if args and args[0] not in COMMANDS and not args[0].startswith("-"):
-            raise click.UsageError(f"no command {args[0]!r}: {nearest(args[0], COMMANDS)}", ctx)
+        if args and args[0] not in self.known and not args[0].startswith("-"):
+            raise click.UsageError(f"no command {args[0]!r}: {nearest(args[0], self.known)}", ctx)
         return super().resolve_command(ctx, args)
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
         """Write the list of commands without importing them."""
         del ctx
         with formatter.section("Commands"):
-            formatter.write_dl([(name, line) for name, (_, line) in COMMANDS.items()])
+            formatter.write_dl([(name, line) for name, (_, line) in self.known.items()])
 
 
-@click.group(cls=LazyGroup, context_settings={"help_option_names": ["-h", "--help"]})
+@click.group(cls=LazyGroup, known=COMMANDS, context_settings={"help_option_names": ["-h", "--help"]})
 @click.version_option(__version__, prog_name="vines")
 @click.option(
     "--root",

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import math
 import tempfile
+from decimal import Decimal
 from pathlib import Path
 from typing import Any
 
@@ -67,9 +68,13 @@ def _put(text: str, out: Path | None) -> None:
 
 
 def _plain(value: Any) -> Any:
-    """Return a value as JSON knows it; a NaN is null."""
+    """Return a value as JSON knows it; a NaN is null, and SQL's decimals are numbers."""
+    if isinstance(value, Decimal):
+        return float(value)
     if isinstance(value, float):
         return value if math.isfinite(value) else None
     if isinstance(value, list | tuple):
         return [_plain(each) for each in value]
+    if isinstance(value, dict):
+        return {str(key): _plain(each) for key, each in value.items()}
     return value if value is None or isinstance(value, bool | int | str) else str(value)

@@ -6,15 +6,17 @@ import json
 
 import click
 
-from vines.errors import UnknownNameError, nearest
-
 
 @click.command("schema")
 @click.argument("table", required=False)
 @click.option("--declaration", is_flag=True, help="Print the JSON Schema of pipeline files, for editors.")
+@click.option("--markdown", is_flag=True, help="Print the reference of all tables, as docs/reference_tables.md has it.")
 @click.option("--json", "as_json", is_flag=True, help="For machines.")
-def command(table: str | None, declaration: bool, as_json: bool) -> None:
-    """Describe the columns of TABLE: name, type, unit, what it is, and where it comes from."""
+def command(table: str | None, declaration: bool, markdown: bool, as_json: bool) -> None:
+    """Describe the columns of TABLE: name, type, unit, what it is, where it comes from, and which values it may have.
+
+    Without TABLE it lists the tables.
+    """
     from vines import schema
 
     if declaration:
@@ -22,10 +24,12 @@ def command(table: str | None, declaration: bool, as_json: bool) -> None:
 
         click.echo(declaration_schema())
         return
+    if markdown:
+        click.echo(schema.reference(), nl=False)
+        return
     if table is None:
-        raise UnknownNameError(
-            f"which table? {nearest('', schema.tables())}; or --declaration for the form of pipelines"
-        )
+        _list(as_json)
+        return
     found = schema.table(table)
     if as_json:
         rows = [
@@ -35,6 +39,7 @@ def command(table: str | None, declaration: bool, as_json: bool) -> None:
                 "unit": c.unit,
                 "description": c.description,
                 "source": c.source,
+                "allowed": c.allowed,
             }
             for c in found.columns
         ]
@@ -49,6 +54,20 @@ def command(table: str | None, declaration: bool, as_json: bool) -> None:
 
     click.echo(f"{table} (version {found.version}): {found.description}\n")
     print_rows(
-        ["column", "type", "unit", "description", "source"],
-        [[c.name, c.dtype, c.unit, c.description, c.source] for c in found.columns],
+        ["column", "type", "unit", "description", "allowed", "source"],
+        [[c.name, c.dtype, c.unit, c.description, c.allowed, c.source] for c in found.columns],
+        wrap=3,
     )
+
+
+def _list(as_json: bool) -> None:
+    """Print the tables and what a row of each is."""
+    from vines import schema
+    from vines.cli._layout import print_rows
+
+    if as_json:
+        tables = {name: {"version": s.version, "description": s.description} for name, s in schema.tables().items()}
+        click.echo(json.dumps(tables, indent=2))
+        return
+    print_rows(["table", "columns", "rows"], [[n, len(s.columns), s.description] for n, s in schema.tables().items()])
+    click.echo("\nvines schema TABLE describes one; --declaration prints the form of pipelines")

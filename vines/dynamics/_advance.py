@@ -6,13 +6,11 @@ a window of time ends, and go on later as if nothing had been: a run does not de
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 
 from vines.dynamics._contact import CONTACT, NO_CONTACT, next_contact
 from vines.dynamics._flight import advance_phase, derivatives, phasors, turn
-from vines.dynamics._jit import njit
+from vines.dynamics._jit import fused_njit, loop_njit, njit
 from vines.dynamics._sticking import merges, next_release
 
 __all__ = [
@@ -113,16 +111,16 @@ def state_now(c, state, t):
     tau = (t - state[S_T]) - state[S_T_LOW]
     side = state[S_MODE]
     o = c.stuck if side != 0.0 else c.free
-    zr, zi, qr, qi = phasors(o, c.Omega, state[S_X1], state[S_V1], state[S_PHASE])
-    zr, zi, qr, qi = turn(o, c.Omega, zr, zi, qr, qi, tau)
-    x1, v1, _, _, _ = derivatives(o, c.Omega, zr, zi, qr, qi)
+    ur, ui, gr, gi = phasors(o, c.Omega, state[S_X1], state[S_V1], state[S_PHASE])
+    ur, ui, gr, gi = turn(o, c.Omega, ur, ui, gr, gi, tau)
+    x1, v1, _, _, _ = derivatives(o, c.Omega, ur, ui, gr, gi)
     phase = advance_phase(state[S_PHASE], c.Omega * tau)
     if side != 0.0:
         return x1, v1, x1 - side, v1, phase, tau
     return x1, v1, state[S_X2] + state[S_V2] * tau, state[S_V2], phase, tau
 
 
-@njit
+@fused_njit
 def _move(c, state, tau):
     """Move time and phase on by tau; time is kept as a sum of two doubles so that it loses nothing over many events."""
     step = tau + state[S_T_LOW]
@@ -135,7 +133,7 @@ def _move(c, state, tau):
     state[S_CLEAR] = 0.0
 
 
-@njit
+@fused_njit
 def _write(row, state, kind, side, tau, x1, v1, x2, v2):
     row[KIND] = kind
     row[SIDE] = side
@@ -152,7 +150,7 @@ def _write(row, state, kind, side, tau, x1, v1, x2, v2):
     row[RUN] = 0.0
 
 
-@njit
+@fused_njit
 def _place(state, mode, wall, released, x1, v1, x2, v2):
     state[S_MODE] = mode
     state[S_WALL] = wall
@@ -169,7 +167,7 @@ def begin(state, rows):
     _write(rows[0], state, START, state[S_WALL], 0.0, state[S_X1], state[S_V1], state[S_X2], state[S_V2])
 
 
-@njit
+@loop_njit
 def advance(c, state, stop, cap, rows, first):
     """Run on to the time `stop` or until `rows` is full.
 
@@ -192,7 +190,7 @@ def advance(c, state, stop, cap, rows, first):
     """
     count = first
     size = rows.shape[0]
-    period = 2.0 * math.pi / c.Omega
+    period = c.period
     while True:
         if count >= size:
             return count, BUFFER_FULL
@@ -205,15 +203,15 @@ def advance(c, state, stop, cap, rows, first):
         x2 = state[S_X2]
         v2 = state[S_V2]
         o = c.stuck if side != 0 else c.free
-        zr, zi, qr, qi = phasors(o, c.Omega, x1, v1, state[S_PHASE])
+        ur, ui, gr, gi = phasors(o, c.Omega, x1, v1, state[S_PHASE])
 
         if side != 0:
-            code, tau, x, v = next_release(c, side, zr, zi, qr, qi, state[S_CLEAR], min(left, AFRESH))
+            code, tau, x, v = next_release(c, side, ur, ui, gr, gi, state[S_CLEAR], min(left, AFRESH))
             if code == CONTACT:
                 _move(c, state, tau)
                 _place(state, 0, side, 1.0, x, v, x - side, v)
-                zr, zi, qr, qi = phasors(c.free, c.Omega, x, v, state[S_PHASE])
-                _, _, _, j, _ = derivatives(c.free, c.Omega, zr, zi, qr, qi)
+                ur, ui, gr, gi = phasors(c.free, c.Omega, x, v, state[S_PHASE])
+                _, _, _, j, _ = derivatives(c.free, c.Omega, ur, ui, gr, gi)
                 if side * j >= 0.0:
                     # Contact was lost at once, with a push away from the wall that is not zero.
                     state[S_RELEASED] = 0.0
@@ -226,7 +224,7 @@ def advance(c, state, stop, cap, rows, first):
             wall = int(state[S_WALL])
             if state[S_DECIDE] != 0.0:
                 state[S_DECIDE] = 0.0
-                if merges(c, wall, max(wall * (v2 - v1), 0.0), zr, zi, qr, qi, x2):
+                if merges(c, wall, max(wall * (v2 - v1), 0.0), ur, ui, gr, gi, x2):
                     common = (v1 + c.mu * v2) / (1.0 + c.mu)
                     run = state[S_RUN]
                     state[S_RUN] = 0.0
@@ -238,7 +236,7 @@ def advance(c, state, stop, cap, rows, first):
                         return count, EVENT_CAP
                     continue
             code, tau, hit, x, v = next_contact(
-                c, zr, zi, qr, qi, x2, v2, wall, state[S_RELEASED] != 0.0, state[S_CLEAR], min(left, AFRESH)
+                c, ur, ui, gr, gi, x2, v2, wall, state[S_RELEASED] != 0.0, state[S_CLEAR], min(left, AFRESH)
             )
             if code == CONTACT:
                 _move(c, state, tau)
@@ -261,8 +259,8 @@ def advance(c, state, stop, cap, rows, first):
             return count, STEP_LIMIT
         if left <= AFRESH:
             return count, COMPLETE
-        zr, zi, qr, qi = turn(o, c.Omega, zr, zi, qr, qi, tau)
-        x, v, _, _, _ = derivatives(o, c.Omega, zr, zi, qr, qi)
+        ur, ui, gr, gi = turn(o, c.Omega, ur, ui, gr, gi, tau)
+        x, v, _, _, _ = derivatives(o, c.Omega, ur, ui, gr, gi)
         _move(c, state, tau)
         if side != 0:
             _place(state, side, side, 0.0, x, v, x - side, v)
@@ -272,7 +270,7 @@ def advance(c, state, stop, cap, rows, first):
         count += 1
 
 
-@njit
+@fused_njit
 def _too_many(state, cap, period):
     """Count an event of the running period; say whether there were more than `cap`."""
     if state[S_T] - state[S_PERIOD_START] >= period:

@@ -4,11 +4,25 @@ from __future__ import annotations
 
 import math
 
-from vines.dynamics._flight import derivatives, fourth_bound, turn
-from vines.dynamics._jit import njit
-from vines.dynamics._steps import leaving_step, quartic_root, safe_step
+from vines.dynamics._flight import derivatives, fifth, sixth, turn
+from vines.dynamics._jit import fused_njit
+from vines.dynamics._steps import leaving_step, only_root, step_ahead, step_back, taylor_root
 
-__all__ = ["CONTACT", "NO_CONTACT", "STEP_CAP", "first_step", "next_contact"]
+__all__ = [
+    "BEYOND",
+    "CONTACT",
+    "FEW_ULP",
+    "FORCE",
+    "GAP",
+    "MAX_STEPS",
+    "NO_CONTACT",
+    "SPEED",
+    "STEP_CAP",
+    "close_in",
+    "first_step",
+    "modulus",
+    "next_contact",
+]
 
 CONTACT = 1
 NO_CONTACT = 0
@@ -16,73 +30,94 @@ STEP_CAP = -1
 
 FEW_ULP = 8.0 * 2.220446049250313e-16
 MAX_STEPS = 1_000_000
-"""Certified steps within one call; a flight takes about four, so reaching this means something is wrong."""
+"""Certified steps within one call; a flight takes about three, so reaching this means something is wrong."""
+
+GAP, FORCE, SPEED = 0, 1, 2
+
+BEYOND = 1.125
+"""How much farther than the estimated contact the interval reaches that is shown to hold exactly one."""
 
 
-@njit
-def _wall_step(gap, slope, second, third, bound, window):
-    """Return the certified step towards one wall, the bound of the curvature taken over not much more than the step."""
-    rising = max(third, 0.0) / 3.0
-    fourth = bound / 12.0
-    h = safe_step(gap, slope, second + window * (rising + fourth * window), window)
-    if h >= window:
-        return h
-    shorter = min(1.5 * h, window)
-    return max(h, safe_step(gap, slope, second + shorter * (rising + fourth * shorter), shorter))
+@fused_njit
+def modulus(re, im):
+    """Return |re + i im|."""
+    return math.sqrt(re * re + im * im)
 
 
-@njit
-def first_step(c, zr, zi, qr, qi, v2, wall, released):
+@fused_njit
+def first_step(c, ur, ui, gr, gi, v2, wall, released):
     """Return the certified step from the wall just left, where the gap is 0 exactly.
 
     After a release w' = w'' = 0 exactly, too.
     """
-    _, v, a, j, k = derivatives(c.free, c.Omega, zr, zi, qr, qi)
-    bound = fourth_bound(c, zr, zi, qr, qi, k, c.window)
+    _, v, a, j, k = derivatives(c.free, c.Omega, ur, ui, gr, gi)
+    re, im = fifth(c.free, ur, ui, gr, gi)
+    bound = modulus(re, im) + modulus(gr, gi) * c.Omega5 * c.window
     speed = 0.0 if released else max(wall * (v2 - v), 0.0)
     second = 0.0 if released else wall * a
-    own = leaving_step(speed, second, wall * j, bound, c.window)
-    other = _wall_step(2.0, -wall * (v - v2), -wall * a, -wall * j, bound, c.window)
-    return min(own, other)
+    own = step_back(0.0, speed, second, wall * j, wall * k, bound, c.window)
+    if own < 0.25 * c.window:
+        own = max(own, leaving_step(speed, second, wall * j, max(wall * k, 0.0) + 0.2 * c.window * bound, c.window))
+    pace = wall * (v2 - v)
+    span = min(c.window, 3.0 / pace) if pace > 0.0 else c.window
+    if pace >= 0.0:
+        return min(own, step_ahead(2.0, pace, -wall * a, -wall * j, -wall * k, bound, span))
+    return min(own, step_back(2.0, -pace, -wall * a, -wall * j, -wall * k, bound, span))
 
 
-@njit
-def _polish(c, zr, zi, qr, qi, x2, v2, side, tau, reach):
-    """Return (tau, x1, v1) at the only contact with `side` in [tau, tau + reach]."""
+@fused_njit
+def close_in(o, Omega, near, what, ur, ui, gr, gi, x2, v2, side, tau, step, reach):
+    """Return (tau, x1, v1, x1'', x1''', x1'''') at the only root in [tau, tau + reach], estimated at tau + step.
+
+    It is that of the gap to the wall `side` (GAP), of the force between it and a ball riding on it (FORCE), or of the
+    velocity v1, which has the sign `side` (SPEED).
+    """
     low = tau
     high = tau + reach
-    o = c.free
-    x = v = 0.0
+    x = v = a = j = k = 0.0
     for _ in range(80):
-        zrt, zit, qrt, qit = turn(o, c.Omega, zr, zi, qr, qi, tau)
-        x, v, a, j, k = derivatives(o, c.Omega, zrt, zit, qrt, qit)
-        gap = 1.0 - side * (x - (x2 + v2 * tau))
+        tau += step
+        urt, uit, grt, git = turn(o, Omega, ur, ui, gr, gi, tau)
+        x, v, a, j, k = derivatives(o, Omega, urt, uit, grt, git)
+        d5, _ = fifth(o, urt, uit, grt, git)
+        if what == GAP:
+            gap = 1.0 - side * (x - (x2 + v2 * tau))
+            slope = side * (v - v2)
+            d6 = sixth(o, urt, uit, grt, git)
+            step, correction = taylor_root(gap, slope, side * a, side * j, side * k, side * d5, side * d6)
+        elif what == FORCE:
+            gap = side * a
+            slope = -side * j
+            step, correction = taylor_root(gap, slope, -side * k, -side * d5, 0.0, 0.0, 0.0)
+        else:
+            gap = side * v
+            slope = -side * a
+            step, correction = taylor_root(gap, slope, -side * j, -side * k, -side * d5, 0.0, 0.0)
         if gap > 0.0:
             low = max(low, tau)
         else:
             high = min(high, tau)
-        slope = side * (v - v2)
-        step = quartic_root(gap, slope, side * a, side * j, side * k) if slope > 0.0 else math.nan
-        if abs(step) <= c.near:
-            x += step * (v + step * (0.5 * a + step * (j / 6.0 + step * k / 24.0)))
-            v += step * (a + step * (0.5 * j + step * k / 6.0))
-            return max(tau + step, 0.0), x, v
-        if not low <= tau + step <= high:
+        if abs(step) <= near and slope > 0.0 and abs(correction) <= 1e-5 * abs(step) + 1e-14:
+            x += step * (v + step * (0.5 * a + step * ((1 / 6) * j + step * ((1 / 24) * k + step * ((1 / 120) * d5)))))
+            v += step * (a + step * (0.5 * j + step * ((1 / 6) * k + step * ((1 / 24) * d5))))
+            a += step * (j + step * (0.5 * k + step * ((1 / 6) * d5)))
+            j += step * (k + step * (0.5 * d5))
+            return max(tau + step, 0.0), x, v, a, j, k + step * d5
+        if not (slope > 0.0 and low <= tau + step <= high):
             step = 0.5 * (low + high) - tau
             if abs(step) <= FEW_ULP * high:
                 break
-        tau += step
-    return tau, x, v
+    return tau, x, v, a, j, k
 
 
-@njit
-def next_contact(c, zr, zi, qr, qi, x2, v2, wall, released, tau, stop):
+@fused_njit
+def next_contact(c, ur, ui, gr, gi, x2, v2, wall, released, tau, stop):
     """Search for the first contact after tau, where the flight is known to be clear until tau.
 
     Parameters
     ----------
-    zr, zi, qr, qi : float
-        Phasors of the oscillator at the start of the flight.
+    ur, ui, gr, gi : float
+        u and G of the oscillator at the start of the flight.
     x2, v2 : float
         Ball at the start of the flight.
     wall : int
@@ -98,36 +133,46 @@ def next_contact(c, zr, zi, qr, qi, x2, v2, wall, released, tau, stop):
         With code NO_CONTACT or STEP_CAP, tau is the last time known to be clear that a later search can start from.
     """
     o = c.free
+    window = c.window
+    forced = modulus(gr, gi) * c.Omega5 * window
     if tau == 0.0 and wall != 0:
-        h = first_step(c, zr, zi, qr, qi, v2, wall, released)
+        h = first_step(c, ur, ui, gr, gi, v2, wall, released)
         if h > stop:
             return NO_CONTACT, 0.0, 0, 0.0, 0.0
         tau = h
-    window = c.window
     for _ in range(MAX_STEPS):
-        zrt, zit, qrt, qit = turn(o, c.Omega, zr, zi, qr, qi, tau)
-        x, v, a, j, k = derivatives(o, c.Omega, zrt, zit, qrt, qit)
-        bound = fourth_bound(c, zrt, zit, qrt, qit, k, window)
+        urt, uit, grt, git = turn(o, c.Omega, ur, ui, gr, gi, tau)
+        x, v, a, j, k = derivatives(o, c.Omega, urt, uit, grt, git)
+        d5, i5 = fifth(o, urt, uit, grt, git)
+        bound = modulus(d5, i5) + forced
         w = x - (x2 + v2 * tau)
-        speed = v - v2
-        side = 1 if speed > 0.0 else -1
+        pace = abs(v - v2)
+        side = 1 if v > v2 else -1
+        d2, d3, d4 = side * a, side * j, side * k
         gap = max(1.0 - side * w, 0.0)
-        slope = abs(speed)
-        if 2.0 * gap <= slope * window:
-            reach = 2.0 * gap / slope if slope > 0.0 else 0.0
-            bend = abs(a) + reach * (abs(j) + 0.5 * bound * reach)
-            if slope * slope > 2.0 * bend * gap:
-                found, x, v = _polish(c, zr, zi, qr, qi, x2, v2, side, tau, reach)
-                if found > stop:
-                    return NO_CONTACT, tau, 0, 0.0, 0.0
-                return CONTACT, found, side, x, v
-        ahead = _wall_step(gap, slope, side * a, side * j, bound, window)
-        behind = _wall_step(max(1.0 + side * w, 0.0), -slope, -side * a, -side * j, bound, window)
-        h = min(ahead, behind)
-        if h <= FEW_ULP * tau:
+        d6 = sixth(o, urt, uit, grt, git)
+        h, _ = taylor_root(gap, pace, d2, d3, d4, side * d5, side * d6)
+        reach = BEYOND * h
+        if reach <= window and only_root(gap, pace, d2, d3, d4, bound, reach):
+            found, x, v, _, _, _ = close_in(o, c.Omega, c.near, GAP, ur, ui, gr, gi, x2, v2, side, tau, h, reach)
+            if found > stop:
+                return NO_CONTACT, tau, 0, 0.0, 0.0
+            return CONTACT, found, side, x, v
+        behind = max(1.0 + side * w, 0.0)
+        span = min(window, 1.5 * gap / pace) if pace > 0.0 else window
+        forth = step_ahead(gap, pace, d2, d3, d4, bound, span)
+        back = step_back(behind, pace, -d2, -d3, -d4, bound, window)
+        h = min(forth, back)
+        if h < 0.25 * window:
+            # Over a shorter span the curvature is bounded more closely.
+            span = 2.0 * h
+            forth = max(forth, step_ahead(gap, pace, d2, d3, d4, bound, span))
+            back = max(back, step_back(behind, pace, -d2, -d3, -d4, bound, span))
+            h = min(forth, back)
+        if not h > FEW_ULP * tau:
             if tau > stop:
                 return NO_CONTACT, tau, 0, 0.0, 0.0
-            return CONTACT, tau, (side if ahead <= behind else -side), x, v
+            return CONTACT, tau, (side if forth <= back else -side), x, v
         if tau + h > stop:
             return NO_CONTACT, tau, 0, 0.0, 0.0
         tau += h

@@ -15,6 +15,7 @@ import numpy.typing as npt
 from vines.dynamics import _advance as col
 from vines.dynamics import _lane_run as lanes
 from vines.dynamics import _totals as entry
+from vines.dynamics._lane_record import arrange
 from vines.dynamics._scatter import Scatter, scatter_block
 from vines.dynamics._simulate import EVENTS_PER_PERIOD
 from vines.dynamics._start import SLACK
@@ -51,9 +52,15 @@ MEASURES = np.dtype(
             "energy_change",
         )
     ]
+    + [(f"{name}_error", "f8") for name in ("kinetic_ratio", "max_abs_x1", "rms_x1")]
     + [(name, "i8") for name in ("impacts_left", "impacts_right", "sticks_left", "sticks_right")]
 )
-"""As `Measures`, one row a trajectory, times counted from the start of the recording."""
+"""As `Measures`, one row a trajectory, times counted from the start of the recording.
+
+The standard errors are those of batch means: the scatter of a measure over eight equal parts of the recorded time,
+divided by the root of eight; nan where the run ended before its time, and with scatter. They hold if a part is longer
+than the memory of the motion; for a periodic orbit they are 0 only if a part holds whole periods of it.
+"""
 
 RUN_IMPACT = np.dtype([("run", "i8"), *((name, IMPACT[name]) for name in IMPACT.names or ())])
 
@@ -78,11 +85,13 @@ class Ensemble:
     codes : ndarray of int, shape (n,)
         0 ``complete``, 1 ``impact_cap``, 2 ``step_limit``; see `status`.
     measures : structured ndarray, dtype MEASURES, or None
-        Over the recorded time.
+        Over the recorded time, with the standard errors of kinetic_ratio, max_abs_x1 and rms_x1 by batch means.
     impacts : structured ndarray or None
         Recorded impacts as `Trajectory.impacts`, with the column `run` first; sorted by run and time.
     exponents : ndarray, shape (n, 4), or None
         Lyapunov exponents over the recorded time, in descending order, -inf for directions that sticking removes.
+    exponent_errors : ndarray, shape (n, 4), or None
+        Their standard errors by means of eight batches, 0 for directions that sticking removes.
     scatter : Scatter or None
         What was drawn at random, with its seed.
     """
@@ -95,6 +104,7 @@ class Ensemble:
     measures: npt.NDArray[np.void] | None = None
     impacts: npt.NDArray[np.void] | None = field(default=None, repr=False)
     exponents: Floats | None = None
+    exponent_errors: Floats | None = None
     scatter: Scatter | None = None
 
     def __len__(self) -> int:
@@ -173,6 +183,8 @@ def ensemble(
         raise StateError(f"record is {record!r}: {nearest(str(record), ('final', 'measures', 'impacts'))}")
     if scatter is not None and lyapunov:
         raise StateError("lyapunov is not defined for runs with scatter; leave one of them out")
+    if scatter is not None:
+        scatter.check(table)
     what = {"final": lanes.FINAL, "measures": lanes.WITH_MEASURES, "impacts": lanes.WITH_IMPACTS}[record]
     what += lanes.WITH_EXPONENTS if lyapunov else 0
     work = _Work(table, begin, periods, settle, max_impacts_per_period, what, scatter)
@@ -217,16 +229,21 @@ class _Work:
         self.first, self.lengths = settle * span, periods * span
         self.finals = np.zeros((n, 6))
         self.totals = np.zeros((n, entry.TOTALS)) if what & lanes.WITH_MEASURES else None
+        self.errors = np.full((n, 3), math.nan) if what & lanes.WITH_MEASURES else None
         self.growths = np.zeros((n, 5)) if what & lanes.WITH_EXPONENTS else None
+        self.growth_errors = np.zeros((n, 4)) if what & lanes.WITH_EXPONENTS else None
         self.counts = np.zeros(n, dtype=np.int64)
         self.codes = np.zeros(n, dtype=np.int64)
         self.events: dict[int, Floats] = {}
+        self.sizes: dict[int, int] = {}
 
     def run(self, block: slice) -> None:
         """Run a block; its events get more room until they fit."""
         n = block.stop - block.start
         totals = np.zeros((0, entry.TOTALS)) if self.totals is None else self.totals[block]
+        errors = np.zeros((0, 3)) if self.errors is None else self.errors[block]
         growths = np.zeros((0, 5)) if self.growths is None else self.growths[block]
+        growth_errors = np.zeros((0, 4)) if self.growth_errors is None else self.growth_errors[block]
         room = int(n * (4 * self.periods + 64)) if self.what & lanes.WITH_IMPACTS else 0
         while True:
             events = np.empty((room, col.ROW + 1))
@@ -234,7 +251,7 @@ class _Work:
             rest = (self.counts[block], self.codes[block], events)
             runs = (self.table[block], self.begin[block], self.first[block], self.lengths[block])
             if self.scatter is None:
-                filled = lanes.run_block(*runs, *common, growths, *rest)
+                filled = lanes.run_block(*runs, *common, errors, growths, growth_errors, *rest)
             else:
                 filled = scatter_block(*runs, *common, *rest, self.scatter.numbers(), block.start)
             if not np.any(self.codes[block] == lanes.OVERFLOW):
@@ -242,59 +259,44 @@ class _Work:
             room *= 2
         if self.what & lanes.WITH_IMPACTS:
             kept = events[:filled]
-            self.events[block.start] = kept[kept[:, col.KIND] == col.IMPACT]
+            self.sizes[block.start] = n
+            self.events[block.start] = kept if self.scatter is None else kept[kept[:, col.KIND] == col.IMPACT]
 
     def result(self) -> Ensemble:
         """Put the arrays together."""
         final = np.empty(len(self.finals), dtype=FINAL)
         for k, name in enumerate(FINAL.names or ()):
             final[name] = self.finals[:, k]
-        exponents = None
-        if self.growths is not None:
-            exponents = -np.sort(-self.growths[:, :4] / self.growths[:, 4:], axis=1)
+        exponents = exponent_errors = None
+        if self.growths is not None and self.growth_errors is not None:
+            rates = self.growths[:, :4] / self.growths[:, 4:]
+            order = np.argsort(-rates, axis=1, kind="stable")
+            exponents = np.take_along_axis(rates, order, axis=1)
+            exponent_errors = np.take_along_axis(self.growth_errors, order, axis=1)
         return Ensemble(
             parameters=self.table,
             starts=self.begin,
             final=final,
             counts=self.counts,
             codes=self.codes,
-            measures=None if self.totals is None else _measures(self.table[:, 0], self.totals),
+            measures=None if self.totals is None else _measures(self.table[:, 0], self.totals, self.errors),
             impacts=self._impacts() if self.what & lanes.WITH_IMPACTS else None,
             exponents=exponents,
+            exponent_errors=exponent_errors,
             scatter=self.scatter,
         )
 
     def _impacts(self) -> npt.NDArray[np.void]:
-        parts = []
+        out = np.empty(sum(len(rows) for rows in self.events.values()), dtype=RUN_IMPACT)
+        place = 0
         for start in sorted(self.events):
             rows = self.events.pop(start)
-            order = np.argsort(rows[:, col.ROW], kind="stable")
-            rows = rows[order]
-            out = np.empty(len(rows), dtype=RUN_IMPACT)
-            out["run"] = rows[:, col.ROW] + start
-            for name, column in _COLUMNS.items():
-                out[name] = rows[:, column]
-            out["w_dot"] = out["v1"] - out["v2"]
-            begins = np.flatnonzero(np.diff(out["run"], prepend=-1))
-            out["index"] = np.arange(len(out)) - np.repeat(begins, np.diff(begins, append=len(out)))
-            parts.append(out)
-        return np.concatenate(parts)
+            arrange(rows, self.sizes[start], start, out[place : place + len(rows)])
+            place += len(rows)
+        return out
 
 
-_COLUMNS = {
-    "side": col.SIDE,
-    "t": col.TIME,
-    "phase": col.PHASE,
-    "x1": col.X1,
-    "v1": col.V1,
-    "x2": col.X2,
-    "v2": col.V2,
-    "v1_after": col.A_V1,
-    "v2_after": col.A_V2,
-}
-
-
-def _measures(mu: Floats, totals: Floats) -> npt.NDArray[np.void]:
+def _measures(mu: Floats, totals: Floats, errors: Floats | None = None) -> npt.NDArray[np.void]:
     out = np.empty(len(totals), dtype=MEASURES)
     duration = totals[:, entry.DURATION]
     v1, v2 = totals[:, entry.V1_SQUARE], totals[:, entry.V2_SQUARE]
@@ -304,6 +306,8 @@ def _measures(mu: Floats, totals: Floats) -> npt.NDArray[np.void]:
         out["kinetic_2"] = 0.5 * mu * v2 / duration
         out["kinetic_ratio"] = np.where(v1 > 0, mu * v2 / v1, np.nan)
         out["rms_x1"] = np.sqrt(np.maximum(totals[:, entry.X1_SQUARE], 0.0) / duration)
+    for k, name in enumerate(("kinetic_ratio", "max_abs_x1", "rms_x1")):
+        out[f"{name}_error"] = math.nan if errors is None else errors[:, k]
     for name, column in (
         ("max_abs_x1", entry.MAX_ABS_X1),
         ("t_max_abs_x1", entry.T_MAX_ABS_X1),

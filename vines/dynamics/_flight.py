@@ -1,66 +1,159 @@
-"""Closed-form motion between events: the oscillator's two phasors, and what follows from them."""
+"""Closed-form motion between events: the oscillator's complex displacement and force, and what follows from them.
+
+x = Re u with u' = s u + G and G turning with the forcing. Neither u nor G grows at resonance, where the usual two
+phasors, free motion and steady response, are large and cancel (docs/dynamics.md, "Motion between events").
+"""
 
 from __future__ import annotations
 
 import math
 
-from vines.dynamics._jit import njit
+from vines.dynamics._jit import fused_njit
 from vines.dynamics._sincos import sincos
 
-__all__ = ["advance_phase", "derivatives", "fourth_bound", "phasors", "turn"]
+__all__ = ["advance_phase", "decay", "derivatives", "fifth", "fourth_bound", "phasors", "sixth", "slow_growth", "turn"]
+
+TWO_PI = 2.0 * math.pi
 
 
-@njit
+@fused_njit
 def phasors(o, Omega, x, v, phase):
-    """Return z, q of x(t) = Re[z exp(s t) + q exp(i Omega t)] as four reals, from x, v and the phase at t = 0."""
+    """Return u, G as four reals from x, v and the phase of the forcing."""
     sine, cosine = sincos(phase)
-    qr = o.qr * cosine - o.qi * sine
-    qi = o.qr * sine + o.qi * cosine
-    zr = x - qr
-    zi = (-o.half * zr - Omega * qi - v) / o.gamma
-    return zr, zi, qr, qi
+    gr = o.gr * cosine - o.gi * sine
+    gi = o.gr * sine + o.gi * cosine
+    return x, (gr - o.half * x - v) * o.inverse, gr, gi
 
 
-@njit
-def turn(o, Omega, zr, zi, qr, qi, tau):
-    """Return both phasors at time tau, (z exp(s tau), q exp(i Omega tau)), as four reals."""
-    decay = math.exp(-o.half * tau)
-    sine, cosine = sincos(o.gamma * tau)
-    sine *= decay
-    cosine *= decay
-    s, c = sincos(Omega * tau)
-    return zr * cosine - zi * sine, zr * sine + zi * cosine, qr * c - qi * s, qr * s + qi * c
+@fused_njit
+def decay(x):
+    """Return exp(-x) for x >= 0 (or any x, more slowly)."""
+    if abs(x) > 0.03125:
+        return math.exp(-x)
+    tail = 1 / 24 - x * (1 / 120 - x * (1 / 720 - x * (1 / 5040 - x * (1 / 40320))))
+    return 1.0 - x * (1.0 - x * (1 / 2 - x * (1 / 6 - x * tail)))
 
 
-@njit
-def derivatives(o, Omega, zr, zi, qr, qi):
-    """Return x and its first four derivatives where the phasors are z, q."""
-    Omega2 = Omega * Omega
+@fused_njit
+def turn(o, Omega, ur, ui, gr, gi, tau):
+    """Return u and G at time tau, as four reals.
+
+    u(tau) = u e^{s tau} + G (e^{i Omega tau} - e^{s tau})/(i Omega - s). Near resonance both exponentials are written
+    as their geometric mean times e^{+-y}, y = (i Omega - s) tau/2, and the quotient as the mean times tau sinh(y)/y.
+    """
+    if abs(tau) <= o.reach:
+        size = decay(0.5 * o.half * tau)
+        sine, cosine = sincos(0.5 * o.sum * tau)
+        mr = size * cosine
+        mi = size * sine
+        yr = 0.5 * o.dr * tau
+        yi = 0.5 * o.di * tau
+        pr = yr * yr - yi * yi
+        pi = 2.0 * yr * yi
+        hr, hi, cr, ci = _slow(pr, pi)
+        tr = yr * hr - yi * hi
+        ti = yr * hi + yi * hr
+        # e^{s tau} = mean (cosh y - sinh y), and so on.
+        er, ei = _times(mr, mi, cr - tr, ci - ti)
+        fr, fi = _times(mr, mi, cr + tr, ci + ti)
+        br, bi = _times(mr, mi, hr * tau, hi * tau)
+    else:
+        size = decay(o.half * tau)
+        ei, er = sincos(o.gamma * tau)
+        er *= size
+        ei *= size
+        fi, fr = sincos(Omega * tau)
+        br, bi = _times(fr - er, fi - ei, o.er, o.ei)
     return (
-        zr + qr,
-        -o.half * zr - o.gamma * zi - Omega * qi,
-        o.s2r * zr - o.s2i * zi - Omega2 * qr,
-        o.s3r * zr - o.s3i * zi + Omega2 * Omega * qi,
-        o.s4r * zr - o.s4i * zi + Omega2 * Omega2 * qr,
+        er * ur - ei * ui + (br * gr - bi * gi),
+        er * ui + ei * ur + (br * gi + bi * gr),
+        fr * gr - fi * gi,
+        fr * gi + fi * gr,
     )
 
 
-@njit
-def fourth_bound(c, zr, zi, qr, qi, fourth, window):
-    """Return a bound of the oscillator's fourth derivative over a window of free flight (docs/dynamics.md).
+@fused_njit
+def _times(ar, ai, br, bi):
+    return ar * br - ai * bi, ar * bi + ai * br
 
-    The second form matters near resonance, where both phasors are large and cancel.
-    """
-    z = math.sqrt(zr * zr + zi * zi)
-    q = math.sqrt(qr * qr + qi * qi)
+
+@fused_njit
+def _nest(hr, hi, pr, pi, scale):
+    """Return 1 + scale p h."""
+    return 1.0 + scale * (hr * pr - hi * pi), scale * (hr * pi + hi * pr)
+
+
+@fused_njit
+def _slow(pr, pi):
+    """Return sinh(y)/y and cosh(y), as four reals, for p = y^2 with |y| <= 1/2: Taylor, to rounding."""
+    hr, hi = _nest(1.0 + pr * (1 / 210), pi * (1 / 210), pr, pi, 1 / 156)
+    hr, hi = _nest(hr, hi, pr, pi, 1 / 110)
+    hr, hi = _nest(hr, hi, pr, pi, 1 / 72)
+    hr, hi = _nest(hr, hi, pr, pi, 1 / 42)
+    hr, hi = _nest(hr, hi, pr, pi, 1 / 20)
+    hr, hi = _nest(hr, hi, pr, pi, 1 / 6)
+    cr, ci = _nest(1.0 + pr * (1 / 182), pi * (1 / 182), pr, pi, 1 / 132)
+    cr, ci = _nest(cr, ci, pr, pi, 1 / 90)
+    cr, ci = _nest(cr, ci, pr, pi, 1 / 56)
+    cr, ci = _nest(cr, ci, pr, pi, 1 / 30)
+    cr, ci = _nest(cr, ci, pr, pi, 1 / 12)
+    cr, ci = _nest(cr, ci, pr, pi, 1 / 2)
+    return hr, hi, cr, ci
+
+
+@fused_njit
+def slow_growth(o, tau):
+    """Return the integral of exp(-(i Omega - s) t) over [0, tau], tau up to the oscillator's reach, as two reals."""
+    yr = 0.5 * o.dr * tau
+    yi = 0.5 * o.di * tau
+    hr, hi, cr, ci = _slow(yr * yr - yi * yi, 2.0 * yr * yi)
+    # exp(-y) sinh(y)/y, with exp(-y) = cosh y - sinh y.
+    re, im = _times(hr, hi, cr - (yr * hr - yi * hi), ci - (yr * hi + yi * hr))
+    return re * tau, im * tau
+
+
+@fused_njit
+def derivatives(o, Omega, ur, ui, gr, gi):
+    """Return x and its first four derivatives where the oscillator is at u, G."""
+    return (
+        ur,
+        gr - o.half * ur - o.gamma * ui,
+        (o.s2r * ur - o.s2i * ui) + (o.c2r * gr - o.c2i * gi),
+        (o.s3r * ur - o.s3i * ui) + (o.c3r * gr - o.c3i * gi),
+        (o.s4r * ur - o.s4i * ui) + (o.c4r * gr - o.c4i * gi),
+    )
+
+
+@fused_njit
+def fifth(o, ur, ui, gr, gi):
+    """Return the fifth derivative of u, as two reals."""
+    return (
+        (o.s5r * ur - o.s5i * ui) + (o.c5r * gr - o.c5i * gi),
+        (o.s5r * ui + o.s5i * ur) + (o.c5r * gi + o.c5i * gr),
+    )
+
+
+@fused_njit
+def sixth(o, ur, ui, gr, gi):
+    """Return the sixth derivative of x."""
+    return (o.s6r * ur - o.s6i * ui) + (o.c6r * gr - o.c6i * gi)
+
+
+@fused_njit
+def fourth_bound(c, ur, ui, gr, gi, window):
+    """Return a bound of the oscillator's fourth derivative over a window of free flight (docs/dynamics.md)."""
     o = c.free
-    both_r = o.s4r * zr - o.s4i * zi + c.Omega4 * qr
-    both_i = o.s4r * zi + o.s4i * zr + c.Omega4 * qi
-    return min(z + q * c.Omega4, math.sqrt(both_r * both_r + both_i * both_i) + z * c.detuning * window)
+    re = (o.s4r * ur - o.s4i * ui) + (o.c4r * gr - o.c4i * gi)
+    im = (o.s4r * ui + o.s4i * ur) + (o.c4r * gi + o.c4i * gr)
+    return math.sqrt(re * re + im * im) + math.sqrt(gr * gr + gi * gi) * c.Omega4 * window
 
 
-@njit
+@fused_njit
 def advance_phase(phase, angle):
     """Return (phase + angle) modulo 2 pi, in [0, 2 pi)."""
-    turned = (phase + angle) % (2.0 * math.pi)
-    return turned if turned < 2.0 * math.pi else 0.0
+    turned = phase + angle
+    turned -= TWO_PI * math.floor(turned * (1.0 / TWO_PI))
+    # Rounding may leave it a little outside.
+    if turned < 0.0:
+        turned += TWO_PI
+    return turned if turned < TWO_PI else 0.0

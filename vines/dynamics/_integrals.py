@@ -1,44 +1,70 @@
 """Energies of one segment of motion as closed forms, and the largest displacement in it.
 
-Between events every quantity is a product of two sums Re[a exp(s t)] + Re[b exp(i Omega t)], whose integral is a sum of
-complex exponentials; nothing is sampled (docs/dynamics.md, "Integrals between events").
+Between events every quantity is a quadratic form in u and G, whose integral follows from their values at both ends;
+nothing is sampled (docs/dynamics.md, "Integrals between events").
 """
 
 from __future__ import annotations
 
 import math
 
-from vines.dynamics._flight import derivatives, phasors, turn
-from vines.dynamics._jit import njit
-from vines.dynamics._sincos import sincos
-from vines.dynamics._steps import leaving_step, quartic_root, safe_step
+import numpy as np
 
-__all__ = ["largest_displacement", "segment_integrals"]
+from vines.dynamics._contact import BEYOND, SPEED, close_in, modulus
+from vines.dynamics._flight import derivatives, fifth, phasors, slow_growth, turn
+from vines.dynamics._jit import fused_njit, loop_njit, njit
+from vines.dynamics._steps import only_root, step_ahead, step_back, taylor_root
+
+__all__ = ["energies_between", "largest_displacement", "peak_between", "segment_integrals"]
 
 FORCED_STEP = 1e-7
 """Smallest step past a zero of v1; a second zero within it would change |x1| by less than 1e-20."""
 
+NODES = np.array([0.1834346424956498, 0.5255324099163290, 0.7966664774136267, 0.9602898564975363])
+WEIGHTS = np.array([0.3626837833783620, 0.3137066458778873, 0.2223810344533745, 0.1012285362903763])
+"""Gauss–Legendre of eight points: exact to rounding for the slow motion over a time up to 1/|i Omega - s|."""
+
+
+@fused_njit
+def _away_from_resonance(o, u0, g0, u1, g1, length):
+    """Return the integrals of u conj(G) and |u|^2 from the free part and the steady response at both ends."""
+    inverse = complex(o.er, o.ei)
+    q0 = g0 * inverse
+    q1 = g1 * inverse
+    z0 = u0 - q0
+    z1 = u1 - q1
+    cross = (z0 * q0.conjugate() - z1 * q1.conjugate()) * inverse
+    steady = q0.real * q0.real + q0.imag * q0.imag
+    free = z0.real * z0.real + z0.imag * z0.imag
+    rate = 2.0 * o.half
+    remains = -math.expm1(-rate * length) / rate if rate > 0.0 else length
+    straight = (g0.real * g0.real + g0.imag * g0.imag) * length
+    ug = (straight - (u1 * g1.conjugate() - u0 * g0.conjugate())) * inverse
+    return ug, free * remains + 2.0 * cross.real + steady * length
+
 
 @njit
-def _exponential(rate, length):
-    """Return the integral of exp(rate t) over [0, length], accurate for every complex rate."""
-    if rate == 0.0:
-        return complex(length, 0.0)
-    re = rate.real * length
-    im = rate.imag * length
-    sine, cosine = sincos(im)
-    half_sine, _ = sincos(0.5 * im)
-    grown = math.expm1(re)
-    return complex(grown * cosine - 2.0 * half_sine * half_sine, (grown + 1.0) * sine) / rate
-
-
-@njit
-def _product(a, b, d, f, e2, e1, plus, minus, turning, length):
-    """Return the integral of (Re[a e^{st}] + Re[b e^{iOt}]) (Re[d e^{st}] + Re[f e^{iOt}])."""
-    total = a * d * e2 + a * d.conjugate() * e1
-    total += (a * f + d * b) * plus + (a * f.conjugate() + d * b.conjugate()) * minus
-    total += b * f * turning + b * f.conjugate() * length
-    return 0.5 * total.real
+def _near_resonance(o, Omega, u0, g0, length):
+    """Return the same integrals by quadrature of u exp(-i Omega t), which hardly changes."""
+    detuning = complex(o.dr, o.di)
+    ug = complex(0.0, 0.0)
+    square = 0.0
+    done = 0.0
+    while done < length:
+        part = min(length - done, o.reach)
+        a, b, d, e = turn(o, Omega, u0.real, u0.imag, g0.real, g0.imag, done)
+        u = complex(a, b)
+        g = complex(d, e)
+        rate = g - detuning * u
+        for k in range(8):
+            t = 0.5 * part * (1.0 + (NODES[k // 2] if k % 2 else -NODES[k // 2]))
+            weight = 0.5 * part * WEIGHTS[k // 2]
+            re, im = slow_growth(o, t)
+            y = u + rate * complex(re, im)
+            ug += weight * y * g.conjugate()
+            square += weight * (y.real * y.real + y.imag * y.imag)
+        done += part
+    return ug, square
 
 
 @njit
@@ -48,101 +74,117 @@ def segment_integrals(c, mode, x1, v1, v2, phase, length):
     The state is that just after the event with which the segment begins, `mode` 0 in flight and the wall when stuck.
     """
     o = c.stuck if mode != 0.0 else c.free
-    zr, zi, qr, qi = phasors(o, c.Omega, x1, v1, phase)
+    start = phasors(o, c.Omega, x1, v1, phase)
+    return energies_between(c, o, mode != 0.0, start, turn(o, c.Omega, *start, length), v2, length)
+
+
+@fused_njit
+def energies_between(c, o, stuck, start, end, v2, length):
+    """Return the same from u and G at both ends."""
+    u0 = complex(start[0], start[1])
+    g0 = complex(start[2], start[3])
+    u1 = complex(end[0], end[1])
+    g1 = complex(end[2], end[3])
+    if o.reach == 0.0:
+        ug, uu = _away_from_resonance(o, u0, g0, u1, g1, length)
+    else:
+        ug, uu = _near_resonance(o, c.Omega, u0, g0, length)
+    gg = (g0.real * g0.real + g0.imag * g0.imag) * length
     s = complex(-o.half, o.gamma)
-    i_omega = complex(0.0, c.Omega)
-    e2 = _exponential(2.0 * s, length)
-    e1 = _exponential(complex(-2.0 * o.half, 0.0), length)
-    plus = _exponential(s + i_omega, length)
-    minus = _exponential(s - i_omega, length)
-    turning = _exponential(2.0 * i_omega, length)
-    z = complex(zr, zi)
-    q = complex(qr, qi)
-    sine, cosine = sincos(phase)
-    base = c.A * c.Omega * complex(cosine, sine)
-    zv = s * z
-    qv = i_omega * q
-    x_square = _product(z, q, z, q, e2, e1, plus, minus, turning, length)
-    v_square = _product(zv, qv, zv, qv, e2, e1, plus, minus, turning, length)
-    none = complex(0.0, 0.0)
-    work = _product(s * zv, i_omega * qv, none, base, e2, e1, plus, minus, turning, length)
-    relative = qv - base
-    loss = c.lam * _product(zv, relative, zv, relative, e2, e1, plus, minus, turning, length)
-    if mode != 0.0:
+    s2 = complex(o.s2r, o.s2i)
+    c2 = complex(o.c2r, o.c2i)
+    # Integrals of G^2, u G and u^2: their exponents are never small.
+    g_g = (g1 * g1 - g0 * g0) * complex(0.0, -0.5 / c.Omega)
+    u_g = (u1 * g1 - u0 * g0 - g_g) * (c2.conjugate() / (c2.real * c2.real + c2.imag * c2.imag))
+    u_u = (u1 * u1 - u0 * u0 - 2.0 * u_g) * (s.conjugate() / (2.0 * o.stiffness))
+    # e' = Re[base G].
+    base = c.Omega / o.stiffness * complex(o.half, o.sum) / complex(c.lam * c.Omega, -1.0)
+    x_square = 0.5 * (u_u.real + uu)
+    v_square = 0.5 * ((s2 * u_u + 2.0 * s * u_g + g_g).real + o.stiffness * uu + 2.0 * (s * ug).real + gg)
+    work = 0.5 * (base * (s2 * u_g + c2 * g_g) + base.conjugate() * (s2 * ug + c2 * gg)).real
+    other = 1.0 - base
+    square = (s2 * u_u + 2.0 * s * other * u_g + other * other * g_g).real
+    size = other.real * other.real + other.imag * other.imag
+    loss = 0.5 * c.lam * (square + o.stiffness * uu + 2.0 * (s * other.conjugate() * ug).real + size * gg)
+    if stuck:
         return x_square, v_square, v_square, (1.0 + c.mu) * work, loss
     return x_square, v_square, v2 * v2 * length, work, loss
 
 
-@njit
+@loop_njit
 def largest_displacement(c, mode, x1, v1, phase, start, length, best):
     """Return (largest |x1| on [start, length], its time), or `best` and a negative time if none exceeds it.
 
     The times are those since the event at which x1, v1, phase are given. All zeros of v1 are found by certified steps.
     """
     o = c.stuck if mode != 0.0 else c.free
-    zr, zi, qr, qi = phasors(o, c.Omega, x1, v1, phase)
+    ur, ui, gr, gi = phasors(o, c.Omega, x1, v1, phase)
+    last_r, last_i, _, _ = turn(o, c.Omega, ur, ui, gr, gi, length)
+    return peak_between(c, o, ur, ui, gr, gi, last_r, last_i, start, length, best)
+
+
+@fused_njit
+def peak_between(c, o, ur, ui, gr, gi, last_r, last_i, start, length, best):
+    """Return the same from u and G at the start of the segment and u at its end."""
     when = -1.0
-    zrt, zit, qrt, qit = turn(o, c.Omega, zr, zi, qr, qi, length)
-    if abs(zrt + qrt) > best:
-        best = abs(zrt + qrt)
+    if abs(last_r) > best:
+        best = abs(last_r)
         when = length
+    last = modulus(last_r, last_i)
+    force = modulus(gr, gi)
+    detuning = modulus(o.dr, o.di)
     tau = start
     window = c.window
     for _ in range(1_000_000):
-        zrt, zit, qrt, qit = turn(o, c.Omega, zr, zi, qr, qi, tau)
-        x, v, a, j, _ = derivatives(o, c.Omega, zrt, zit, qrt, qit)
+        urt, uit, grt, git = ur, ui, gr, gi
+        if tau > 0.0:
+            urt, uit, grt, git = turn(o, c.Omega, ur, ui, gr, gi, tau)
+        x, v, a, j, k = derivatives(o, c.Omega, urt, uit, grt, git)
         if abs(x) > best:
             best = abs(x)
             when = tau
-        z_size = math.sqrt(zrt * zrt + zit * zit)
-        q_size = math.sqrt(qrt * qrt + qit * qit)
-        if z_size + q_size <= best:
+        # u exp(-i Omega t) leaves the chord between its ends by less than its second derivative allows.
+        left = length - tau
+        rate = modulus(grt - (o.dr * urt - o.di * uit), git - (o.dr * uit + o.di * urt))
+        here = modulus(urt, uit)
+        highest = max(here, last) + 0.125 * detuning * rate * left * left
+        if min(highest, here + force * left) <= best:
             return best, when
-        bound = z_size * o.size**4 + q_size * c.Omega4
+        if o.reach == 0.0:
+            qr, qi = grt * o.er - git * o.ei, grt * o.ei + git * o.er
+            if modulus(urt - qr, uit - qi) + modulus(qr, qi) <= best:
+                return best, when
+        bound = modulus(*fifth(o, urt, uit, grt, git)) + force * c.Omega5 * window
         side = 1.0 if v > 0.0 or (v == 0.0 and a < 0.0) else -1.0
         gap = abs(v)
         slope = -side * a
-        if slope > 0.0 and 2.0 * gap <= slope * window:
-            reach = 2.0 * gap / slope
-            if slope * slope > 2.0 * (abs(j) + bound * reach) * gap:
-                tau, x, slope, j = _turning_point(o, c.Omega, zr, zi, qr, qi, side, tau, reach)
+        if slope > 0.0:
+            h, _ = taylor_root(gap, slope, -side * j, -side * k, 0.0, 0.0, 0.0)
+            reach = BEYOND * h
+            if reach <= window and only_root(gap, slope, -side * j, -side * k, -bound, 0.0, reach):
+                tau, x, _, a, j, k = close_in(o, c.Omega, c.near, SPEED, ur, ui, gr, gi, 0.0, 0.0, side, tau, h, reach)
                 if tau > length:
                     return best, when
                 if abs(x) > best:
                     best = abs(x)
                     when = tau
-                tau += max(leaving_step(slope, side * j, bound, 0.0, window), FORCED_STEP)
+                # From here v1 goes to the other sign; the bound held for twice the window, but for the forcing's part.
+                side = 1.0 if a > 0.0 else -1.0
+                bound += force * c.Omega5 * window
+                h = step_back(0.0, abs(a), -side * j, -side * k, bound, 0.0, window)
+                if h < 0.25 * window:
+                    h = max(h, step_back(0.0, abs(a), -side * j, -side * k, bound, 0.0, 2.0 * h))
+                tau += max(h, FORCED_STEP)
                 if tau >= length:
                     return best, when
                 continue
-        h = safe_step(gap, slope, -side * j + bound * window / 3.0, window)
+            span = min(window, 1.5 * gap / slope)
+            h = step_ahead(gap, slope, -side * j, -side * k, bound, 0.0, span)
+        else:
+            h = step_back(gap, -slope, -side * j, -side * k, bound, 0.0, window)
+            if h < 0.25 * window:
+                h = max(h, step_back(gap, -slope, -side * j, -side * k, bound, 0.0, 2.0 * h))
         tau += max(h, FORCED_STEP)
         if tau >= length:
             return best, when
     return best, when
-
-
-@njit
-def _turning_point(o, Omega, zr, zi, qr, qi, side, tau, reach):
-    """Return (tau, x1, slope of |v1| towards 0, x1''') at the only zero of v1 in [tau, tau + reach]."""
-    low = tau
-    high = tau + reach
-    x = slope = j = 0.0
-    for _ in range(80):
-        zrt, zit, qrt, qit = turn(o, Omega, zr, zi, qr, qi, tau)
-        x, v, a, j, k = derivatives(o, Omega, zrt, zit, qrt, qit)
-        if side * v > 0.0:
-            low = max(low, tau)
-        else:
-            high = min(high, tau)
-        slope = -side * a
-        step = quartic_root(side * v, slope, -side * j, -side * k, 0.0) if slope > 0.0 else math.nan
-        if abs(step) <= 1e-5:
-            x += step * (v + step * (0.5 * a + step * j / 6.0))
-            return tau + step, x, max(slope, 0.0), j
-        if not low <= tau + step <= high:
-            step = 0.5 * (low + high) - tau
-            if abs(step) <= 1e-12 * (1.0 + high):
-                break
-        tau += step
-    return tau, x, max(slope, 0.0), j

@@ -15,7 +15,7 @@ from typing import Any, TypeVar
 
 from vines.places import cache_folder
 
-__all__ = ["CACHE", "kernel_digest", "lanes_njit", "njit"]
+__all__ = ["CACHE", "fused_njit", "kernel_digest", "loop_njit", "njit"]
 
 ROOMS = ("model", "dynamics", "orbits", "attractors")
 """Rooms whose sources can change what a kernel computes."""
@@ -79,6 +79,14 @@ def njit(function: _Function) -> _Function:
     return numba.njit(cache=True, error_model="numpy", nogil=True)(function)  # pyright: ignore[reportReturnType]
 
 
-def lanes_njit(function: _Function) -> _Function:
-    """Compile a loop over lanes: as `njit`, and a product with a sum may be rounded once (fused multiply-add)."""
-    return numba.njit(cache=True, error_model="numpy", nogil=True, fastmath={"contract", "nsz"})(function)  # pyright: ignore[reportReturnType]
+def fused_njit(function: _Function) -> _Function:
+    """Compile the inside of a hot loop: a product with a sum may be rounded once, and it is always inlined."""
+    return numba.njit(cache=True, error_model="numpy", nogil=True, fastmath=_FUSED, forceinline=True)(function)  # pyright: ignore[reportReturnType]
+
+
+def loop_njit(function: _Function) -> _Function:
+    """Compile a hot loop itself: as `njit`, and a product with a sum may be rounded once (fused multiply-add)."""
+    return numba.njit(cache=True, error_model="numpy", nogil=True, fastmath=_FUSED)(function)  # pyright: ignore[reportReturnType]
+
+
+_FUSED = {"contract", "nsz"}

@@ -10,7 +10,11 @@ from __future__ import annotations
 import math
 
 from vines.dynamics import _lane_fields as f
-from vines.dynamics._jit import lanes_njit
+from vines.dynamics._contact import BEYOND
+from vines.dynamics._jit import fused_njit, loop_njit
+from vines.dynamics._sincos import eighth_turn
+from vines.dynamics._steps import only_root, step_ahead, step_back, taylor_root
+from vines.dynamics._sticking import OMITTED, UNRESOLVED
 
 __all__ = ["half_turn", "small_expm1", "tick"]
 
@@ -18,44 +22,16 @@ LANES = f.LANES
 SLOW = 1e-7
 """A certified step below this, in units of the shortest time scale, is left to the scalar kernel."""
 
-UNRESOLVED = 8.0 * 2.220446049250313e-16
-OMITTED = 1e-16
 
-
-@lanes_njit
+@fused_njit
 def half_turn(x):
-    """Return (sin x, cos x) for |x| <= pi/2: fdlibm's polynomials at half the angle, and doubled."""
-    y = 0.5 * x
-    z = y * y
-    s = y + y * z * (
-        -1.66666666666666324348e-01
-        + z
-        * (
-            8.33333333332248946124e-03
-            + z
-            * (
-                -1.98412698298579493134e-04
-                + z * (2.75573137070700676789e-06 + z * (-2.50507602534068634195e-08 + z * 1.58969099521155010221e-10))
-            )
-        )
-    )
-    c = (1.0 - 0.5 * z) + z * z * (
-        4.16666666666666019037e-02
-        + z
-        * (
-            -1.38888888888741095749e-03
-            + z
-            * (
-                2.48015872894767294178e-05
-                + z * (-2.75573143513906633035e-07 + z * (2.08757232129817482790e-09 + z * -1.13596475577881948265e-11))
-            )
-        )
-    )
+    """Return (sin x, cos x) for |x| <= pi/2: those of half the angle, doubled."""
+    s, c = eighth_turn(0.5 * x)
     t = 2.0 * s
     return t * c, 1.0 - t * s
 
 
-@lanes_njit
+@fused_njit
 def small_expm1(x):
     """Return exp(x) - 1 for |x| <= 1.6: Taylor at an eighth of it, doubled three times without losing digits."""
     u = 0.125 * x
@@ -84,7 +60,7 @@ def small_expm1(x):
     return m * (2.0 + m)
 
 
-@lanes_njit
+@loop_njit
 def tick(L, cap):
     """Move every lane that does not wait by its step and choose the next one; `cap` is that of events in a period."""
     for i in range(LANES):
@@ -147,25 +123,12 @@ def tick(L, cap):
         d5 = side * (lh + lq)
         d6 = side * (mh - omega2 * kq)
 
-        # Root of the Taylor polynomial, two of Halley's steps from 0.
-        straight = gap / d1
-        h = straight * (2.0 * d1 * d1) / (2.0 * d1 * d1 + d2 * gap)
-        value = h * (
-            d1 + h * (0.5 * d2 + h * (d3 * (1 / 6) + h * (d4 * (1 / 24) + h * (d5 * (1 / 120) + h * d6 * (1 / 720)))))
-        )
-        value -= gap
-        first = d1 + h * (d2 + h * (0.5 * d3 + h * (d4 * (1 / 6) + h * (d5 * (1 / 24) + h * d6 * (1 / 120)))))
-        second = d2 + h * (d3 + h * (0.5 * d4 + h * (d5 * (1 / 6) + h * d6 * (1 / 24))))
-        correction = 2.0 * value * first / (2.0 * first * first - value * second)
-        h -= correction
-
-        # Is it the only one, and the first, in [0, reach]? While polishing it is known to lie in an older bracket.
+        # The root of the Taylor polynomial. Is it certain that it is the only one, and the first? While polishing it is
+        # known to lie in an older bracket.
+        h, correction = taylor_root(gap, d1, d2, d3, d4, d5, d6)
         fifth = L[f.FREE5 + i] + L[f.FORCED5 + i]
-        reach = 2.0 * straight
-        slowing = max(-d2, 0.0) + reach * (
-            0.5 * max(-d3, 0.0) + reach * ((1 / 6) * max(-d4, 0.0) + reach * ((1 / 24) * fifth))
-        )
-        unique = (d1 > 0.0) & (reach <= window) & (d1 > slowing * reach) & (h >= 0.0) & (h <= reach)
+        reach = BEYOND * h
+        unique = only_root(gap, d1, d2, d3, d4, fifth, reach) & (reach <= window)
         reach = L[f.REACH + i] if polishing else reach
         gone = L[f.GONE + i] + move if polishing else 0.0
         lost = polishing & ((gone + h < 0.0) | (gone + h > reach) | (not (abs(h) <= window)))
@@ -230,26 +193,21 @@ def tick(L, cap):
         d4 = ahead * (kh - omega2 * aq)
         fifth = free5 + L[f.FORCED5 + i]
         gap = max(1.0 - w, 0.0)
-        span = min(window, 1.5 * gap / pace)
-        bend = d2 + span * ((1 / 3) * max(d3, 0.0) + span * ((1 / 12) * max(d4, 0.0) + span * ((1 / 60) * fifth)))
-        root = pace * pace + 2.0 * bend * gap
-        forth = 2.0 * gap / (pace + math.sqrt(max(root, 0.0)))
-        forth = span if root < 0.0 else min(forth, span)
+        forth = step_ahead(gap, pace, d2, d3, d4, fifth, min(window, 1.5 * gap / pace))
         gap = 0.0 if hit else max(1.0 + w, 0.0)
-        bend = (
-            window * ((1 / 3) * max(-d3, 0.0) + window * ((1 / 12) * max(-d4, 0.0) + window * ((1 / 60) * fifth))) - d2
-        )
-        root = pace * pace + 2.0 * bend * gap
-        back = (math.sqrt(max(root, 0.0)) + pace) / bend
-        back = back if bend > 0.0 else window
+        back = step_back(gap, pace, -d2, -d3, -d4, fifth, window)
         step = min(forth, back, window)
         step = h if jump else step
 
         # What the scalar kernel has to see: a chatter about to end, tiny steps, a lost bracket, the end of the run.
         push = -d2
+        # (A little looser than `merges`, which then decides: so both kernels merge a chatter at the same impact.)
+        height = 1.05 * UNRESOLVED * (4.0 + 2.0 * free5 + (2.0 + omega) * (abs(xq) + abs(yq)) + abs(ball))
+        cube = pace * pace * pace
         merging = (push > 0.0) & (
-            (L[f.CORRECTION + i] * pace * pace * pace < OMITTED * push * push)
-            | (pace * pace < UNRESOLVED * push * (4.0 + 2.0 * free5 + abs(xq) + abs(yq) + abs(ball)))
+            (L[f.CORRECTION + i] * cube < 1.05 * OMITTED * push * push)
+            | (pace * pace < height * push)
+            | (2.0 * cube < height * height * max(-d3, 0.0))
         )
         slow = (not jump) & (not (step >= SLOW))
         ending = not (left > step + 1e-9)

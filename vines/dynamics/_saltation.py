@@ -6,13 +6,15 @@ derivation is in docs/dynamics.md, "Jacobian of an impact map"; it replaces the 
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 
 import numpy as np
 import numpy.typing as npt
 
+from vines.dynamics._constants import oscillator
+from vines.dynamics._flight import decay, derivatives, phasors, turn
 from vines.dynamics._jit import njit
+from vines.dynamics._sincos import sincos
 from vines.errors import StateError
 from vines.model import Params
 
@@ -28,11 +30,13 @@ def jacobian_kernel(mu, A, Omega, r, lam, x1, v1, v2, phase, tau):
 
     The arguments x1, v1, v2, phase are those just before the first impact; the results those just before the second.
     """
-    half = 0.5 * lam
-    gamma = math.sqrt(1.0 - half * half)
+    o = oscillator(1.0, A, Omega, lam)
     v1p = ((1.0 - r * mu) * v1 + mu * (1.0 + r) * v2) / (1.0 + mu)
     v2p = ((1.0 + r) * v1 + (mu - r) * v2) / (1.0 + mu)
-    force = A * math.sin(phase) + lam * Omega * A * math.cos(phase)
+    ur, ui, gr, gi = phasors(o, Omega, x1, v1p, phase)
+    _, _, a1p, _, _ = derivatives(o, Omega, ur, ui, gr, gi)
+    ur, ui, gr, gi = turn(o, Omega, ur, ui, gr, gi, tau)
+    x1n, v1n, a1n, _, _ = derivatives(o, Omega, ur, ui, gr, gi)
 
     # Columns of [R E, -f+] in the coordinates (x1, v1, x2, v2).
     start = np.zeros((4, 4))
@@ -43,38 +47,25 @@ def jacobian_kernel(mu, A, Omega, r, lam, x1, v1, v2, phase, tau):
     start[3, 0] = (1.0 + r) / (1.0 + mu)
     start[3, 1] = (mu - r) / (1.0 + mu)
     start[0, 3] = -v1p
-    start[1, 3] = -(force - lam * v1p - x1)
+    start[1, 3] = -a1p
     start[2, 3] = -v2p
 
-    decay = math.exp(-half * tau)
-    sine = decay * math.sin(gamma * tau) / gamma
-    cosine = decay * math.cos(gamma * tau)
+    size = decay(o.half * tau)
+    sine, cosine = sincos(o.gamma * tau)
+    sine *= size * o.inverse
+    cosine *= size
     grown = np.empty((4, 4))
     for j in range(4):
-        grown[0, j] = (cosine + half * sine) * start[0, j] + sine * start[1, j]
-        grown[1, j] = -sine * start[0, j] + (cosine - half * sine) * start[1, j]
+        grown[0, j] = (cosine + o.half * sine) * start[0, j] + sine * start[1, j]
+        grown[1, j] = -sine * start[0, j] + (cosine - o.half * sine) * start[1, j]
         grown[2, j] = start[2, j] + tau * start[3, j]
         grown[3, j] = start[3, j]
-
-    # The oscillator at the end: forced response plus the decaying difference to it.
-    re, im = 1.0 - Omega * Omega, lam * Omega
-    size = A / (re * re + im * im)
-    qr0 = size * ((lam * Omega * re - im) * math.cos(phase) + (re + lam * Omega * im) * math.sin(phase))
-    qi0 = size * ((lam * Omega * re - im) * math.sin(phase) - (re + lam * Omega * im) * math.cos(phase))
-    angle = Omega * tau
-    qr = qr0 * math.cos(angle) - qi0 * math.sin(angle)
-    qi = qr0 * math.sin(angle) + qi0 * math.cos(angle)
-    dx, dv = x1 - qr0, v1p + Omega * qi0
-    x1n = (cosine + half * sine) * dx + sine * dv + qr
-    v1n = -sine * dx + (cosine - half * sine) * dv - Omega * qi
-    end = phase + angle
-    acceleration = A * math.sin(end) + lam * Omega * A * math.cos(end) - lam * v1n - x1n
 
     J = np.empty((4, 4))
     closing = v1n - v2p
     for j in range(4):
         shift = (grown[0, j] - grown[2, j]) / closing
-        J[0, j] = grown[1, j] - acceleration * shift
+        J[0, j] = grown[1, j] - a1n * shift
         J[1, j] = grown[3, j]
         J[2, j] = grown[2, j] - v2p * shift
         J[3, j] = -shift

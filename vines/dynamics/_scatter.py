@@ -74,6 +74,30 @@ class Scatter:
         if not 0 <= self.seed < 2**53:
             raise ParameterError(f"seed is {self.seed!r}; allowed is 0 to 2**53 - 1")
 
+    def check(self, table: npt.NDArray[np.float64]) -> None:
+        """Raise where the model with scatter, which is written over the steady response, does not exist.
+
+        Parameters
+        ----------
+        table : ndarray, shape (n, 5)
+            mu, A, Omega, r, lam.
+
+        Raises
+        ------
+        ParameterError
+            If damping vanishes at the resonance of a harmonic with the oscillator, alone or with the ball on a wall.
+        """
+        mu, Omega, lam = table[:, 0], table[:, 2], table[:, 4]
+        for w in (Omega, 2.0 * Omega) if self.second > 0 else (Omega,):
+            for mass in (np.ones_like(mu), 1.0 + mu):
+                bad = np.hypot(1.0 - mass * w * w, lam * w) < 1e-9
+                if bad.any():
+                    k = int(np.flatnonzero(bad)[0])
+                    raise ParameterError(
+                        f"lam is {lam[k]:g} at the resonance of mass {mass[k]:g} in run {k}; allowed with scatter is "
+                        "lam > 0 there"
+                    )
+
     def numbers(self) -> npt.NDArray[np.float64]:
         """Return the fields as an array, for the kernel."""
         return np.array(
@@ -105,7 +129,9 @@ def _oscillator(o, mass, p, numbers):
     q1 = A * complex(lam * Omega, -1.0) / complex(1.0 - mass * Omega * Omega, lam * Omega)
     w = 2.0 * Omega
     shift = complex(math.cos(numbers[5]), math.sin(numbers[5]))
-    q2 = numbers[4] * A * complex(lam * w, -1.0) / complex(1.0 - mass * w * w, lam * w) * shift
+    q2 = complex(0.0, 0.0)
+    if numbers[4] > 0.0:
+        q2 = numbers[4] * A * complex(lam * w, -1.0) / complex(1.0 - mass * w * w, lam * w) * shift
     o[Q1R], o[Q1I], o[Q2R], o[Q2I], o[STATIC] = q1.real, q1.imag, q2.real, q2.imag, 1.0
 
 

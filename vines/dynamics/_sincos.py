@@ -6,9 +6,9 @@ to about one unit in the last place of 1 for the angles that occur here, |x| < 1
 
 from __future__ import annotations
 
-from vines.dynamics._jit import njit
+from vines.dynamics._jit import fused_njit
 
-__all__ = ["sincos"]
+__all__ = ["eighth_turn", "sincos"]
 
 TWO_OVER_PI = 0.6366197723675814
 HALF_PI_1 = 1.57079632673412561417
@@ -18,18 +18,9 @@ ROUND = 6755399441055744.0
 """1.5 * 2**52: adding and taking it away rounds to the nearest integer."""
 
 
-@njit
-def sincos(x):
-    """Return (sin x, cos x).
-
-    Examples
-    --------
-    >>> s, c = sincos(0.5)
-    >>> print(f"{s:.15f} {c:.15f}")
-    0.479425538604203 0.877582561890373
-    """
-    n = (x * TWO_OVER_PI + ROUND) - ROUND
-    y = ((x - n * HALF_PI_1) - n * HALF_PI_2) - n * HALF_PI_3
+@fused_njit
+def eighth_turn(y):
+    """Return (sin y, cos y) for |y| <= pi/4; without branches, so that loops over lanes become vectors."""
     z = y * y
     sine = y + y * z * (
         -1.66666666666666324348e-01
@@ -55,6 +46,22 @@ def sincos(x):
             )
         )
     )
+    return sine, cosine
+
+
+@fused_njit
+def sincos(x):
+    """Return (sin x, cos x).
+
+    Examples
+    --------
+    >>> s, c = sincos(0.5)
+    >>> print(f"{s:.15f} {c:.15f}")
+    0.479425538604203 0.877582561890373
+    """
+    n = (x * TWO_OVER_PI + ROUND) - ROUND
+    y = ((x - n * HALF_PI_1) - n * HALF_PI_2) - n * HALF_PI_3
+    sine, cosine = eighth_turn(y)
     quadrant = int(n) & 3
     odd = quadrant & 1
     s = cosine if odd else sine

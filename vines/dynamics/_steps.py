@@ -1,21 +1,68 @@
-"""Certified steps: how far one may go along a smooth function without its reaching a level.
+"""Certified steps: how far one may go along a smooth function without its reaching a level, and where it surely does.
 
-The derivation and its constants are in docs/dynamics.md, "Next impact, found for certain".
+A level lies at the height `gap` over a function with derivatives d1, d2, d3, d4 and a bound of the fifth. The
+derivations and constants are in docs/dynamics.md, "Next impact, found for certain". What has no branch is shared by
+the scalar kernel and the lanes.
 """
 
 from __future__ import annotations
 
 import math
 
-from vines.dynamics._jit import njit
+from vines.dynamics._jit import fused_njit, njit
 
-__all__ = ["leaving_step", "quartic_root", "safe_step"]
+__all__ = ["leaving_step", "only_root", "quartic_root", "safe_step", "step_ahead", "step_back", "taylor_root"]
 
 HALVINGS = 60
 """How often a first step from a level may be halved: 2**-60 of a window is below what double precision resolves."""
 
 UNRESOLVED = 1e-17
 """Height that is lost in the rounding of a gap near 1."""
+
+
+@fused_njit
+def step_ahead(gap, pace, d2, d3, d4, fifth, span):
+    """Return h <= span before whose end a function that rises at `pace` >= 0 does not reach the level."""
+    bend = d2 + span * ((1 / 3) * max(d3, 0.0) + span * ((1 / 12) * max(d4, 0.0) + span * ((1 / 60) * fifth)))
+    root = pace * pace + 2.0 * bend * gap
+    forth = 2.0 * gap / (pace + math.sqrt(max(root, 0.0)))
+    never = (root < 0.0) | ((pace <= 0.0) & (bend <= 0.0))
+    return span if never else min(span, forth)
+
+
+@fused_njit
+def step_back(gap, pace, d2, d3, d4, fifth, span):
+    """Return h <= span before whose end a function that falls at `pace` >= 0 does not reach the level."""
+    bend = d2 + span * ((1 / 3) * max(d3, 0.0) + span * ((1 / 12) * max(d4, 0.0) + span * ((1 / 60) * fifth)))
+    root = pace * pace + 2.0 * bend * gap
+    back = (math.sqrt(max(root, 0.0)) + pace) / bend
+    return min(span, back) if bend > 0.0 else span
+
+
+@fused_njit
+def only_root(gap, d1, d2, d3, d4, fifth, reach):
+    """Say whether a rising function is certain to reach the level exactly once in [0, reach]."""
+    rising = d1 + reach * (
+        min(d2, 0.0) + reach * (0.5 * min(d3, 0.0) + reach * ((1 / 6) * min(d4, 0.0) - reach * ((1 / 24) * fifth)))
+    )
+    arrives = reach * (
+        d1 + reach * (0.5 * d2 + reach * ((1 / 6) * d3 + reach * ((1 / 24) * d4 - reach * ((1 / 120) * fifth))))
+    )
+    return (d1 > 0.0) & (reach >= 0.0) & (rising > 0.0) & (arrives >= gap)
+
+
+@fused_njit
+def taylor_root(gap, d1, d2, d3, d4, d5, d6):
+    """Return (h, last correction) of two of Halley's steps to the root of the Taylor polynomial nearest to 0."""
+    h = 2.0 * gap * d1 / (2.0 * d1 * d1 + d2 * gap)
+    value = h * (
+        d1 + h * (0.5 * d2 + h * ((1 / 6) * d3 + h * ((1 / 24) * d4 + h * ((1 / 120) * d5 + h * ((1 / 720) * d6)))))
+    )
+    value -= gap
+    first = d1 + h * (d2 + h * (0.5 * d3 + h * ((1 / 6) * d4 + h * ((1 / 24) * d5 + h * ((1 / 120) * d6)))))
+    second = d2 + h * (d3 + h * (0.5 * d4 + h * ((1 / 6) * d5 + h * ((1 / 24) * d6))))
+    correction = 2.0 * value * first / (2.0 * first * first - value * second)
+    return h - correction, correction
 
 
 @njit

@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-import math
-
-from vines.dynamics._contact import CONTACT, FEW_ULP, MAX_STEPS, NO_CONTACT, STEP_CAP
-from vines.dynamics._flight import derivatives, turn
-from vines.dynamics._jit import njit
-from vines.dynamics._steps import leaving_step, quartic_root, safe_step
+from vines.dynamics._contact import BEYOND, CONTACT, FEW_ULP, FORCE, MAX_STEPS, NO_CONTACT, STEP_CAP, close_in, modulus
+from vines.dynamics._flight import derivatives, fifth, turn
+from vines.dynamics._jit import fused_njit, loop_njit
+from vines.dynamics._steps import leaving_step, only_root, safe_step, taylor_root
 
 __all__ = ["merges", "next_release"]
 
@@ -18,36 +16,34 @@ UNRESOLVED = 8.0 * 2.220446049250313e-16
 """Height of a flight over its wall, relative to the size of the terms, below which doubles cannot resolve it."""
 
 
-@njit
-def merges(c, side, speed, zr, zi, qr, qi, x2):
+@fused_njit
+def merges(c, side, speed, ur, ui, gr, gi, x2):
     """Say whether a ball leaving `side` at `speed` >= 0 is to be taken as stuck from now on.
 
     It is, if the rest of its chatter changes the common velocity by less than OMITTED while the push keeps its sign,
     or if its flight is too low for double precision; with no speed at all the sign of the push decides.
     """
-    _, _, a, j, k = derivatives(c.free, c.Omega, zr, zi, qr, qi)
+    _, _, a, j, k = derivatives(c.free, c.Omega, ur, ui, gr, gi)
     push = side * a
     jerk = side * j
     if speed == 0.0:
         return push > 0.0 or (push == 0.0 and jerk >= 0.0)
     if push <= 0.0:
         return False
-    size = 1.0 + abs(zr) + abs(zi) + abs(qr) + abs(qi) + abs(x2)
-    back = speed / push
-    if jerk > 0.0:
-        back = min(back, math.sqrt(2.0 * speed / jerk))
-    if speed * back < UNRESOLVED * size and jerk >= 0.0:
+    height = UNRESOLVED * (1.0 + abs(ur) + abs(ui) + abs(gr) + abs(gi) + abs(x2))
+    cube = speed * speed * speed
+    # The hop comes back after speed/push or, where the push grows, after sqrt(2 speed/jerk) at the latest.
+    unresolved = speed * speed < height * push or (jerk > 0.0 and 2.0 * cube < height * height * jerk)
+    if not (unresolved or c.correction * cube < OMITTED * push * push):
+        return False
+    if unresolved and (jerk >= 0.0 or c.r >= 1.0):
         return True
-    if c.r >= 1.0:
-        return speed * back < UNRESOLVED * size
     rest = 2.0 * speed / (push * (1.0 - c.r))
-    steady = jerk * rest > -0.25 * push and abs(k) * rest * rest < 0.25 * push
-    unresolved = speed * back < UNRESOLVED * size
-    return steady and (unresolved or c.correction * speed * speed * speed < OMITTED * push * push)
+    return jerk * rest > -0.25 * push and abs(k) * rest * rest < 0.25 * push
 
 
-@njit
-def next_release(c, side, zr, zi, qr, qi, tau, stop):
+@loop_njit
+def next_release(c, side, ur, ui, gr, gi, tau, stop):
     """Search for the first release after tau; arguments and result as for `next_contact`, with the loaded oscillator.
 
     Returns
@@ -55,62 +51,36 @@ def next_release(c, side, zr, zi, qr, qi, tau, stop):
     (code, tau, x1, v1)
     """
     o = c.stuck
-    z = math.sqrt(zr * zr + zi * zi)
-    q = math.sqrt(qr * qr + qi * qi)
-    fifth = z * o.size**5 + q * c.Omega4 * c.Omega
     window = c.window
+    forced = modulus(gr, gi) * c.Omega5 * window
     for _ in range(MAX_STEPS):
-        zrt, zit, qrt, qit = turn(o, c.Omega, zr, zi, qr, qi, tau)
-        x, v, a, j, k = derivatives(o, c.Omega, zrt, zit, qrt, qit)
+        urt, uit, grt, git = turn(o, c.Omega, ur, ui, gr, gi, tau)
+        x, v, a, j, k = derivatives(o, c.Omega, urt, uit, grt, git)
+        bound = modulus(*fifth(o, urt, uit, grt, git)) + forced
         # The contact force is (1 + mu) side x1''; its sign is all that matters here.
         force = side * a
         slope = -side * j
         bend = -side * k
         if force < 0.0 or (force == 0.0 and slope > 0.0):
             return (CONTACT, tau, x, v) if tau <= stop else (NO_CONTACT, tau, 0.0, 0.0)
-        if slope > 0.0 and 2.0 * force <= slope * window:
-            reach = 2.0 * force / slope
-            if slope * slope > 2.0 * (abs(bend) + fifth * reach) * force:
-                found, x, v = _polish_release(c, side, zr, zi, qr, qi, tau, reach)
+        if slope > 0.0:
+            h, _ = taylor_root(force, slope, bend, 0.0, 0.0, 0.0, 0.0)
+            reach = BEYOND * h
+            # One order lower than in flight: the third derivative of the force is only bounded.
+            if reach <= window and only_root(force, slope, bend, -bound, 0.0, 0.0, reach):
+                found, x, v, _, _, _ = close_in(
+                    o, c.Omega, c.near, FORCE, ur, ui, gr, gi, 0.0, 0.0, side, tau, h, reach
+                )
                 return (CONTACT, found, x, v) if found <= stop else (NO_CONTACT, tau, 0.0, 0.0)
         if force == 0.0:
-            h = leaving_step(-slope, bend, fifth, 0.0, window)
+            h = leaving_step(-slope, bend, bound, 0.0, window)
         else:
-            h = safe_step(force, slope, bend + fifth * window / 3.0, window)
+            h = safe_step(force, slope, bend + bound * window / 3.0, window)
             shorter = min(1.5 * h, window)
-            h = max(h, safe_step(force, slope, bend + fifth * shorter / 3.0, shorter))
+            h = max(h, safe_step(force, slope, bend + bound * shorter / 3.0, shorter))
         if h <= FEW_ULP * tau:
             return (CONTACT, tau, x, v) if tau <= stop else (NO_CONTACT, tau, 0.0, 0.0)
         if tau + h > stop:
             return NO_CONTACT, tau, 0.0, 0.0
         tau += h
     return STEP_CAP, tau, 0.0, 0.0
-
-
-@njit
-def _polish_release(c, side, zr, zi, qr, qi, tau, reach):
-    """Return (tau, x1, v1) at the only zero of the contact force in [tau, tau + reach]."""
-    o = c.stuck
-    low = tau
-    high = tau + reach
-    x = v = 0.0
-    for _ in range(80):
-        zrt, zit, qrt, qit = turn(o, c.Omega, zr, zi, qr, qi, tau)
-        x, v, a, j, k = derivatives(o, c.Omega, zrt, zit, qrt, qit)
-        force = side * a
-        if force > 0.0:
-            low = max(low, tau)
-        else:
-            high = min(high, tau)
-        slope = -side * j
-        step = quartic_root(force, slope, -side * k, 0.0, 0.0) if slope > 0.0 else math.nan
-        if abs(step) <= c.near:
-            x += step * (v + step * (0.5 * a + step * (j / 6.0 + step * k / 24.0)))
-            v += step * (a + step * (0.5 * j + step * k / 6.0))
-            return max(tau + step, 0.0), x, v
-        if not low <= tau + step <= high:
-            step = 0.5 * (low + high) - tau
-            if abs(step) <= FEW_ULP * high:
-                break
-        tau += step
-    return tau, x, v

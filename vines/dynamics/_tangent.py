@@ -14,29 +14,36 @@ import numpy.typing as npt
 
 from vines.dynamics._advance import IMPACT, KIND, MODE, PHASE, STICK, TAU, TIME, V1, V2, X1
 from vines.dynamics._constants import constants
-from vines.dynamics._flight import derivatives, phasors
-from vines.dynamics._jit import njit
+from vines.dynamics._flight import decay, derivatives, phasors
+from vines.dynamics._jit import fused_njit, njit
 from vines.dynamics._sincos import sincos
 from vines.dynamics._trajectory import Trajectory
 from vines.errors import StateError
 
-__all__ = ["carry_basis", "lyapunov_blocks", "lyapunov_spectrum", "tangent_map", "tangent_product"]
+__all__ = [
+    "flow_basis",
+    "jump_basis",
+    "lyapunov_blocks",
+    "lyapunov_spectrum",
+    "orthonormalise",
+    "tangent_map",
+    "tangent_product",
+]
 
 
-@njit
-def _flow(c, mode, tau, Y):
+@fused_njit
+def flow_basis(c, mode, tau, Y):
     """Carry four disturbances, the columns of Y, over a time tau between events."""
     o = c.stuck if mode != 0.0 else c.free
-    decay = math.exp(-o.half * tau)
+    size = decay(o.half * tau)
     sine, cosine = sincos(o.gamma * tau)
-    sine *= decay / o.gamma
-    cosine *= decay
-    stiffness = o.half * o.half + o.gamma * o.gamma
+    sine *= size * o.inverse
+    cosine *= size
     for j in range(4):
         x = Y[0, j]
         v = Y[1, j]
         Y[0, j] = (cosine + o.half * sine) * x + sine * v
-        Y[1, j] = -stiffness * sine * x + (cosine - o.half * sine) * v
+        Y[1, j] = -o.stiffness * sine * x + (cosine - o.half * sine) * v
         if mode != 0.0:
             Y[2, j] = Y[0, j]
             Y[3, j] = Y[1, j]
@@ -44,15 +51,15 @@ def _flow(c, mode, tau, Y):
             Y[2, j] += tau * Y[3, j]
 
 
-@njit
-def _event(c, row, Y):
+@fused_njit
+def jump_basis(c, row, Y):
     """Apply the effect of an event to the disturbances."""
     if row[KIND] == IMPACT:
         v1, v2 = row[V1], row[V2]
         after1 = c.keep1 * v1 + c.pass1 * v2
         after2 = c.pass2 * v1 + c.keep2 * v2
-        zr, zi, qr, qi = phasors(c.free, c.Omega, row[X1], v1, row[PHASE])
-        _, _, a, _, _ = derivatives(c.free, c.Omega, zr, zi, qr, qi)
+        ur, ui, gr, gi = phasors(c.free, c.Omega, row[X1], v1, row[PHASE])
+        _, _, a, _, _ = derivatives(c.free, c.Omega, ur, ui, gr, gi)
         a_after = a - c.lam * (after1 - v1)
         closing = v1 - v2
         for j in range(4):
@@ -82,13 +89,13 @@ def tangent_product(c, rows, first, last):
     """Return the 4x4 tangent map from just after row `first` to just after row `last`."""
     Y = np.eye(4)
     for i in range(first + 1, last + 1):
-        _flow(c, rows[i - 1, MODE], rows[i, TAU], Y)
-        _event(c, rows[i], Y)
+        flow_basis(c, rows[i - 1, MODE], rows[i, TAU], Y)
+        jump_basis(c, rows[i], Y)
     return Y
 
 
-@njit
-def _orthonormalise(Y, gains):
+@fused_njit
+def orthonormalise(Y, gains):
     """Gram–Schmidt in place; the lengths before normalisation go to `gains` (0 where a direction has died)."""
     for j in range(4):
         for k in range(j):
@@ -108,18 +115,6 @@ def _orthonormalise(Y, gains):
 
 
 @njit
-def carry_basis(c, mode, row, tau, Y, growth):
-    """Carry orthonormal disturbances to just after a row, a time tau on, and add up their growth and the time."""
-    gains = np.empty(4)
-    _flow(c, mode, tau, Y)
-    _event(c, row, Y)
-    _orthonormalise(Y, gains)
-    for j in range(4):
-        growth[j] += math.log(gains[j]) if gains[j] > 1e-150 else -math.inf
-    growth[4] += tau
-
-
-@njit
 def lyapunov_blocks(c, rows, n, start, stop, blocks, Y):
     """Return (blocks, 5): logarithmic growth of the four directions in equal blocks of time, and each block's length.
 
@@ -129,9 +124,9 @@ def lyapunov_blocks(c, rows, n, start, stop, blocks, Y):
     gains = np.zeros(4)
     width = (stop - start) / blocks
     for i in range(1, n):
-        _flow(c, rows[i - 1, MODE], rows[i, TAU], Y)
-        _event(c, rows[i], Y)
-        _orthonormalise(Y, gains)
+        flow_basis(c, rows[i - 1, MODE], rows[i, TAU], Y)
+        jump_basis(c, rows[i], Y)
+        orthonormalise(Y, gains)
         t = rows[i, TIME]
         if t > start:
             b = min(int((t - start) / width), blocks - 1)

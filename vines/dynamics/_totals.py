@@ -21,7 +21,7 @@ from vines.dynamics._advance import (
     X2,
 )
 from vines.dynamics._flight import advance_phase, derivatives, phasors, turn
-from vines.dynamics._integrals import largest_displacement, segment_integrals
+from vines.dynamics._integrals import energies_between, peak_between, segment_integrals
 from vines.dynamics._jit import njit
 
 __all__ = ["accumulate", "add_segment", "count_event", "segment_state", "state_energy", "window_totals"]
@@ -52,9 +52,9 @@ def segment_state(c, row, tau):
     """Return (x1, v1, x2, v2, phase) at time tau after a row, before the next one."""
     mode = row[MODE]
     o = c.stuck if mode != 0.0 else c.free
-    zr, zi, qr, qi = phasors(o, c.Omega, row[X1], row[A_V1], row[PHASE])
-    zr, zi, qr, qi = turn(o, c.Omega, zr, zi, qr, qi, tau)
-    x1, v1, _, _, _ = derivatives(o, c.Omega, zr, zi, qr, qi)
+    ur, ui, gr, gi = phasors(o, c.Omega, row[X1], row[A_V1], row[PHASE])
+    ur, ui, gr, gi = turn(o, c.Omega, ur, ui, gr, gi, tau)
+    x1, v1, _, _, _ = derivatives(o, c.Omega, ur, ui, gr, gi)
     phase = advance_phase(row[PHASE], c.Omega * tau)
     if mode != 0.0:
         return x1, v1, x1 - mode, v1, phase
@@ -90,14 +90,17 @@ def count_event(c, out, row):
 @njit
 def add_segment(c, out, mode, begins, x1, v1, v2, phase, length):
     """Add the motion of a segment, given by the state at its start, to the totals."""
-    xx, vv, ball, work, loss = segment_integrals(c, mode, x1, v1, v2, phase, length)
+    o = c.stuck if mode != 0.0 else c.free
+    start = phasors(o, c.Omega, x1, v1, phase)
+    end = turn(o, c.Omega, *start, length)
+    xx, vv, ball, work, loss = energies_between(c, o, mode != 0.0, start, end, v2, length)
     out[DURATION] += length
     out[X1_SQUARE] += xx
     out[V1_SQUARE] += vv
     out[V2_SQUARE] += ball
     out[BASE_WORK] += work
     out[DAMPER_LOSS] += loss
-    best, when = largest_displacement(c, mode, x1, v1, phase, 0.0, length, out[MAX_ABS_X1])
+    best, when = peak_between(c, o, *start, end[0], end[1], 0.0, length, out[MAX_ABS_X1])
     if when >= 0.0:
         out[MAX_ABS_X1] = best
         out[T_MAX_ABS_X1] = begins + when

@@ -11,18 +11,22 @@ if TYPE_CHECKING:
     from vines.figures._bifurcation import bifurcation_figure
     from vines.figures._chart import CurveLine, Region, SpecialMark, chart_figure
     from vines.figures._diagram_panel import BranchLine, DiagramPanel, ImpactDots, Marker
+    from vines.figures._energy import FOUND, EnergyCurve, EnergyPanel
     from vines.figures._multipliers import MultiplierLines, MultiplierPanel, multiplier_figure
     from vines.figures._names import ERRORS, NAMES, PANELS, RUN_PANELS, SYMBOLS
     from vines.figures._reduced import ErrorMap, reduced_figure
     from vines.figures._regimes import REGIME_CLASSES, RegimeMap, regimes_figure
+    from vines.figures._response import VelocityPanel, response_figure
     from vines.figures._runs import EndsPanel, GapPanel, PhasePlanePanel, RunCurves
     from vines.figures._sheet import Panel, sheet_figure
-    from vines.figures._style import COLOURS, save
+    from vines.figures._style import COLOURS, PALETTE, save
 
 __all__ = [
     "COLOURS",
     "ERRORS",
+    "FOUND",
     "NAMES",
+    "PALETTE",
     "PANELS",
     "REGIME_CLASSES",
     "RUN_PANELS",
@@ -32,6 +36,8 @@ __all__ = [
     "CurveLine",
     "DiagramPanel",
     "EndsPanel",
+    "EnergyCurve",
+    "EnergyPanel",
     "ErrorMap",
     "GapPanel",
     "ImpactDots",
@@ -44,12 +50,14 @@ __all__ = [
     "Region",
     "RunCurves",
     "SpecialMark",
+    "VelocityPanel",
     "basins_figure",
     "bifurcation_figure",
     "chart_figure",
     "multiplier_figure",
     "reduced_figure",
     "regimes_figure",
+    "response_figure",
     "save",
     "sheet_figure",
 ]
@@ -69,7 +77,11 @@ _HOME = {
     "BranchLine": "_diagram_panel",
     "COLOURS": "_style",
     "ERRORS": "_names",
+    "EnergyCurve": "_energy",
+    "EnergyPanel": "_energy",
+    "FOUND": "_energy",
     "NAMES": "_names",
+    "PALETTE": "_style",
     "PANELS": "_names",
     "SYMBOLS": "_names",
     "BasinMap": "_basins",
@@ -86,7 +98,9 @@ _HOME = {
     "chart_figure": "_chart",
     "multiplier_figure": "_multipliers",
     "reduced_figure": "_reduced",
+    "response_figure": "_response",
     "save": "_style",
+    "VelocityPanel": "_response",
 }
 
 

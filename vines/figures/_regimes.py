@@ -39,6 +39,9 @@ LABELS = 9
 LEAST = 0.004
 """Smallest share of the map that a region must fill for its name to be written into it."""
 
+ROOM = 0.01
+"""Least distance of a name from the edge of its region, in parts of the map's longer side: else names run together."""
+
 
 @dataclass(frozen=True, slots=True)
 class RegimeMap:
@@ -158,6 +161,8 @@ def _write_names(ax: Axes, data: RegimeMap) -> None:
         # The frame counts as an edge, so that no name is cut by it.
         depth = np.asarray(distance_transform_edt(np.pad(inside, 1)))[1:-1, 1:-1]
         row, column = np.unravel_index(int(np.argmax(depth)), depth.shape)
+        if depth[row, column] < ROOM * max(depth.shape):
+            continue
         ax.text(
             data.x[column],
             data.y[row],

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-__all__ = ["COLOURS", "FAMILIES", "RC", "new_figure", "save"]
+__all__ = ["COLOURS", "FAMILIES", "PALETTE", "RC", "new_figure", "save"]
 
 COLOURS = {
     "L": "#c8102e",
@@ -28,6 +28,17 @@ FAMILIES = {
     "unequal": ("#e87800", "#2c962c"),
 }
 """Colours of branches on L and R: symmetric, asymmetric and unequal (2:1) ones as in the paper's Figs 4 and 5."""
+
+PALETTE = {
+    "red": "#c8102e",
+    "green": "#2c962c",
+    "blue": "#0b4ea2",
+    "black": "#222222",
+    "orange": "#e87800",
+    "magenta": "#d0118f",
+    "cyan": "#0aa0bd",
+}
+"""Colours that declarations name."""
 
 RC: Any = {
     "font.family": "DejaVu Sans",

@@ -10,7 +10,7 @@ import numpy.typing as npt
 from vines.dynamics._constants import constants
 from vines.model import Params, Word
 from vines.orbits._assemble import assemble
-from vines.orbits._closed_form import family_of, impact_states, speeds
+from vines.orbits._closed_form import family_of, impact_states, refuse_resonance, speeds
 from vines.orbits._complete import can_search, search_flights
 from vines.orbits._equations import newton_kernel
 from vines.orbits._general import ITERATIONS, proper, same
@@ -75,7 +75,7 @@ def all_orbits(word: str | Word, p: Params) -> Orbits:
     Raises
     ------
     ParameterError
-        If `word` is not a word.
+        If `word` is not a word, or at Omega = 1 without damping.
 
     Notes
     -----
@@ -89,6 +89,7 @@ def all_orbits(word: str | Word, p: Params) -> Orbits:
     (True, [(True, False), (False, True), (False, True)])
     """
     word = Word(word)
+    refuse_resonance(p)
     if word.n == 0 or word.m == 0:
         remark = "every impact on one wall pushes the ball the same way, and nothing brings it back"
         return Orbits(complete=True, remark=remark, nearest=np.inf)

@@ -14,6 +14,7 @@ from typing import NamedTuple
 import numpy as np
 
 from vines.errors import ParameterError
+from vines.model import Params
 
 __all__ = ["SymmetricFamily", "family_of", "fold_amplitude", "fold_speed", "impact_states", "speeds"]
 
@@ -50,6 +51,18 @@ class SymmetricFamily(NamedTuple):
     def slope(self, V: float) -> float:
         """Return the derivative of `defect` in V, which vanishes at the fold."""
         return 2 * (self.stiffness * V + self.alpha)
+
+
+def refuse_resonance(p: Params) -> None:
+    """Raise where the steady response, over which all closed forms of orbits are written, does not exist.
+
+    Raises
+    ------
+    ParameterError
+        At Omega = 1 without damping.
+    """
+    if math.hypot(1 - p.Omega**2, p.lam * p.Omega) <= 1e-9:
+        raise ParameterError(f"lam is {p.lam:g} at Omega = {p.Omega:g}, where no response is steady; give lam > 0")
 
 
 def family_of(mu: float, Omega: float, r: float, lam: float, period: int) -> SymmetricFamily:

@@ -11,6 +11,7 @@ from vines.dynamics._constants import constants
 from vines.errors import OrbitNotFound, ParameterError
 from vines.model import Params, Word
 from vines.orbits._assemble import assemble, asymmetry
+from vines.orbits._closed_form import refuse_resonance
 from vines.orbits._equations import newton_kernel
 from vines.orbits._orbit import Orbit
 
@@ -39,8 +40,9 @@ def refine(word: Word, p: Params, guess: Orbit | npt.ArrayLike) -> Orbit:
     OrbitNotFound
         If it does not converge to an orbit of this word that meets the walls from inside.
     ParameterError
-        If the guess does not fit the word.
+        If the guess does not fit the word, or at Omega = 1 without damping.
     """
+    refuse_resonance(p)
     if isinstance(guess, Orbit):
         if guess.word != word:
             raise ParameterError(f"the guess is an orbit of {guess.word}, not of {word}; give one of the same word")

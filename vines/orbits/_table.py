@@ -8,7 +8,7 @@ import math
 import numpy as np
 import numpy.typing as npt
 
-from vines.dynamics._constants import Constants, Oscillator
+from vines.dynamics._constants import constants_kernel
 from vines.dynamics._integrals import largest_displacement, segment_integrals
 from vines.dynamics._jit import njit
 from vines.dynamics._saltation import jacobian_kernel
@@ -18,7 +18,7 @@ from vines.model._params import LAM_TABLE_1
 from vines.orbits._eigenvalues import eigenvalues_kernel
 from vines.orbits._survey import inspect_flight
 
-__all__ = ["constants_kernel", "symmetric_table"]
+__all__ = ["symmetric_table"]
 
 _ROW = np.dtype(
     [
@@ -96,47 +96,6 @@ def symmetric_table(
     out = np.zeros((len(points), 2), dtype=_ROW)
     _table_kernel(points, period, out)
     return out.reshape(*shape, 2)
-
-
-@njit
-def _oscillator(mass, A, Omega, lam):
-    half = 0.5 * lam / mass
-    gamma = math.sqrt(1.0 / mass - half * half)
-    s = complex(-half, gamma)
-    q = A * complex(lam * Omega, -1.0) / complex(1.0 - mass * Omega**2, lam * Omega)
-    s2 = s * s
-    s3 = s * s * s
-    s4 = s * s * s * s
-    return Oscillator(half, gamma, q.real, q.imag, s2.real, s2.imag, s3.real, s3.imag, s4.real, s4.imag, abs(s))
-
-
-@njit
-def constants_kernel(mu, A, Omega, r, lam):
-    """Return what `vines.dynamics._constants.constants` gives, from within a kernel and for flights only.
-
-    The loaded oscillator, which only sticking needs, is a copy of the free one: at its resonance it need not exist.
-    """
-    mass = 1.0 + mu
-    free = _oscillator(1.0, A, Omega, lam)
-    fastest = max(1.0, Omega)
-    return Constants(
-        mu,
-        A,
-        Omega,
-        r,
-        lam,
-        (1.0 - r * mu) / mass,
-        mu * (1.0 + r) / mass,
-        (mu - r) / mass,
-        (1.0 + r) / mass,
-        Omega**4,
-        math.hypot(free.half, free.gamma - Omega),
-        0.9 / fastest,
-        1e-4 / fastest**1.25,
-        0.0,
-        free,
-        free,
-    )
 
 
 @njit

@@ -77,8 +77,8 @@ def turning_points_kernel(c, zr, zi, qr, qi, drift, duration):
         a, b = left[depth], right[depth]
         h = 0.5 * (b - a)
         zra, zia, qra, qia = turn(c.free, c.Omega, zr, zi, qr, qi, a)
-        _, va, _, _, ka = derivatives(c.free, c.Omega, zra, zia, qra, qia)
-        bound = fourth_bound(c, zra, zia, qra, qia, ka, 2.0 * h)
+        _, va, _, _, _ = derivatives(c.free, c.Omega, zra, zia, qra, qia)
+        bound = fourth_bound(c, zra, zia, qra, qia, 2.0 * h)
         u, du, ddu = _rate(c, zr, zi, qr, qi, drift, a + h)
         if abs(u) > slack + h * (abs(du) + h * (0.5 * abs(ddu) + h * bound / 6.0)):
             continue

@@ -6,13 +6,12 @@ Derivatives in a parameter and curves in two of them evaluate the equations at m
 
 from __future__ import annotations
 
-import math
 from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
-from vines.dynamics._constants import Oscillator
+from vines.dynamics._constants import Oscillator, oscillator
 from vines.dynamics._jit import njit
 from vines.model import Params
 
@@ -37,12 +36,5 @@ def values_of(p: Params) -> npt.NDArray[np.float64]:
 def essentials(values):
     """Return the `Essentials` at parameter values mu, A, Omega, r, lam; not finite where the model does not exist."""
     mu, A, Omega, r, lam = values[0], values[1], values[2], values[3], values[4]
-    half = 0.5 * lam
-    gamma = math.sqrt(1.0 - half * half)
-    s = complex(-half, gamma)
-    q = A * complex(lam * Omega, -1.0) / complex(1.0 - Omega * Omega, lam * Omega)
-    s2 = s * s
-    s3 = s2 * s
-    s4 = s3 * s
-    free = Oscillator(half, gamma, q.real, q.imag, s2.real, s2.imag, s3.real, s3.imag, s4.real, s4.imag, abs(s))
+    free = oscillator(1.0, A, Omega, lam)
     return Essentials(mu, Omega, (1.0 + r) / (1.0 + mu), free)

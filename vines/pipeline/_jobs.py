@@ -158,6 +158,8 @@ class Input:
         The fixed parameters of that stage.
     axes : tuple of str
         The varied parameters of that stage, as declared.
+    carried, direction : str
+        The axis along which states were carried, and "up" or "down"; empty if none were.
     tables : tuple of str
         Tables that the result has, the primary one first.
     logs : dict of str to Path
@@ -174,6 +176,8 @@ class Input:
     tables: tuple[str, ...]
     logs: dict[str, Path]
     folder: Path
+    carried: str = ""
+    direction: str = ""
 
     def table(self, name: str | None = None) -> pa.Table:
         """Return a table of the result, the primary one if no name is given.

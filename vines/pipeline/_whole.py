@@ -48,6 +48,8 @@ def compute_whole(prepared: Prepared, store: Store, planner: Planner, *, replace
             provenance=provenance,
         )
         try:
+            for need in stage.needs:
+                store.result(planner.keys[need]).check_forms()
             batch = body_of(stage.kind.body)(job)
             about = _write(prepared, batch, folder, provenance)
         except Exception as error:  # whatever it is, the other stages go on
@@ -70,6 +72,7 @@ def compute_whole(prepared: Prepared, store: Store, planner: Planner, *, replace
 
 def _input(name: str, result: Result) -> Input:
     form = result.manifest["ingredients"]
+    carry = form["carry"] or {}
     return Input(
         name=name,
         kind=result.manifest["kind"],
@@ -79,6 +82,8 @@ def _input(name: str, result: Result) -> Input:
         tables=result.tables,
         logs=result.logs,
         folder=result.folder,
+        carried=carry.get("axis", ""),
+        direction=carry.get("direction", ""),
     )
 
 

@@ -38,6 +38,10 @@ class Column:
         What it holds, in one line.
     source : str
         Equation or section of the paper, or the page of docs/ that defines it.
+    values : tuple of str
+        The only texts that are allowed; empty if any is.
+    minimum, maximum : float or None
+        Least and largest number allowed. Empty values and nan always are.
     """
 
     name: str
@@ -45,6 +49,29 @@ class Column:
     unit: str
     description: str
     source: str
+    values: tuple[str, ...] = ()
+    minimum: float | None = None
+    maximum: float | None = None
+
+    @property
+    def limited(self) -> bool:
+        """Whether not every value of the type is allowed."""
+        return bool(self.values) or self.minimum is not None or self.maximum is not None
+
+    @property
+    def allowed(self) -> str:
+        """What is allowed, in words; empty if everything is.
+
+        Examples
+        --------
+        >>> table("points").columns[1].allowed
+        '>= 0'
+        """
+        if self.values:
+            return ", ".join(self.values)
+        least = "" if self.minimum is None else f">= {self.minimum:g}"
+        most = "" if self.maximum is None else f"<= {self.maximum:g}"
+        return " and ".join(filter(None, (least, most)))
 
 
 @dataclass(frozen=True, slots=True)
@@ -228,11 +255,17 @@ def _tables() -> dict[str, Table]:
 
 def _read(file: str, form: dict[str, Any]) -> Table:
     try:
-        columns = tuple(Column(**column) for column in form["columns"])
+        columns = tuple(Column(**{**column, "values": tuple(column.get("values", ()))}) for column in form["columns"])
         spec = Table(form["name"], form["description"], form["version"], columns, form.get("stored", True))
     except (KeyError, TypeError) as error:
         raise SchemaError(f"schemas/{file}: {error}; install vines again") from None
     wrong = [column.dtype for column in columns if column.dtype not in DTYPES]
     if wrong or not columns or columns[0].name != "point_id":
         raise SchemaError(f"schemas/{file}: dtypes are {', '.join(DTYPES)}, and the first column is point_id")
+    for column in columns:
+        plain = {"string"} if column.values else {"float64", "int8", "int64"}
+        if column.limited and column.dtype not in plain:
+            raise SchemaError(
+                f"schemas/{file}: {column.name} is {column.dtype}; values are for texts, limits for numbers"
+            )
     return spec

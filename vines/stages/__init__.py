@@ -8,26 +8,33 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from vines.stages._asking import checks, list_tables, query, rows_of, save_query, table
+    from vines.stages._export import export
     from vines.stages._finding import all_logs, find_logs, recordings_folder
     from vines.stages._found import found
     from vines.stages._keeping import Difference, clean, declaration_schema, diff, graph
     from vines.stages._kinds import register_kinds
     from vines.stages._orbit_log import orbit_log
     from vines.stages._parts import load_pipeline, members_of
+    from vines.stages._report import report
+    from vines.stages._rig_running import ingest_folder
     from vines.stages._running import compile_if_cold, list_pipelines, open_store, run, status, warm_up
     from vines.stages._study import init_study
+    from vines.stages.audit import Verification, verify
 
 __all__ = [
     "Difference",
+    "Verification",
     "all_logs",
     "checks",
     "clean",
     "compile_if_cold",
     "declaration_schema",
     "diff",
+    "export",
     "find_logs",
     "found",
     "graph",
+    "ingest_folder",
     "init_study",
     "list_pipelines",
     "list_tables",
@@ -38,15 +45,19 @@ __all__ = [
     "query",
     "recordings_folder",
     "register_kinds",
+    "report",
     "rows_of",
     "run",
     "save_query",
     "status",
     "table",
+    "verify",
     "warm_up",
 ]
 
 _HOME = {
+    "Verification": "audit",
+    "verify": "audit",
     "all_logs": "_finding",
     "orbit_log": "_orbit_log",
     "recordings_folder": "_finding",
@@ -56,9 +67,11 @@ _HOME = {
     "clean": "_keeping",
     "declaration_schema": "_keeping",
     "diff": "_keeping",
+    "export": "_export",
     "find_logs": "_finding",
     "found": "_found",
     "graph": "_keeping",
+    "ingest_folder": "_rig_running",
     "init_study": "_study",
     "list_pipelines": "_running",
     "list_tables": "_asking",
@@ -67,6 +80,7 @@ _HOME = {
     "open_store": "_running",
     "query": "_asking",
     "register_kinds": "_kinds",
+    "report": "_report",
     "rows_of": "_asking",
     "run": "_running",
     "save_query": "_asking",

@@ -12,14 +12,21 @@ from vines.dynamics import no_ball
 from vines.model import PARAMETER_NAMES, Params, Word
 from vines.stages._rows import STATE
 
-__all__ = ["attractor_rows", "coexisting"]
+__all__ = ["attractor_rows", "coexisting", "random_starts"]
 
 SAME = 1e-6
 """Two periodic attractors of one name are one, or mirror images, if their max|x1| and K2/K1 differ by less."""
 
 
 def coexisting(
-    own: Sequence[Attractor], *, random: int, seed: int, settle: float, record: float, watch: float
+    own: Sequence[Attractor],
+    *,
+    random: int,
+    seed: int,
+    settle: float,
+    record: float,
+    watch: float,
+    impacts: bool = False,
 ) -> list[list[tuple[Attractor, int]]]:
     """Return for each point its attractors, no two alike, and how many of the random starts came to each.
 
@@ -34,11 +41,13 @@ def coexisting(
         Seed; the starts of a point follow from it and the parameters alone.
     settle, record, watch : float
         Forcing periods, as for the points themselves.
+    impacts : bool
+        Whether the attractors of random starts keep their impacts.
     """
     found = [[(attractor, 0)] for attractor in own]
     if not random:
         return found
-    starts = np.concatenate([_random_starts(attractor.params, random, seed) for attractor in own])
+    starts = np.concatenate([random_starts(attractor.params, random, seed) for attractor in own])
     columns = np.array([[getattr(attractor.params, name) for name in PARAMETER_NAMES] for attractor in own])
     many = classify_many(
         dict(zip(PARAMETER_NAMES, np.repeat(columns, random, axis=0).T, strict=True)),
@@ -46,6 +55,7 @@ def coexisting(
         settle=settle,
         record=record,
         watch=watch,
+        impacts=impacts,
     )
     ratio, size = many.measures["kinetic_ratio"].tolist(), many.measures["max_abs_x1"].tolist()
     regimes, settled = many.regime.tolist(), many.settled.tolist()
@@ -74,7 +84,7 @@ def _count(
     listed.append((many.attractor(k), 1))
 
 
-def _random_starts(p: Params, random: int, seed: int) -> np.ndarray:
+def random_starts(p: Params, random: int, seed: int) -> np.ndarray:
     """Return random starts, shape (random, 4): x1, v1, x2, v2."""
     bits = np.array(list(p.as_dict().values())).view(np.uint32)
     rng = np.random.default_rng([seed, *bits.tolist()])

@@ -8,6 +8,8 @@ from vines.pipeline import Batch, Job
 __all__ = ["compute"]
 
 RIG = ("M", "c", "k", "b", "r")
+_COLUMNS = {"M": "mass", "m": "ball_mass", "omega": "forcing_frequency"}
+"""SQL does not tell capitals from small letters."""
 
 
 def compute(job: Job) -> Batch:
@@ -19,7 +21,7 @@ def compute(job: Job) -> Batch:
         rows.append(
             {
                 "point_id": point.id,
-                **point.params,
+                **{_COLUMNS.get(name, name): value for name, value in point.params.items()},
                 "omega0": rig.omega0,
                 **{name: getattr(p, name) for name in ("mu", "A", "Omega", "lam")},
                 "status": "ok",

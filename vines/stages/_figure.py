@@ -12,6 +12,7 @@ from vines.stages._diagram import bifurcation_diagram
 from vines.stages._error_map import error_map
 from vines.stages._multipliers import multipliers
 from vines.stages._regime_map import regime_map
+from vines.stages._response import response
 from vines.stages._sheet import sheet
 
 __all__ = ["compute"]
@@ -35,6 +36,8 @@ def compute(job: WholeJob) -> Batch:
         figure = chart(job.inputs, options)
     elif options.plot == "sheet":
         figure = sheet(job.inputs, options)
+    elif options.plot == "response":
+        figure = response(job.inputs, options)
     else:
         figure = bifurcation_diagram(job.inputs, options)
     save(figure, job.folder)

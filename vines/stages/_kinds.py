@@ -15,6 +15,7 @@ from vines.errors import FileMissingError, ParameterError, StateError
 from vines.model import LAM_TABLE_1, Params, PhysicalParams
 from vines.pipeline import Kind, register
 from vines.places import shipped
+from vines.stages._rig_kinds import register_rig_kinds
 
 __all__ = [
     "Amplitudes",
@@ -69,10 +70,11 @@ class SweepOptions(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     Where nothing repeats, a point runs on for `watch` periods before its Lyapunov exponent is believed. `keep` is the
     number of recorded periods whose impacts are kept where the attractor is not periodic; of a periodic one, one
     repetition is; 0 keeps no impacts. At each point `random` further starts are drawn with `seed`, and the table
-    ``attractors`` lists every attractor that they come to beside the point's own.
+    ``attractors`` lists every attractor that they come to beside the point's own. With `start = "random"` the own
+    start is drawn in the same way.
     """
 
-    start: Start = msgspec.field(default_factory=Start)
+    start: Start | Literal["random"] = msgspec.field(default_factory=Start)
     settle: int = 400
     record: int = 64
     watch: int = 512
@@ -175,7 +177,7 @@ class BasinsOptions(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 
 class Cell(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """A panel of a sheet: what it shows of which of the needed stages.
+    """A panel of a figure with panels of several kinds: what it shows of which of the needed stages.
 
     Of runs it shows the two ends of the cavity with the ball (`ends`) or gap and relative velocity (`gap`) over
     `periods` forcing periods, or the phase plane of all of them. Of sweeps and branches that vary one parameter it
@@ -184,9 +186,13 @@ class Cell(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     `families` are the labels of branches, such as ``1:1 symmetric``, all by default. `marks` are the types of
     bifurcations that are marked, each with what is written beside it; all by default. `opacity` is that of simulated
     impacts, where they repeat they add up to solid. `window` and `y` are the parts of the axes that are shown.
+
+    In a ``response`` it shows `energy` (K2/K1 and max|x1|), `max_abs_x1` alone, or `w_dot` of sweeps that are carried
+    along one axis, of their points those that agree with `where`. What then differs beside the carried axis tells
+    curves apart; they get `colours` in ascending order.
     """
 
-    show: Literal["ends", "gap", "phase_plane", "multipliers", "w_dot", "dt", "x1", "phase"]
+    show: Literal["ends", "gap", "phase_plane", "multipliers", "w_dot", "dt", "x1", "phase", "energy", "max_abs_x1"]
     of: tuple[str, ...]
     title: str = ""
     periods: float = 3.0
@@ -195,6 +201,8 @@ class Cell(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     opacity: float | None = None
     window: tuple[float, float] | None = None
     y: tuple[float, float] | None = None
+    where: dict[str, float] = {}
+    colours: tuple[Literal["red", "green", "blue", "black", "orange"], ...] = ("red", "green", "blue")
 
 
 class FigureOptions(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -202,10 +210,11 @@ class FigureOptions(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
     `window` is the part of the varied parameter that is shown; with `mirror` the mirror images of asymmetric orbits are
     drawn too. A sheet has `cells` of several kinds in `columns`, in rows of the `height` given in inches,
-    with `letters` on each panel or each row.
+    with `letters` on each panel or each row. A response has `cells` of sweeps with all attractors that coexist, and a
+    strip with the reduction of max|x1| below each that shows energies.
     """
 
-    plot: Literal["bifurcation", "reduced", "multipliers", "chart", "basins", "sheet", "regimes"]
+    plot: Literal["bifurcation", "reduced", "multipliers", "chart", "basins", "sheet", "response", "regimes"]
     panels: tuple[str, ...] = ()
     title: str = ""
     width: float = 7.0
@@ -230,6 +239,8 @@ def _check_simulation(params: dict[str, float], options: Any) -> None:
         value = getattr(options, name, least)
         if value < least:
             raise ParameterError(f"{name} is {value}, allowed is {name} >= {least}")
+    if options.start == "random":
+        return
     gap = options.start.x1 - options.start.x2
     if abs(gap) > 1:
         raise StateError(
@@ -472,3 +483,4 @@ def register_kinds() -> None:
             files=_claims_file,
         )
     )
+    register_rig_kinds()

@@ -33,7 +33,8 @@ def regime_map(stage: Input) -> RegimeMap:
         )
     first, second = stage.axes
     wanted = [first, second, "regime", "name", "n", "m", "p", "symmetric", "sticks_per_period", "kinetic_ratio"]
-    frame = stage.table().select(wanted).to_pandas()
+    table = stage.table().select(wanted)
+    frame = table.to_pandas()
     x, y = np.unique(frame[first]), np.unique(frame[second])
     where = np.searchsorted(y, frame[second]), np.searchsorted(x, frame[first])
 
@@ -42,14 +43,13 @@ def regime_map(stage: Input) -> RegimeMap:
         out[where] = values
         return out
 
-    names = frame["name"].where(frame["name"].notna(), None).to_numpy(dtype=object)
     return RegimeMap(
         axes=(first, second),
         x=x,
         y=y,
         regime=grid(_classes(frame), -1),
         sticks=grid((frame["sticks_per_period"] > 0).to_numpy(), False),
-        name=grid(names, None),
+        name=grid(np.array(table["name"].to_pylist(), dtype=object), None),
         ratio=grid(frame["kinetic_ratio"].to_numpy(), math.nan),
         caption=", ".join(
             f"${SYMBOLS.get(name, name)} = {value:.4g}$"

@@ -25,6 +25,7 @@ def point_row(
     *,
     carry: str | None,
     before: float,
+    seed: int | None = None,
 ) -> dict[str, Any]:
     """Return the row of ``points`` for one simulated point.
 
@@ -40,6 +41,8 @@ def point_row(
         The carried axis, if the start was the end of another point.
     before : float
         Forcing periods that were run before the attractor was settled for.
+    seed : int, optional
+        With which the start was drawn, if it was.
     """
     p = attractor.params
     m = attractor.measures
@@ -48,6 +51,7 @@ def point_row(
         "point_id": point_id,
         **p.as_dict(),
         "carry": carry,
+        "seed": seed,
         **{name: start[name] for name in STATE},
         **{f"end_{name}": attractor.final[name] for name in STATE},
         "settle_periods": before + attractor.transient,
@@ -90,7 +94,7 @@ def point_row(
     }
 
 
-def impact_rows(point_id: str, params: Params, impacts: np.ndarray) -> dict[str, Any]:
+def impact_rows(point_id: str, params: Params, impacts: np.ndarray, number: int = 0) -> dict[str, Any]:
     """Return columns of ``impacts`` for a run of impacts; the last one has no successor and is left out.
 
     Parameters
@@ -101,11 +105,14 @@ def impact_rows(point_id: str, params: Params, impacts: np.ndarray) -> dict[str,
         Its parameters, repeated in each row so that the table answers alone.
     impacts : (n + 1,) structured array
         As :attr:`Trajectory.impacts`.
+    number : int
+        Number of the attractor at the point.
     """
     n = max(len(impacts) - 1, 0)
     kept = impacts[:n]
     columns: dict[str, Any] = {"point_id": np.full(n, point_id, dtype=object)}
     columns |= {name: np.full(n, value) for name, value in params.as_dict().items()}
+    columns["attractor"] = np.full(n, number, dtype=np.int64)
     columns["index"] = np.arange(n, dtype=np.int64)
     for name in ("t", "side", "phase", "x1", "v1", "x2", "v2", "w_dot", "v1_after", "v2_after"):
         columns[name] = kept[name]

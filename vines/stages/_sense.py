@@ -6,6 +6,8 @@ stage together with those it needs.
 
 from __future__ import annotations
 
+import math
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -87,8 +89,10 @@ def _figure(stage: Stage, pipeline: Pipeline) -> None:
             raise _refuse(stage, pipeline, f"plot regimes needs one sweep over two parameters; it is given {listed}")
     if options.plot == "sheet":
         _sheet(stage, pipeline)
+    elif options.plot == "response":
+        _response(stage, pipeline)
     elif options.cells:
-        raise _refuse(stage, pipeline, f"cells belong to plot = 'sheet', this one is {options.plot!r}")
+        raise _refuse(stage, pipeline, f"cells belong to plot = 'sheet' or 'response', this one is {options.plot!r}")
     if options.plot not in ("bifurcation", "multipliers"):
         return
     axes = {name: tuple(axis.name for axis in pipeline.stages[name].axes) for name in stage.needs}
@@ -101,12 +105,11 @@ def _figure(stage: Stage, pipeline: Pipeline) -> None:
         raise _refuse(stage, pipeline, "multipliers are those of branches; name a stage of kind 'branch' in needs")
 
 
-def _sheet(stage: Stage, pipeline: Pipeline) -> None:
-    from vines.figures import RUN_PANELS
-
+def _cells(stage: Stage, pipeline: Pipeline) -> Iterator[tuple[str, Any, list[Stage]]]:
+    """Yield for each cell of a figure what a message calls it, the cell, and the stages that it shows."""
     options: Any = stage.options
     if not options.cells or options.columns < 1 or options.height <= 0:
-        raise _refuse(stage, pipeline, "a sheet has [[cells]], columns >= 1 and height > 0 inch")
+        raise _refuse(stage, pipeline, f"a {options.plot} has [[cells]], columns >= 1 and height > 0 inch")
     for number, cell in enumerate(options.cells, 1):
         where = f"cell {number} ({cell.show})"
         if not cell.of:
@@ -114,7 +117,31 @@ def _sheet(stage: Stage, pipeline: Pipeline) -> None:
         for name in cell.of:
             if name not in stage.needs:
                 raise _refuse(stage, pipeline, f"{where}: {name!r} is not needed: {nearest(name, stage.needs)}")
-        shown = [pipeline.stages[name] for name in cell.of]
+        yield where, cell, [pipeline.stages[name] for name in cell.of]
+
+
+def _response(stage: Stage, pipeline: Pipeline) -> None:
+    for where, cell, shown in _cells(stage, pipeline):
+        if cell.show not in ("energy", "max_abs_x1", "w_dot"):
+            raise _refuse(stage, pipeline, f"{where}: a response shows energy, max_abs_x1 or w_dot")
+        carried = {one.carry.axis if one.carry is not None else "" for one in shown}
+        if {one.kind.name for one in shown} != {"sweep"} or len(carried) != 1 or carried == {""}:
+            raise _refuse(stage, pipeline, f"{where} shows stages of kind 'sweep' that are carried along one axis")
+        for name, value in cell.where.items():
+            for one in shown:
+                there = {axis.name: axis.values() for axis in one.axes}.get(name) or (one.params.get(name, math.nan),)
+                if value not in there:
+                    near = min(there, key=lambda each: abs(each - value))
+                    known = f"the nearest of its {len(there)} values is {near:.10g}"
+                    raise _refuse(stage, pipeline, f"{where}: {one.name} has no {name} = {value:g}; {known}")
+
+
+def _sheet(stage: Stage, pipeline: Pipeline) -> None:
+    from vines.figures import RUN_PANELS
+
+    for where, cell, shown in _cells(stage, pipeline):
+        if cell.show in ("energy", "max_abs_x1"):
+            raise _refuse(stage, pipeline, f"{where}: energies are shown by plot = 'response'")
         kinds = {one.kind.name for one in shown}
         if cell.show in RUN_PANELS:
             if kinds != {"trajectory"} or (cell.show != "phase_plane" and len(shown) > 1):

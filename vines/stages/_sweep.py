@@ -10,7 +10,7 @@ import pyarrow as pa
 from vines.attractors import Attractor, classify_many, settle
 from vines.model import PARAMETER_NAMES, Params
 from vines.pipeline import Batch, Job
-from vines.stages._coexisting import attractor_rows, coexisting
+from vines.stages._coexisting import attractor_rows, coexisting, random_starts
 from vines.stages._rows import STATE, impact_rows, point_row
 
 __all__ = ["compute", "representative"]
@@ -20,6 +20,7 @@ def compute(job: Job) -> Batch:
     """Settle every point of the job; carried points start where the one before them ended, all others run at once."""
     options: Any = job.options
     starts, own = _along_the_chain(job) if job.carry is not None else _each_for_itself(job)
+    drawn = options.seed if options.start == "random" and job.carry is None else None
     listed = coexisting(
         own,
         random=options.random,
@@ -27,14 +28,17 @@ def compute(job: Job) -> Batch:
         settle=options.settle,
         record=options.record,
         watch=options.watch,
+        impacts=options.keep > 0,
     )
     rows: list[dict[str, Any]] = []
     impacts: list[dict[str, Any]] = []
     attractors: list[dict[str, Any]] = []
     for identity, start, attractor, found in zip(job.points.ids, starts, own, listed, strict=True):
-        rows.append(point_row(identity, attractor, start, carry=job.carry, before=0))
+        rows.append(point_row(identity, attractor, start, carry=job.carry, before=0, seed=drawn))
         if options.keep:
-            impacts.append(impact_rows(identity, attractor.params, representative(attractor, options.keep)))
+            for number, (each, _) in enumerate(found):
+                kept = representative(each, options.keep)
+                impacts.append(impact_rows(identity, each.params, kept, number))
         attractors += attractor_rows(identity, found, options.random)
     if not impacts:
         impacts.append(impact_rows("", own[0].params, own[0].impacts[:0]))
@@ -45,9 +49,10 @@ def compute(job: Job) -> Batch:
 def _along_the_chain(job: Job) -> tuple[list[dict[str, float]], list[Attractor]]:
     """Return starts and attractors where each point starts from the end of the one before."""
     options: Any = job.options
-    start = _start(job)
     if job.start is not None:
         start = {name: float(job.start[f"end_{name}"]) for name in STATE}
+    else:
+        (start,) = _starts(job, 1)
     starts, own = [], []
     for point in job.points:
         attractor = settle(
@@ -70,21 +75,26 @@ def _along_the_chain(job: Job) -> tuple[list[dict[str, float]], list[Attractor]]
 def _each_for_itself(job: Job) -> tuple[list[dict[str, float]], list[Attractor]]:
     """Return starts and attractors where every point starts as the options say."""
     options: Any = job.options
-    start = _start(job)
+    starts = _starts(job, len(job.points))
     many = classify_many(
         {name: job.points.column(name) for name in PARAMETER_NAMES},
-        start,
+        {name: np.array([start[name] for start in starts]) for name in STATE},
         settle=options.settle,
         record=options.record,
         watch=options.watch,
         impacts=options.keep > 0,
     )
-    return [start] * len(many), [many.attractor(k) for k in range(len(many))]
+    return starts, [many.attractor(k) for k in range(len(many))]
 
 
-def _start(job: Job) -> dict[str, float]:
+def _starts(job: Job, count: int) -> list[dict[str, float]]:
+    """Return the starts of the first points: the same for all, or drawn at random for each."""
     options: Any = job.options
-    return {name: float(getattr(options.start, name)) for name in STATE[:4]} | {"phase": 0.0}
+    if options.start == "random":
+        drawn = [random_starts(Params(**point.params), 1, options.seed)[0] for point in job.points[:count]]
+    else:
+        drawn = [[getattr(options.start, name) for name in STATE[:4]]] * count
+    return [dict(zip(STATE, [*map(float, start), 0.0], strict=True)) for start in drawn]
 
 
 def representative(attractor: Attractor, keep: int) -> np.ndarray:

@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from vines.store._garbage import Garbage, find_garbage, remove_garbage
     from vines.store._ids import Ids
     from vines.store._keys import canonical, key_of
-    from vines.store._parquet import TableFile, write_parquet
+    from vines.store._parquet import TableFile, read_parquet, write_parquet
     from vines.store._pools import Located, Part, Pool, commit_part
     from vines.store._provenance import revision, versions
     from vines.store._results import Result, describe_table, read_result
@@ -31,6 +31,7 @@ __all__ = [
     "describe_table",
     "find_garbage",
     "key_of",
+    "read_parquet",
     "read_result",
     "remove_garbage",
     "revision",
@@ -53,6 +54,7 @@ _HOMES = {
     "describe_table": "vines.store._results",
     "find_garbage": "vines.store._garbage",
     "key_of": "vines.store._keys",
+    "read_parquet": "vines.store._parquet",
     "read_result": "vines.store._results",
     "remove_garbage": "vines.store._garbage",
     "revision": "vines.store._provenance",

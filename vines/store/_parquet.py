@@ -1,4 +1,4 @@
-"""Writing a table as one Parquet file, with units and provenance inside; the same bytes each time."""
+"""A table as one Parquet file, with units and provenance inside; the same bytes each time, checked on reading."""
 
 from __future__ import annotations
 
@@ -8,12 +8,13 @@ from types import TracebackType
 from typing import TYPE_CHECKING, Any
 
 from vines import schema
+from vines.errors import SchemaError
 from vines.store._keys import canonical
 
 if TYPE_CHECKING:
     import pyarrow as pa
 
-__all__ = ["ROW_GROUP", "TableFile", "write_parquet"]
+__all__ = ["ROW_GROUP", "TableFile", "read_parquet", "write_parquet"]
 
 ROW_GROUP = 122_880
 """Rows in a row group: DuckDB's vector block, measured best for narrow queries (docs/tables.md)."""
@@ -38,7 +39,7 @@ class TableFile:
     Raises
     ------
     SchemaError
-        If rows do not fit the schema.
+        If rows do not fit the schema, or have a value that it does not allow.
     OSError
         If the file cannot be written.
     """
@@ -59,7 +60,7 @@ class TableFile:
         about = {
             "table": name,
             "version": spec.version,
-            "units": {column.name: column.unit for column in spec.columns if column.unit},
+            "units": schema.units(name),
             "provenance": dict(provenance),
         }
         kept = [column for column in spec.columns if columns is None or column.name in columns]
@@ -116,6 +117,7 @@ class TableFile:
                 # one array a column: pages are cut the same whatever the pieces were
                 group: Any = whole.slice(start, min(ROW_GROUP, rows - start)).combine_chunks()
                 group = schema.cast(self._name, group).select(self._schema.names).combine_chunks()
+                schema.check_values(self._name, group)
                 group = group.replace_schema_metadata(self._schema.metadata)
                 self._writer.write_table(group, row_group_size=ROW_GROUP)
         except pa.ArrowException as error:
@@ -163,3 +165,50 @@ def write_parquet(
     with TableFile(path, name, provenance=provenance, sorted_by=sorted_by, columns=columns) as file:
         file.add(table)
     return file.rows
+
+
+def check_form(path: Path, name: str) -> None:
+    """See that columns, units and version of a stored table are those of the schema; reads no rows.
+
+    Raises
+    ------
+    SchemaError
+        If they are not; one line with the first disagreement and how many more there are.
+    OSError
+        If the file cannot be read.
+    """
+    import pyarrow as pa
+    import pyarrow.parquet as pq
+
+    try:
+        wrong = schema.disagreements(name, pq.read_schema(path))
+    except pa.ArrowException as error:
+        raise OSError(f"{path}: {str(error).splitlines()[0]}") from None
+    if wrong:
+        more = f" (and {len(wrong) - 1} more)" if len(wrong) > 1 else ""
+        raise SchemaError(f"{path}: {wrong[0]}{more}; run its pipeline again, with --force if the file was changed")
+
+
+def read_parquet(path: Path, name: str) -> pa.Table:
+    """Return a stored table, once its columns, units and version are those of the schema.
+
+    Parameters
+    ----------
+    path : Path
+        The file.
+    name : str
+        Table of ``schemas/`` that it should be.
+
+    Raises
+    ------
+    SchemaError, OSError
+        As :func:`check_form`.
+    """
+    import pyarrow as pa
+    import pyarrow.parquet as pq
+
+    check_form(path, name)
+    try:
+        return pq.read_table(path)
+    except pa.ArrowException as error:
+        raise OSError(f"{path}: {str(error).splitlines()[0]}") from None

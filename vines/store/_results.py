@@ -59,13 +59,30 @@ class Result:
         ------
         UnknownNameError
             If there is no such table.
+        SchemaError
+            If the file is not what the schema of the table says.
         """
         wanted = name if name is not None else next(iter(self.tables), "")
         if wanted not in self.tables:
             raise UnknownNameError(f"result {self.key[:12]} has no table {wanted!r}: {nearest(wanted, self.tables)}")
-        import pyarrow.parquet as pq
+        from vines.store._parquet import read_parquet
 
-        return pq.read_table(self.folder / f"{wanted}.parquet")
+        return read_parquet(self.folder / f"{wanted}.parquet", wanted)
+
+    def check_forms(self) -> None:
+        """See that columns, units and versions of all its tables are those of their schemas; reads no rows.
+
+        Raises
+        ------
+        SchemaError
+            If they are not; one line.
+        OSError
+            If a table cannot be read.
+        """
+        from vines.store._parquet import check_form
+
+        for name in self.tables:
+            check_form(self.folder / f"{name}.parquet", name)
 
     def damage(self) -> list[str]:
         """Return what is wrong with the files, one line each; empty if every checksum is right."""
@@ -97,9 +114,7 @@ def read_result(folder: Path) -> Result:
 
 def describe_table(name: str, rows: int) -> dict[str, Any]:
     """Return what a manifest says of a table: rows, columns, and units of those that have one."""
-    columns = schema.table(name).columns
-    units = {column.name: column.unit for column in columns if column.unit}
-    return {"rows": rows, "columns": [column.name for column in columns], "units": units}
+    return {"rows": rows, "columns": list(schema.table(name).names), "units": schema.units(name)}
 
 
 def describe_files(folder: Path) -> dict[str, dict[str, Any]]:

@@ -1,0 +1,131 @@
+"""An export: whole or not at all, the same bytes each time, and open to DuckDB, pandas and polars without vines."""
+
+import csv
+import hashlib
+import json
+import os
+import subprocess
+import sys
+import sysconfig
+from pathlib import Path
+
+import pytest
+
+OTHERS = """
+import importlib.util, json, os, sys
+assert importlib.util.find_spec("vines") is None
+import duckdb, pandas, polars
+folder = sys.argv[1]
+connection = duckdb.connect()
+quoted = folder.replace("'", "''")
+connection.execute(f"SET file_search_path = '{quoted}'")
+connection.execute(open(os.path.join(folder, "load.sql")).read())
+one = lambda sql: connection.sql(sql).fetchall()
+table = os.path.join(folder, "tables", "quickstart.up.points.parquet")
+frame = pandas.read_parquet(table)
+lazy = polars.scan_parquet(table).filter(polars.col("A").is_between(0.02, 0.0201)).collect()
+orbits = polars.read_parquet(os.path.join(folder, "tables", "quickstart.symmetric.orbits.parquet"))
+print(json.dumps({
+    "counts": one("select pipeline, stage, count(*) from points group by all order by stage"),
+    "stage": one('select count(*), min(A) from "quickstart.up"'),
+    "unquoted": one("select count(*) from quickstart.up"),
+    "other": one('select count(*) from "quickstart.up.impacts"'),
+    "lists": one("select word, len(t) from orbits where t[1] >= 0 limit 1"),
+    "empty": one("select count(*) from basins"),
+    "logs": one("select path, len(sha256) from logs order by path"),
+    "pandas": [len(frame), float(frame["A"].min()), frame["name"].iloc[0]],
+    "polars": [lazy.height, orbits.schema["multipliers_re"] == polars.List(polars.Float64)],
+}))
+"""
+
+
+@pytest.fixture(scope="session")
+def exported(quickstart, tmp_path_factory):
+    """Give an export of the quickstart with its logs, in a folder whose name needs quoting."""
+    folder = tmp_path_factory.mktemp("it's here") / "results"
+    told = quickstart.vines("export", folder, "quickstart", "--logs", "--json").stdout
+    return folder, json.loads(told)
+
+
+def without_vines(tmp_path, *arguments):
+    """Run Python in another folder, with the packages of this environment but vines."""
+    packages = tmp_path / "packages"
+    packages.mkdir()
+    for path in Path(sysconfig.get_path("purelib")).iterdir():
+        if "vines" not in path.name and path.suffix not in (".pth", ".egg-link"):
+            (packages / path.name).symlink_to(path)
+    environment = {name: value for name, value in os.environ.items() if not name.startswith("PYTHON")}
+    done = subprocess.run(
+        [sys.executable, "-S", *arguments],
+        capture_output=True,
+        text=True,
+        cwd=tmp_path,
+        env={**environment, "PYTHONPATH": str(packages)},
+        timeout=300,
+        check=False,
+    )
+    assert done.returncode == 0, done.stderr
+    return done.stdout
+
+
+def test_others_open_it_in_another_folder_without_vines(exported, tmp_path):
+    folder, _ = exported
+    found = json.loads(without_vines(tmp_path, "-c", OTHERS, str(folder)))
+    assert ["quickstart", "up", 181] in found["counts"]
+    assert found["stage"] == [[181, 0.015]]
+    assert found["unquoted"] == [[181]]
+    assert found["other"][0][0] > 181
+    assert found["lists"] == [["LR", 2]]
+    assert found["empty"] == [[0]]
+    assert next(path.split("/")[:2] for path, _ in found["logs"]) == ["logs", "quickstart.asymmetric_run"]
+    assert found["pandas"] == [181, 0.015, "1:1"]
+    assert found["polars"] == [3, True]
+
+
+def test_checksums_and_dictionary_cover_everything(exported):
+    folder, told = exported
+    lines = (folder / "SHA256SUMS").read_text().splitlines()
+    summed = dict(reversed(line.split("  ", 1)) for line in lines)
+    there = {path.relative_to(folder).as_posix() for path in folder.rglob("*") if path.is_file()}
+    assert set(summed) == there - {"SHA256SUMS"} == set(told["files"]) - {"SHA256SUMS"}
+    assert all(hashlib.sha256((folder / name).read_bytes()).hexdigest() == sha for name, sha in summed.items())
+    rows = list(csv.DictReader((folder / "dictionary.csv").read_text().splitlines()))
+    units = {(row["table"], row["column"]): row["unit"] for row in rows}
+    assert units["points", "phase"] == "rad"
+    package = json.loads((folder / "datapackage.json").read_text())
+    for resource in package["resources"]:
+        assert summed[resource["path"]] == resource["hash"].removeprefix("sha256:")
+        assert all((resource["path"].split(".")[-2], field["name"]) in units for field in resource["schema"]["fields"])
+    regime = next(r for r in rows if (r["table"], r["column"]) == ("points", "regime"))
+    assert "chaotic" in regime["allowed"]
+    assert (folder / "LICENSE").read_text().strip()
+    assert "cff-version" in (folder / "CITATION.cff").read_text()
+    assert (folder / "declarations" / "quickstart.toml").is_file()
+
+
+def test_the_bytes_do_not_depend_on_when_and_where(exported, quickstart, tmp_path):
+    folder, _ = exported
+    quickstart.vines("export", tmp_path / "again", "quickstart", "--logs")
+    assert (tmp_path / "again" / "SHA256SUMS").read_text() == (folder / "SHA256SUMS").read_text()
+    text = "".join(path.read_text() for path in folder.rglob("*.json")) + (folder / "load.sql").read_text()
+    assert str(quickstart.root) not in text
+    assert '"host"' not in text
+
+
+def test_it_is_written_as_a_whole_or_not_at_all(quickstart, tmp_path):
+    (tmp_path / "full").mkdir()
+    (tmp_path / "full" / "mine.txt").write_text("mine")
+    for folder, words in ((tmp_path / "full", "not an empty folder"), (tmp_path / "no" / "such", "does not exist")):
+        done = quickstart.vines("export", folder, check=False)
+        assert (done.returncode, done.stderr.count("\n")) == (2, 1)
+        assert words in done.stderr
+    done = quickstart.vines("export", tmp_path / "new", "--licence", tmp_path / "none", check=False)
+    assert "becomes LICENSE" in done.stderr
+    done = quickstart.vines("export", tmp_path / "new", "quikstart", check=False)
+    assert "did you mean 'quickstart'" in done.stderr
+    assert [path.name for path in tmp_path.iterdir()] == ["full"]
+    (tmp_path / "empty").mkdir()
+    told = quickstart.vines("export", tmp_path / "empty").stdout
+    assert "begin with" in told
+    assert not (tmp_path / "empty" / "logs").exists()
+    assert "not part of this export" in (tmp_path / "empty" / "README.md").read_text()

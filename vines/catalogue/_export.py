@@ -1,0 +1,221 @@
+"""A copy of results that needs no vines: tables, the SQL of their views, schemas, provenance, checksums."""
+
+from __future__ import annotations
+
+import contextlib
+import csv
+import hashlib
+import io
+import json
+import shutil
+import uuid
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from vines import schema
+from vines.catalogue._readme import readme
+from vines.catalogue._views import list_views
+from vines.errors import StoreError
+from vines.places import shipped
+from vines.store import Result
+
+__all__ = ["Collected", "export_results"]
+
+_LOCAL = ("written", "host")
+"""What a manifest says of when and where, which is no part of the data."""
+
+
+@dataclass(frozen=True, slots=True)
+class Collected:
+    """What is exported.
+
+    Attributes
+    ----------
+    results : sequence of (str, str, Result)
+        Pipeline, stage, result.
+    declarations : mapping of str to str
+        Text of each declaration by the name of its file.
+    titles : mapping of str to str
+        Title of each pipeline.
+    licence, citation : str
+        Texts of LICENSE and CITATION.cff.
+    logs : bool
+        Whether the MCAP logs go along.
+    """
+
+    results: Sequence[tuple[str, str, Result]]
+    declarations: Mapping[str, str]
+    titles: Mapping[str, str]
+    licence: str
+    citation: str
+    logs: bool = False
+
+    def place(self, pipeline: str, stage: str, file: str) -> str | None:
+        """Return where a file of a result lies in the export; None if it does not go along."""
+        name = f"{pipeline}.{stage}"
+        if file.endswith(".parquet"):
+            return f"tables/{name}.{file}"
+        if file.startswith("picture."):
+            return f"figures/{name}{Path(file).suffix}"
+        if file.startswith("logs/"):
+            return f"logs/{name}/{Path(file).name}" if self.logs else None
+        return f"others/{name}/{file}"
+
+
+def export_results(collected: Collected, target: Path) -> list[str]:
+    """Write an export, the whole of it or nothing, and return the names of its files.
+
+    Parameters
+    ----------
+    collected : Collected
+        What goes into it.
+    target : Path
+        Its folder: one that does not exist, or an empty one.
+
+    Raises
+    ------
+    StoreError
+        If the folder is not empty, or a file of a result is missing.
+    """
+    if target.exists() and (not target.is_dir() or any(target.iterdir())):
+        raise StoreError(f"{target} is not an empty folder; name one that is, or that does not exist yet")
+    if not target.parent.is_dir():
+        raise StoreError(f"{target}: the folder {target.parent} does not exist; make it first")
+    with _staged(target) as folder:
+        for pipeline, stage, result in collected.results:
+            for file, path in result.files.items():
+                place = collected.place(pipeline, stage, file)
+                if place is None:
+                    continue
+                if not path.is_file():
+                    raise StoreError(f"{path} is missing; run 'vines verify', and {pipeline!r} again with --force")
+                _copy(path, folder / place)
+            _write(folder / "provenance" / f"{pipeline}.{stage}.json", _provenance(collected, pipeline, stage, result))
+        for name, text in collected.declarations.items():
+            _write(folder / "declarations" / name, text)
+        for name in _tables(collected):
+            _write(folder / "schemas" / f"{name}.toml", (shipped("schemas") / f"{name}.toml").read_text("utf-8"))
+        _write(folder / "LICENSE", collected.licence)
+        _write(folder / "CITATION.cff", collected.citation)
+        _write(folder / "load.sql", _load(collected))
+        _write(folder / "dictionary.csv", _dictionary(collected))
+        _write(folder / "datapackage.json", _datapackage(collected))
+        _write(folder / "README.md", readme(collected.results, collected.titles, collected.logs))
+        names = sorted(path.relative_to(folder).as_posix() for path in folder.rglob("*") if path.is_file())
+        _write(folder / "SHA256SUMS", "".join(f"{_sha256(folder / name)}  {name}\n" for name in names))
+    return [*names, "SHA256SUMS"]
+
+
+@contextlib.contextmanager
+def _staged(target: Path) -> Iterator[Path]:
+    """Give a folder that takes the place of the target once it is whole."""
+    folder = target.parent / f".{target.name}.{uuid.uuid4().hex[:12]}"
+    folder.mkdir()
+    try:
+        yield folder
+        if target.is_dir():
+            target.rmdir()
+        folder.rename(target)
+    finally:
+        shutil.rmtree(folder, ignore_errors=True)
+
+
+def _copy(source: Path, target: Path) -> None:
+    target.parent.mkdir(parents=True, exist_ok=True)
+    shutil.copyfile(source, target)
+
+
+def _write(path: Path, text: str) -> None:
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_text(text, encoding="utf-8", newline="\n")
+
+
+def _sha256(path: Path) -> str:
+    with path.open("rb") as stream:
+        return hashlib.file_digest(stream, "sha256").hexdigest()
+
+
+def _tables(collected: Collected) -> list[str]:
+    """Return the tables that the export has, and ``logs``."""
+    there = {name for _, _, result in collected.results for name in result.tables}
+    return [name for name in schema.tables() if name in there or name == "logs"]
+
+
+def _provenance(collected: Collected, pipeline: str, stage: str, result: Result) -> str:
+    told = {name: value for name, value in result.manifest.items() if name not in _LOCAL}
+    told["files"] = {
+        place: about
+        for file, about in result.manifest["files"].items()
+        if (place := collected.place(pipeline, stage, file)) is not None
+    }
+    return json.dumps(told, indent=1) + "\n"
+
+
+def _load(collected: Collected) -> str:
+    lines = [
+        "-- Makes the views of this export in DuckDB. Paths are relative to this folder: start duckdb in it, or",
+        "-- say first: SET file_search_path = '/path/to/this/folder';",
+    ]
+    for view in list_views(collected.results, collected.place):
+        lines += [f"{each.replace('CREATE VIEW', 'CREATE OR REPLACE VIEW', 1)};" for each in view.statements]
+    return "\n".join(lines) + "\n"
+
+
+def _dictionary(collected: Collected) -> str:
+    stream = io.StringIO()
+    writer = csv.writer(stream, lineterminator="\n")
+    writer.writerow(["table", "column", "type", "unit", "description", "source", "allowed"])
+    for name in _tables(collected):
+        for c in schema.table(name).columns:
+            writer.writerow([name, c.name, c.dtype, c.unit, c.description, c.source, c.allowed])
+    return stream.getvalue()
+
+
+_TYPES = {"bool": "boolean", "float64": "number", "int8": "integer", "int64": "integer", "string": "string"}
+
+
+def _datapackage(collected: Collected) -> str:
+    """Return the description as a Data Package (Frictionless)."""
+    resources = []
+    for pipeline, stage, result in collected.results:
+        for name in result.tables:
+            about = result.manifest["files"][f"{name}.parquet"]
+            resources.append(
+                {
+                    "name": f"{pipeline}.{stage}.{name}",
+                    "path": collected.place(pipeline, stage, f"{name}.parquet"),
+                    "title": f"{schema.table(name).description} ({collected.titles.get(pipeline, pipeline)})",
+                    "format": "parquet",
+                    "mediatype": "application/vnd.apache.parquet",
+                    "bytes": about["bytes"],
+                    "hash": f"sha256:{about['sha256']}",
+                    "schema": {"fields": _fields(name, result.manifest["tables"][name]["columns"])},
+                }
+            )
+    package = {
+        "name": "vines-results",
+        "title": "; ".join(collected.titles[name] for name in sorted(collected.titles)),
+        "licenses": [{"path": "LICENSE"}],
+        "resources": resources,
+    }
+    return json.dumps(package, indent=1, ensure_ascii=False) + "\n"
+
+
+def _fields(name: str, there: Sequence[str]) -> list[dict[str, Any]]:
+    fields = []
+    for column in schema.table(name).columns:
+        if column.name not in there:
+            continue
+        one: dict[str, Any] = {
+            "name": column.name,
+            "type": _TYPES.get(column.dtype, "array"),
+            "unit": column.unit,
+            "description": column.description,
+        }
+        limits = {"enum": list(column.values) or None, "minimum": column.minimum, "maximum": column.maximum}
+        if constraints := {key: value for key, value in limits.items() if value is not None}:
+            one["constraints"] = constraints
+        fields.append(one)
+    return fields

@@ -1,0 +1,26 @@
+"""``vines rig``: measured data in, an honest verdict out. Its commands are imported when they are called."""
+
+from __future__ import annotations
+
+import click
+
+from vines.cli import LazyGroup
+
+COMMANDS = {
+    "init": ("vines.cli._rig_init", "Write a commented template of a run folder."),
+    "inspect": ("vines.cli._rig_inspect", "Show what a raw file holds: channels, units, rates, gaps, clipping."),
+    "ingest": ("vines.cli._rig_ingest", "Read run folders into the catalogue and as MCAP logs."),
+    "campaign": ("vines.cli._rig_campaign", "Make a synthetic sweep up and down with ring-downs."),
+    "synth": ("vines.cli._rig_synth", "Make a run folder of a synthetic rig, its truth sealed."),
+}
+
+
+@click.group("rig", cls=LazyGroup, known=COMMANDS)
+def command() -> None:
+    """Measured data of a rig: look at it, ingest it, or rehearse with a synthetic one.
+
+    \b
+    vines rig init my_run              a template to fill in
+    vines rig inspect recording.tdms   what is in this file?
+    vines rig ingest my_run            into the catalogue; 'vines view' shows it
+    """  # noqa: D301

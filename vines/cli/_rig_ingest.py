@@ -1,0 +1,39 @@
+"""``vines rig ingest``: run folders into the catalogue."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+
+@click.command("ingest")
+@click.argument("folder", type=click.Path(path_type=Path))
+@click.option(
+    "--log-rate",
+    type=click.FloatRange(min=0),
+    default=2048.0,
+    show_default=True,
+    help="Samples a second of a channel in the logs at most; 0 keeps all.",
+)
+def command(folder: Path, log_rate: float) -> None:
+    """Read the run folder FOLDER, or all in it, in SI units on one clock; nothing in it is changed.
+
+    Refused, with the reason: no unit, sign, rate or sensitivity, too many clipped samples, clocks that can't be
+    aligned, channels that contradict each other.
+
+    \b
+    vines rig ingest my_run
+    vines query "select * from rig_channels"
+    vines view rig_my_run.ingest
+    """  # noqa: D301
+    from vines.stages import ingest_folder
+
+    name, runs, summary = ingest_folder(folder, log_rate=log_rate)
+    count = f"{len(runs)} run{'s' if len(runs) > 1 else ''}"
+    if summary is None:
+        click.echo(f"{folder}: nothing to do, its {count} are ingested already and unchanged (pipeline {name})")
+        return
+    click.echo(f"{folder}: {count} ingested; raw files kept byte for byte (SHA256SUMS)")
+    click.echo(f"  vines view {name}.ingest                 look at them")
+    click.echo(f"  vines query \"select * from rig_channels where pipeline = '{name}'\"")

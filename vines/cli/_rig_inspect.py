@@ -1,0 +1,80 @@
+"""``vines rig inspect``: what a raw file holds."""
+
+from __future__ import annotations
+
+import dataclasses
+import json
+import math
+from pathlib import Path
+
+import click
+
+
+@click.command("inspect")
+@click.argument("file", type=click.Path(path_type=Path))
+@click.option("--png", type=click.Path(dir_okay=False, path_type=Path), help="Draw the channels to a picture.")
+@click.option("--json", "as_json", is_flag=True, help="For machines.")
+def command(file: Path, png: Path | None, as_json: bool) -> None:
+    """Show what FILE holds: channels, units, rates, gaps, clipping.
+
+    NI TDMS, UFF dataset 58, MATLAB v4 to v7.3, CSV, HDF5, WAV with its sidecar FILE.json.
+    """
+    from vines.rig import channel_facts, draw_file, spark
+    from vines.rig.formats import read_file
+
+    found = read_file(file)
+    facts = [channel_facts(each) for each in found.channels]
+    if png is not None:
+        draw_file(found, file.name).savefig(png, dpi=150)
+    if as_json:
+        rows = [{key: _plain(value) for key, value in dataclasses.asdict(each).items()} for each in facts]
+        click.echo(
+            json.dumps(
+                {"form": found.form, "started": found.started, "channels": rows, "other": list(found.other)}, indent=1
+            )
+        )
+        return
+    from vines.cli._layout import print_rows
+
+    click.echo(
+        f"{file.name}: {found.form}, {len(facts)} channels" + (f", started {found.started}" if found.started else "")
+    )
+    rows = [
+        [
+            each.name,
+            each.unit or "not stated",
+            f"{each.rate:.9g}" if each.rate else "not stated",
+            str(each.samples),
+            f"{each.samples / each.rate:.6g}" if each.rate else "",
+            f"{each.least:.4g}",
+            f"{each.largest:.4g}",
+            f"{each.rms:.4g}",
+            str(each.clipped),
+            spark(channel, 24),
+        ]
+        for each, channel in zip(facts, found.channels, strict=True)
+    ]
+    heads = [
+        "channel",
+        "unit",
+        "rate [Hz]",
+        "samples",
+        "length [s]",
+        "least",
+        "largest",
+        "rms",
+        "clipped",
+        "size in time",
+    ]
+    print_rows(heads, rows)
+    for each in facts:
+        if each.gaps:
+            click.echo(f"{each.name}: {each.gaps}")
+    if found.other:
+        click.echo(f"also in it, no channels: {', '.join(found.other[:8])}{' ...' if len(found.other) > 8 else ''}")
+    if png is not None:
+        click.echo(f"wrote {png}")
+
+
+def _plain(value: object) -> object:
+    return None if isinstance(value, float) and not math.isfinite(value) else value

@@ -1,0 +1,247 @@
+"""What is kept of a trajectory in a lane: its rows wait in a buffer and are then digested together.
+
+Measures and exponents are also formed over eight equal parts of the recorded time, whose scatter gives the standard
+errors (batch means).
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from vines.dynamics import _advance as col
+from vines.dynamics._jit import fused_njit, njit
+from vines.dynamics._tangent import flow_basis, jump_basis, orthonormalise
+from vines.dynamics._totals import (
+    DURATION,
+    ENERGY_CHANGE,
+    MAX_ABS_X1,
+    T_MAX_ABS_X1,
+    TOTALS,
+    V1_SQUARE,
+    V2_SQUARE,
+    X1_SQUARE,
+    add_segment,
+    count_event,
+    segment_state,
+    state_energy,
+)
+
+__all__ = ["BATCHES", "DEPTH", "arrange", "close_record", "digest", "keep_row", "new_record", "open_record"]
+
+BATCHES = 8
+"""Equal parts of the recorded time for standard errors, as many as `vines.attractors` takes."""
+
+DEPTH = 16
+"""Rows of a lane that wait until they are digested; those of all lanes stay in the second cache."""
+
+DEAD = 1e-150
+"""Growth below which a direction counts as gone: sticking removes it exactly."""
+
+
+@njit
+def new_record(lanes, what_totals, what_growth):
+    """Return empty arrays for the records of so many lanes, of length 0 for what is not asked for.
+
+    They are: rows that wait and how many, totals, those of the running batch, measures by batch, disturbances, their
+    growth by batch, and the number of the running batch.
+    """
+    n = lanes if what_totals else 0
+    m = lanes if what_growth else 0
+    return (
+        np.zeros((lanes, DEPTH + 1, col.ROW)),
+        np.zeros(lanes, dtype=np.int64),
+        np.zeros((n, TOTALS)),
+        np.zeros((n, TOTALS)),
+        np.zeros((n, BATCHES, 3)),
+        np.zeros((m, 4, 4)),
+        np.zeros((m, BATCHES, 5)),
+        np.zeros(lanes, dtype=np.int64),
+    )
+
+
+@njit
+def open_record(c, record, i, mode, x1, v1, x2, v2, phase):
+    """Begin the part of a run that is kept."""
+    rows, count, total, part, values, basis, growth, batch = record
+    row = rows[i, 0]
+    row[:] = 0.0
+    row[col.KIND] = col.START
+    row[col.PHASE] = phase
+    row[col.X1], row[col.V1], row[col.A_V1] = x1, v1, v1
+    row[col.X2], row[col.V2], row[col.A_V2] = x2, v2, v2
+    row[col.MODE] = mode
+    count[i] = 1
+    batch[i] = 0
+    if total.shape[0]:
+        total[i, :] = 0.0
+        part[i, :] = 0.0
+        part[i, MAX_ABS_X1] = abs(x1)
+        total[i, ENERGY_CHANGE] = -state_energy(c, x1, v1, v2, phase)
+        values[i, :, :] = 0.0
+    if basis.shape[0]:
+        basis[i, :, :] = np.eye(4)
+        growth[i, :, :] = 0.0
+
+
+@fused_njit
+def keep_row(rows, count, i):
+    """Take in the row that has been written to the first free place; say whether the buffer is now full."""
+    k = count[i]
+    # The flight in which the recording began is older than it.
+    if rows[i, k - 1, col.KIND] == col.START:
+        rows[i, k, col.TAU] = rows[i, k, col.TIME] - rows[i, k - 1, col.TIME]
+    count[i] = k + 1
+    return k == DEPTH
+
+
+@njit
+def _close_batch(mu, part, total, values):
+    """Add a part to the totals and keep its measures."""
+    for k in range(TOTALS):
+        if k not in (MAX_ABS_X1, T_MAX_ABS_X1, ENERGY_CHANGE):
+            total[k] += part[k]
+    if part[MAX_ABS_X1] > total[MAX_ABS_X1]:
+        total[MAX_ABS_X1], total[T_MAX_ABS_X1] = part[MAX_ABS_X1], part[T_MAX_ABS_X1]
+    values[0] = mu * part[V2_SQUARE] / part[V1_SQUARE]
+    values[1] = part[MAX_ABS_X1]
+    values[2] = math.sqrt(max(part[X1_SQUARE], 0.0) / part[DURATION])
+    part[:] = 0.0
+
+
+@njit
+def _digest_energies(c, rows, n, part, total, values, batch, width):
+    """Add the segments between n rows, cut where a batch ends, and the losses at their events; return the batch."""
+    for j in range(1, n):
+        row = rows[j]
+        last = rows[j - 1]
+        begins, length = last[col.TIME], row[col.TAU]
+        x1, v1, v2, phase = last[col.X1], last[col.A_V1], last[col.A_V2], last[col.PHASE]
+        gone = 0.0
+        while batch < BATCHES - 1 and begins + length > (batch + 1) * width:
+            cut = min(max((batch + 1) * width - begins, gone), length)
+            add_segment(c, part, last[col.MODE], begins + gone, x1, v1, v2, phase, cut - gone)
+            _close_batch(c.mu, part, total, values[batch])
+            batch += 1
+            x1, v1, _, v2, phase = segment_state(c, last, cut)
+            gone = cut
+            part[MAX_ABS_X1], part[T_MAX_ABS_X1] = abs(x1), begins + gone
+        add_segment(c, part, last[col.MODE], begins + gone, x1, v1, v2, phase, length - gone)
+        if row[col.KIND] == col.IMPACT or row[col.KIND] == col.STICK:
+            count_event(c, part, row)
+    return batch
+
+
+@njit
+def _digest_growth(c, rows, n, Y, growth, width):
+    """Carry disturbances over n rows; their growth goes to the batch in which a row lies."""
+    gains = np.empty(4)
+    product = np.ones(4)
+    running = min(int(rows[1, col.TIME] / width), BATCHES - 1)
+    for j in range(1, n):
+        batch = min(int(rows[j, col.TIME] / width), BATCHES - 1)
+        if batch != running:
+            _log_growth(product, growth[running])
+            running = batch
+        flow_basis(c, rows[j - 1, col.MODE], rows[j, col.TAU], Y)
+        jump_basis(c, rows[j], Y)
+        orthonormalise(Y, gains)
+        growth[running, 4] += rows[j, col.TAU]
+        for k in range(4):
+            product[k] *= gains[k]
+            if not DEAD < product[k] < 1.0 / DEAD:
+                _log_growth(product, growth[running])
+    _log_growth(product, growth[running])
+
+
+@njit
+def _log_growth(product, growth):
+    """Move growth from factors to logarithms: one logarithm for many events."""
+    for k in range(4):
+        growth[k] += math.log(product[k]) if product[k] > 0.0 else -math.inf
+        product[k] = 1.0
+
+
+@njit
+def digest(c, record, i, length, what_totals, what_growth, what_impacts, events, filled, who):
+    """Digest the rows that wait in a lane; return how much of `events` is filled, -1 if it is full."""
+    rows, count, total, part, values, basis, growth, batch = record
+    n = count[i]
+    if n > 1:
+        width = length / BATCHES
+        if what_totals:
+            batch[i] = _digest_energies(c, rows[i], n, part[i], total[i], values[i], batch[i], width)
+        if what_growth:
+            _digest_growth(c, rows[i], n, basis[i], growth[i], width)
+        if what_impacts:
+            for j in range(1, n):
+                if rows[i, j, col.KIND] != col.IMPACT:
+                    continue
+                if filled >= events.shape[0]:
+                    return -1
+                events[filled, : col.ROW] = rows[i, j]
+                events[filled, col.ROW] = who
+                filled += 1
+        rows[i, 0] = rows[i, n - 1]
+        count[i] = 1
+    return filled
+
+
+@njit
+def _scatter(values, errors):
+    """Put the standard errors of the means of columns of `values`, one row a batch, into `errors`."""
+    n = values.shape[0]
+    for k in range(errors.shape[0]):
+        mean = 0.0
+        for b in range(n):
+            mean += values[b, k] / n
+        square = 0.0
+        for b in range(n):
+            square += (values[b, k] - mean) ** 2
+        errors[k] = math.sqrt(square / (n * (n - 1.0)))
+
+
+@njit
+def close_record(c, record, i, energy, who, totals, errors, growths, growth_errors):
+    """Write what a record has gathered to row `who`; standard errors are nan if the run ended before its time."""
+    _, _, total, part, values, _, growth, batch = record
+    if total.shape[0]:
+        whole = batch[i] == BATCHES - 1 and part[i, DURATION] > 0.0
+        _close_batch(c.mu, part[i], total[i], values[i, batch[i]])
+        total[i, ENERGY_CHANGE] += energy
+        totals[who] = total[i]
+        errors[who, :] = math.nan
+        if whole:
+            _scatter(values[i], errors[who])
+    if growth.shape[0]:
+        rates = np.empty((BATCHES, 4))
+        growths[who, :] = 0.0
+        for b in range(BATCHES):
+            growths[who] += growth[i, b]
+            rates[b] = growth[i, b, :4] / growth[i, b, 4]
+        _scatter(rates, growth_errors[who])
+        for k in range(4):
+            if growths[who, k] == -math.inf:
+                growth_errors[who, k] = 0.0
+
+
+@njit
+def arrange(events, runs, start, out):
+    """Sort impacts, the number of their run last, by run, keeping the order of time, into records of RUN_IMPACT."""
+    begins = np.zeros(runs + 1, dtype=np.int64)
+    for k in range(events.shape[0]):
+        begins[int(events[k, col.ROW]) + 1] += 1
+    for run in range(runs):
+        begins[run + 1] += begins[run]
+    place = begins.copy()
+    for k in range(events.shape[0]):
+        row = events[k]
+        run = int(row[col.ROW])
+        one = out[place[run]]
+        one.run = run + start
+        one.index = place[run] - begins[run]
+        place[run] += 1
+        one.t, one.side, one.phase = row[col.TIME], int(row[col.SIDE]), row[col.PHASE]
+        one.x1, one.v1, one.x2, one.v2 = row[col.X1], row[col.V1], row[col.X2], row[col.V2]
+        one.v1_after, one.v2_after, one.w_dot = row[col.A_V1], row[col.A_V2], row[col.V1] - row[col.V2]

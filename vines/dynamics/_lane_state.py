@@ -1,0 +1,157 @@
+"""Between a lane and the scalar kernel: put a state into a lane, take it out, write the row of its impact."""
+
+from __future__ import annotations
+
+import math
+
+from vines.dynamics import _advance as col
+from vines.dynamics import _lane_fields as f
+from vines.dynamics._contact import first_step
+from vines.dynamics._flight import advance_phase, phasors, turn
+from vines.dynamics._jit import njit
+from vines.dynamics._sincos import sincos
+from vines.dynamics._sticking import merges
+
+__all__ = ["fill_lane", "may_fly", "row_of", "take_lane"]
+
+LANE_WINDOW = 1.4
+"""Longest step of a lane, in units of the shortest time scale; half an angle stays below pi/4."""
+
+LANE_NEAR = 1e-3
+"""Longest last step to a contact; the Taylor polynomial of sixth order is exact to rounding over it."""
+
+LANE_LARGE = 256.0
+"""Steady amplitude above which the scalar kernel takes every flight: lanes keep free and forced motion apart."""
+
+
+@njit
+def fill_lane(c, state, L, i, length):
+    """Put a lane where the scalar state is, in flight; say whether it can run there."""
+    wall = state[col.S_WALL]
+    released = state[col.S_RELEASED] != 0.0
+    x, v, phase = state[col.S_X1], state[col.S_V1], state[col.S_PHASE]
+    forced = math.sqrt(c.free.qr**2 + c.free.qi**2)
+    if not forced <= LANE_LARGE:
+        return False
+    ur, ui, gr, gi = phasors(c.free, c.Omega, x, v, phase)
+    step = 0.0
+    if wall != 0.0:
+        step = first_step(c, ur, ui, gr, gi, state[col.S_V2], int(wall), released)
+        if step < 1e-8:
+            return False
+    fastest = max(1.0, c.Omega)
+    elapsed = state[col.S_T] + state[col.S_T_LOW]
+    left = length - elapsed
+    step = min(step, LANE_WINDOW / fastest)
+    if left <= step + 1e-9:
+        return False
+    L[f.HALF + i] = c.free.half
+    L[f.GAMMA + i] = c.free.gamma
+    L[f.INVERSE + i] = 1.0 / c.free.gamma
+    L[f.OMEGA + i] = c.Omega
+    L[f.LAM + i] = c.lam
+    L[f.PASS1 + i] = c.pass1
+    L[f.PASS2 + i] = c.pass2
+    L[f.Q_RE + i] = c.free.qr
+    L[f.Q_IM + i] = c.free.qi
+    L[f.FORCED5 + i] = forced * c.Omega5
+    L[f.WINDOW + i] = LANE_WINDOW / fastest
+    L[f.NEAR + i] = LANE_NEAR / fastest
+    L[f.CORRECTION + i] = c.correction
+    L[f.PERIOD + i] = c.period
+    sine, cosine = sincos(phase)
+    xh = x - (c.free.qr * cosine - c.free.qi * sine)
+    vh = v + c.Omega * (c.free.qr * sine + c.free.qi * cosine)
+    rest = (vh + c.free.half * xh) * c.free.inverse
+    L[f.X_FREE + i] = xh
+    L[f.V_FREE + i] = vh
+    L[f.COS + i] = cosine
+    L[f.SIN + i] = sine
+    L[f.BALL + i] = state[col.S_X2]
+    L[f.SPEED + i] = state[col.S_V2]
+    L[f.LEFT + i] = left
+    L[f.MOVE + i] = step
+    L[f.FREE5 + i] = math.sqrt(xh * xh + rest * rest)
+    L[f.POLISH + i] = 0.0
+    L[f.TAU + i] = 0.0
+    L[f.WALL + i] = wall
+    L[f.RELEASED + i] = 1.0 if released else 0.0
+    L[f.CHAIN + i] = 0.0 if released or state[col.S_RUN_SIDE] != wall else state[col.S_RUN]
+    L[f.BUSY + i] = state[col.S_PERIOD_EVENTS]
+    L[f.BEGAN + i] = left + (elapsed - state[col.S_PERIOD_START])
+    L[f.WAITS + i] = 0.0
+    L[f.HIT + i] = 0.0
+    return True
+
+
+@njit
+def _clock(omega, period, phase, phase0, roughly):
+    """Return the time since `phase0` was the phase: exact to the rounding of the phase, its period from `roughly`."""
+    part = advance_phase(phase - phase0, 0.0) / omega
+    return part + period * round((roughly - part) / period)
+
+
+@njit
+def take_lane(c, L, i, state, length, phase0):
+    """Put the scalar state where the flight of a lane began."""
+    tau = L[f.TAU + i]
+    o = c.free
+    xh, vh = L[f.X_FREE + i], L[f.V_FREE + i]
+    # The free part goes back by itself: long after its start it is far below the rounding of the whole.
+    ur, ui, _, _ = turn(o, c.Omega, xh, -(vh + o.half * xh) * o.inverse, 0.0, 0.0, -tau)
+    phase = advance_phase(math.atan2(L[f.SIN + i], L[f.COS + i]), -c.Omega * tau)
+    sine, cosine = sincos(phase)
+    x = ur + (o.qr * cosine - o.qi * sine)
+    v = -o.half * ur - o.gamma * ui - c.Omega * (o.qr * sine + o.qi * cosine)
+    wall = L[f.WALL + i]
+    began = _clock(c.Omega, c.period, phase, phase0, length - (L[f.LEFT + i] + tau))
+    state[:] = 0.0
+    state[col.S_WALL] = wall
+    state[col.S_RELEASED] = L[f.RELEASED + i]
+    state[col.S_X1] = x
+    state[col.S_V1] = v
+    state[col.S_X2] = x - wall if wall != 0.0 else L[f.BALL + i] - L[f.SPEED + i] * tau
+    state[col.S_V2] = L[f.SPEED + i]
+    state[col.S_PHASE] = phase
+    state[col.S_T] = began
+    state[col.S_RUN] = L[f.CHAIN + i]
+    state[col.S_RUN_SIDE] = wall
+    state[col.S_PERIOD_START] = length - L[f.BEGAN + i]
+    state[col.S_PERIOD_EVENTS] = L[f.BUSY + i]
+    # Only just after an impact is there a question whether the ball leaves.
+    struck = wall != 0.0 and tau == 0.0 and L[f.RELEASED + i] == 0.0
+    state[col.S_DECIDE] = 1.0 if struck else 0.0
+
+
+@njit
+def may_fly(c, state):
+    """Say whether the scalar state is that of an ordinary flight."""
+    if state[col.S_MODE] != 0.0:
+        return False
+    if state[col.S_DECIDE] != 0.0:
+        wall = state[col.S_WALL]
+        ur, ui, gr, gi = phasors(c.free, c.Omega, state[col.S_X1], state[col.S_V1], state[col.S_PHASE])
+        speed = max(wall * (state[col.S_V2] - state[col.S_V1]), 0.0)
+        return not merges(c, int(wall), speed, ur, ui, gr, gi, state[col.S_X2])
+    return True
+
+
+@njit
+def row_of(L, i, row, length, phase0):
+    """Write the row of the impact that a lane had in this tick."""
+    sine, cosine = L[f.SIN + i], L[f.COS + i]
+    omega = L[f.OMEGA + i]
+    phase = advance_phase(math.atan2(sine, cosine), 0.0)
+    row[col.KIND] = col.IMPACT
+    row[col.SIDE] = L[f.WALL + i]
+    row[col.TIME] = _clock(omega, L[f.PERIOD + i], phase, phase0, length - L[f.LEFT + i])
+    row[col.TAU] = L[f.FLIGHT + i]
+    row[col.PHASE] = phase
+    row[col.X1] = L[f.X_FREE + i] + (L[f.Q_RE + i] * cosine - L[f.Q_IM + i] * sine)
+    row[col.V1] = L[f.BEFORE1 + i]
+    row[col.X2] = L[f.BALL + i]
+    row[col.V2] = L[f.BEFORE2 + i]
+    row[col.A_V1] = L[f.V_FREE + i] - omega * (L[f.Q_RE + i] * sine + L[f.Q_IM + i] * cosine)
+    row[col.A_V2] = L[f.SPEED + i]
+    row[col.MODE] = 0.0
+    row[col.RUN] = 0.0

@@ -1,0 +1,152 @@
+"""What a raw file holds, before anything is known of its sensors: rates, gaps, clipping, range."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from vines.errors import RigError
+from vines.rig._calibrate import even_rate
+from vines.rig.formats import RawChannel, RawFile
+
+__all__ = ["ChannelFacts", "channel_facts", "draw_file", "spark"]
+
+_BARS = " ▁▂▃▄▅▆▇█"
+_FLAT = 4
+_MOST_DRAWN = 8
+
+
+@dataclass(frozen=True, slots=True)
+class ChannelFacts:
+    """What can be said of a channel from its file alone.
+
+    Attributes
+    ----------
+    name : str
+        As in the file.
+    unit : str or None
+        As written.
+    rate : float or None
+        Samples a second.
+    samples : int
+        Their number.
+    least, largest, mean, rms : float
+        Of the finite samples, in their unit; rms about the mean.
+    gaps : str
+        What is wrong with the times or where samples are missing, in words; empty if nothing is.
+    clipped : int
+        Samples that stay at the largest or least value for four and more.
+    """
+
+    name: str
+    unit: str | None
+    rate: float | None
+    samples: int
+    least: float
+    largest: float
+    mean: float
+    rms: float
+    gaps: str
+    clipped: int
+
+
+def channel_facts(channel: RawChannel) -> ChannelFacts:
+    """Look at a channel."""
+    values = np.asarray(channel.values, np.float64)
+    finite = np.isfinite(values)
+    good = values[finite]
+    said = []
+    rate = channel.rate
+    if channel.times is not None:
+        try:
+            rate = even_rate(channel.times, "")
+        except RigError as uneven:
+            said.append(str(uneven).removeprefix(": ").split(";")[0])
+    if not finite.all():
+        said.append(f"{int((~finite).sum())} samples are no numbers, the first at {int((~finite).argmax())}")
+    if not len(good):
+        good = np.array([np.nan])
+    return ChannelFacts(
+        name=channel.name,
+        unit=channel.unit,
+        rate=rate,
+        samples=len(values),
+        least=float(good.min()),
+        largest=float(good.max()),
+        mean=float(good.mean()),
+        rms=float(np.std(good)),
+        gaps="; ".join(said),
+        clipped=_flat(good),
+    )
+
+
+def _flat(values: npt.NDArray[np.float64]) -> int:
+    """Return how many samples lie in stretches of four and more at the largest or least value."""
+    if len(values) < _FLAT or values.min() == values.max():
+        return 0
+    total = 0
+    # A channel with few levels, such as a digital line, stays at its ends and is not clipped.
+    if len(np.unique(values[:4096])) <= 16:
+        return 0
+    for extreme in (values.max(), values.min()):
+        edges = np.flatnonzero(np.diff(np.concatenate([[0], values == extreme, [0]])))
+        lengths = np.diff(edges)[::2]
+        total += int(lengths[lengths >= _FLAT].sum())
+    return total
+
+
+def spark(channel: RawChannel, width: int = 48) -> str:
+    """Return a line of bars: the largest magnitude about the mean in each part of the record.
+
+    Examples
+    --------
+    >>> spark(RawChannel("a", np.array([0.0, 0.0, 1.0, -1.0, 3.0, -3.0])), width=3)
+    ' ▃█'
+    """
+    values = np.nan_to_num(np.asarray(channel.values, np.float64))
+    values = np.abs(values - values.mean())
+    parts = [part.max() for part in np.array_split(values, min(width, len(values))) if len(part)]
+    top = max(parts)
+    if not top > 0:
+        return _BARS[1] * len(parts)
+    return "".join(_BARS[round(8 * float(part) / float(top))] for part in parts)
+
+
+def draw_file(file: RawFile, title: str) -> Any:
+    """Return a figure of a file: a panel a channel, the envelope of its samples against time.
+
+    Parameters
+    ----------
+    file : RawFile
+        What was read; at most its first eight channels are drawn.
+    title : str
+        Above the panels.
+    """
+    from matplotlib.figure import Figure
+
+    shown = file.channels[:_MOST_DRAWN]
+    figure = Figure(figsize=(7.0, 0.6 + 1.15 * len(shown)), layout="constrained")
+    axes = figure.subplots(len(shown), 1, squeeze=False)[:, 0]
+    for axis, channel in zip(axes, shown, strict=True):
+        values = np.asarray(channel.values, np.float64)
+        facts = channel_facts(channel)
+        parts = min(1200, max(1, len(values) // 2))
+        count = len(values) // parts
+        cut = values[: count * parts].reshape(parts, count)
+        t = (np.arange(parts) + 0.5) * count / (facts.rate or 1.0)
+        if count > 2:
+            axis.fill_between(t, cut.min(axis=1), cut.max(axis=1), color="#4477aa", linewidth=0.3)
+        else:
+            axis.plot(np.arange(len(values)) / (facts.rate or 1.0), values, color="#4477aa", linewidth=0.7)
+        axis.set_ylabel(f"[{channel.unit}]" if channel.unit else "unit unknown")
+        axis.set_title(channel.name, loc="left", fontsize="small")
+        axis.spines[["top", "right"]].set_visible(False)
+        axis.margins(x=0)
+        axis.label_outer()
+    axes[-1].set_xlabel("time [s]" if all(channel_facts(each).rate for each in shown) else "sample")
+    left = len(file.channels) - len(shown)
+    figure.suptitle(title + (f" (and {left} more channels)" if left else ""), fontsize="medium")
+    return figure

@@ -1,0 +1,97 @@
+"""The kinds of stages of a rig: light specifications, as in :mod:`vines.stages._kinds`."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import msgspec
+
+from vines.errors import ParameterError
+from vines.pipeline import Kind, register
+
+__all__ = ["IngestOptions", "SynthOptions", "register_rig_kinds"]
+
+
+class SynthOptions(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """A synthetic campaign: a sweep of the base amplitude up and down with ring-downs between.
+
+    `amplitudes` are A = E/b in rising order, `settings` those of the synthetic rig (docs/rig.md), `draw` draws its
+    imperfections over their ranges, `warming` is the change of temperature over the campaign [K].
+    """
+
+    amplitudes: tuple[float, ...]
+    seed: int = 0
+    draw: bool = False
+    warming: float = 0.0
+    settings: dict[str, Any] = {}
+
+
+class IngestOptions(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """Run folders at or below `folder` (from the root of the project), or those that the needed stage made.
+
+    `log_rate` is the number of samples a second of a channel in the logs at most; 0 keeps all.
+    """
+
+    folder: str = ""
+    log_rate: float = 2048.0
+
+
+def _check_synth(params: dict[str, float], options: Any) -> None:
+    del params
+    if (
+        not options.amplitudes
+        or list(options.amplitudes) != sorted(set(options.amplitudes))
+        or options.amplitudes[0] <= 0
+    ):
+        raise ParameterError(f"amplitudes are {list(options.amplitudes)}, allowed are positive numbers in rising order")
+    if options.seed < 0:
+        raise ParameterError(f"seed is {options.seed}, allowed is seed >= 0")
+
+
+def _check_ingest(params: dict[str, float], options: Any) -> None:
+    del params
+    if options.log_rate < 0:
+        raise ParameterError(f"log_rate is {options.log_rate:g}, allowed is log_rate >= 0")
+
+
+def _run_files(options: Any, root: Path) -> tuple[Path, ...]:
+    """Return every file of the run folders, because the result depends on their contents."""
+    if not options.folder:
+        return ()
+    from vines.rig import find_runs, read_folder
+
+    files: list[Path] = []
+    for path in find_runs(root / options.folder):
+        folder = read_folder(path)
+        files += [path / "run.json", path / "channels.tsv", *folder.raw_files, *folder.sidecars]
+    return tuple(files)
+
+
+def register_rig_kinds() -> None:
+    """Make the kinds of a rig known to declarations."""
+    register(
+        Kind(
+            name="synth",
+            summary="run folders of a synthetic rig, a sweep up and down with ring-downs; their truth is sealed",
+            shape="whole",
+            options=SynthOptions,
+            body="vines.stages._rig_synth:compute",
+            tables=("rig_made",),
+            check=_check_synth,
+        )
+    )
+    register(
+        Kind(
+            name="ingest",
+            summary="run folders of a rig in SI units: raw files kept, MCAP logs, and what was measured",
+            shape="whole",
+            options=IngestOptions,
+            body="vines.stages._rig_ingest:compute",
+            tables=("rig_runs", "rig_channels"),
+            needs=True,
+            logs=True,
+            check=_check_ingest,
+            files=_run_files,
+        )
+    )

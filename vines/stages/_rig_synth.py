@@ -1,0 +1,24 @@
+"""Body of the kind ``synth``: the run folders of a synthetic campaign."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from vines.pipeline import Batch, WholeJob
+from vines.rig.synth import make_campaign
+
+__all__ = ["compute"]
+
+
+def compute(job: WholeJob) -> Batch:
+    """Make the campaign below ``runs/`` and its truth below ``sealed/``."""
+    options: Any = job.options
+    rows = make_campaign(
+        job.folder / "runs",
+        amplitudes=options.amplitudes,
+        seed=options.seed,
+        draw=options.draw,
+        warming=options.warming,
+        given=options.settings,
+    )
+    return Batch(tables={"rig_made": rows})

@@ -1,0 +1,161 @@
+"""Points computed again by the body of their stage, and starts of basins by settling from them."""
+
+from __future__ import annotations
+
+import tempfile
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from vines import schema
+from vines.stages.audit._compare import (
+    TOLERANCE,
+    Comparison,
+    compare_rows,
+    compare_within_errors,
+    params_of,
+    stored_row,
+)
+
+if TYPE_CHECKING:
+    from vines.attractors import Attractor
+    from vines.store import Result
+
+__all__ = ["PointsAgain", "start_again"]
+
+_STATE = ("x1", "v1", "x2", "v2", "phase")
+_REGULAR = ("periodic", "no_impact")
+_KINDS = ("sweep", "trajectory", "reduced")
+"""Kinds whose points are each computed for themselves in at most seconds."""
+_PROMPT = 600
+"""Forcing periods within which a start comes to its attractor without a chaotic transient."""
+_SAME = 1e-6
+"""As in the basins themselves: two periodic attractors whose measures differ by less are one."""
+
+
+class PointsAgain:
+    """Computes points again; each only once, though several of its rows may be drawn."""
+
+    def __init__(self) -> None:
+        self._known: dict[tuple[str, str], tuple[dict[str, list[dict[str, Any]]], dict[str, list[dict[str, Any]]]]] = {}
+
+    @staticmethod
+    def can(result: Result) -> bool:
+        """Say whether points of this result can be computed again from their rows."""
+        return result.manifest["kind"] in _KINDS
+
+    def compare(self, result: Result, table: str, place: int) -> tuple[float, str]:
+        """Compute the point of a row again and compare the rows that it has in the table."""
+        point = stored_row(result, table, place)["point_id"]
+        key = (result.key, point)
+        if key not in self._known:
+            stored = _rows_of(result, point)
+            self._known[key] = (stored, _compute(result, stored[result.tables[0]][0]))
+        stored, again = self._known[key]
+        comparison = Comparison()
+        primary = stored[result.tables[0]][0]
+        if primary.get("status") == "failed":
+            return comparison.told
+        regular = primary.get("regime") is None or (primary["settled"] and primary["regime"] in _REGULAR)
+        if not regular:
+            if table == "points":
+                compare_within_errors(comparison, primary, again["points"][0])
+            return comparison.told
+        # the impacts of other attractors at the point may be chaotic
+        ours, theirs = (
+            [row for row in rows[table] if table != "impacts" or not row.get("attractor")] for rows in (stored, again)
+        )
+        comparison.same("number of rows", len(ours), len(theirs))
+        for one, other in zip(ours, theirs, strict=False):
+            compare_rows(comparison, table, one, other, leave=() if _settled(one) else _ROUGH)
+        return comparison.told
+
+
+_ROUGH = tuple(
+    c.name for c in schema.table("attractors").columns if c.dtype == "float64" and c.name not in ("mu", "A", "Omega")
+)
+
+
+def _settled(row: dict[str, Any]) -> bool:
+    """Whether a row of ``attractors`` is periodic; rows of other tables count as such here."""
+    return "fraction" not in row or row["regime"] in _REGULAR
+
+
+def _rows_of(result: Result, point: str) -> dict[str, list[dict[str, Any]]]:
+    """Return all rows of a point by table."""
+    import pyarrow.parquet as pq
+
+    return {
+        name: pq.read_table(
+            result.folder / f"{name}.parquet", filters=[("point_id", "=", point)], use_threads=False
+        ).to_pylist()
+        for name in result.tables
+    }
+
+
+def _compute(result: Result, row: dict[str, Any]) -> dict[str, list[dict[str, Any]]]:
+    """Call the body of the stage for one point, which starts where its row says."""
+    import msgspec
+
+    from vines.pipeline import Job, Points, kind
+    from vines.pipeline._worker import body_of
+    from vines.store import Ids
+
+    form: Any = result.manifest["ingredients"]
+    spec = kind(form["kind"])
+    varied = {axis[0]: np.array([row[axis[0]]]) for axis in form["vary"]}
+    fixed = {name: form["params"].get(name, 0.0) for name in spec.parameters}
+    carry = None if form["carry"] is None else form["carry"]["axis"]
+    with tempfile.TemporaryDirectory() as folder:
+        job = Job(
+            options=msgspec.convert(form["options"], spec.options),
+            points=Points(fixed, varied, Ids.of([row["point_id"]])),
+            carry=carry,
+            start={f"end_{name}": row[name] for name in _STATE} if carry is not None else None,
+            folder=Path(folder),
+            provenance=result.manifest["provenance"],
+        )
+        batch = body_of(spec.body)(job)
+    return {name: schema.cast(name, batch.tables.get(name, ())).to_pylist() for name in result.tables}
+
+
+def start_again(result: Result, table: str, place: int) -> tuple[float, str]:
+    """Settle from the start of a cell of ``basins``, or the end state of an attractor, and compare what it comes to.
+
+    Starts that came to a periodic motion late, or never, are not compared: where chaos is a long transient, rounding
+    decides when it ends.
+    """
+    row = stored_row(result, table, place)
+    wanted = {each["attractor"]: each for each in result.table("attractors").to_pylist()}[row["attractor"]]
+    comparison = Comparison()
+    regular = wanted["regime"] in _REGULAR
+    if row["attractor"] < 0 or (table == "basins" and not (regular and row["periods"] <= _PROMPT)):
+        return comparison.told
+    found = _from_cell(result, row) if table == "basins" else _from_end(row)
+    comparison.same("periodic motion", regular, found.regime in _REGULAR)
+    if not regular or comparison.wrong:
+        return comparison.told
+    n, m = found.n or 0, found.m or 0
+    if found.name is not None and wanted["name"] != found.name.replace(f"{n}:{m}", f"{m}:{n}", 1):
+        comparison.same("name", wanted["name"], found.name)
+    allowed = TOLERANCE if table == "attractors" else _SAME
+    for name in ("max_abs_x1", "kinetic_ratio"):
+        value = getattr(found.measures, name)
+        comparison.number(name, wanted[name], value, allowed * (1 + abs(wanted[name] or 0.0)))
+    return comparison.told
+
+
+def _from_end(row: dict[str, Any]) -> Attractor:
+    from vines.attractors import settle_from
+
+    return settle_from(params_of(row), {name: row[f"end_{name}"] for name in _STATE}, settle=0)
+
+
+def _from_cell(result: Result, row: dict[str, Any]) -> Attractor:
+    from vines.attractors import basins
+
+    options: Any = result.manifest["ingredients"]["options"]
+    coordinates = ((row["x_name"], [row["x"]]), (row["y_name"], [row["y"]]))
+    found = basins(params_of(row), *coordinates, others=options["start"], patience=options["patience"])
+    return found.attractors[found.label[0]]

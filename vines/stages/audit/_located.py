@@ -1,0 +1,77 @@
+"""Bifurcations located again: from an orbit beside it, along the branch, through the place."""
+
+from __future__ import annotations
+
+import contextlib
+import math
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import numpy.typing as npt
+
+from vines.errors import OrbitNotFound, ParameterError
+from vines.model import Params, Word
+from vines.orbits import Bifurcation, Orbit, all_orbits, continue_orbit, find_orbit
+from vines.stages.audit._compare import TOLERANCE, Comparison, params_of, stored_row
+
+if TYPE_CHECKING:
+    from vines.store import Result
+
+__all__ = ["locate_again"]
+
+_BESIDE = (1e-3, 1e-4, 1e-5)
+"""Distances of the orbit that is followed from the bifurcation, relative to the value of the parameter."""
+
+
+def locate_again(result: Result, place: int) -> tuple[float, str]:
+    """Locate the bifurcation of a row of ``bifurcations`` again and compare where it lies."""
+    row = stored_row(result, "bifurcations", place)
+    comparison = Comparison()
+    nearest = min(_met(row), key=lambda found: abs(found.value - row["value"]), default=None)
+    if nearest is None:
+        comparison.same(f"{row['type']} at {row['parameter']} = {row['value']:.10g}", "there", "not met again")
+        return comparison.told
+    comparison.number("value", row["value"], nearest.value, TOLERANCE)
+    return comparison.told
+
+
+def _met(row: dict[str, Any]) -> Iterator[Bifurcation]:
+    """Yield the bifurcations and events of the type of the row that branches through the place meet."""
+    word, p, parameter = Word(row["word"]), params_of(row), row["parameter"]
+    times = np.array(row["t"]) + row["phase"][0] / p.Omega
+    for distance in _BESIDE:
+        delta = distance * max(abs(row["value"]), 1e-3)
+        for sign in (-1.0, 1.0):
+            here, there = row["value"] + sign * delta, row["value"] - sign * delta
+            try:
+                orbit = _beside(word, p.replace(**{parameter: here}), times, distance)
+                low, high = sorted((here - sign * 0.5 * (here - there), there))
+                within = (min(low, here), max(high, here))
+                branch = continue_orbit(orbit, parameter, there, within=within, beyond_grazing=True)
+            except (OrbitNotFound, ParameterError):
+                continue
+            found = [each for each in (*branch.bifurcations, *branch.events) if each.type == row["type"]]
+            yield from found
+            if any(abs(each.value - row["value"]) < TOLERANCE for each in found):
+                return
+
+
+def _beside(word: Word, p: Params, times: npt.NDArray[np.float64], distance: float) -> Orbit:
+    """Return the orbit next to given impact times.
+
+    At a fold Newton's method has no derivative to go by, and the orbit beside it is the square root of the distance
+    away: it is sought from times that are shifted by that much.
+
+    Raises
+    ------
+    OrbitNotFound
+        If there is none on this side.
+    """
+    for shift in (0.0, 0.3, -0.3, 1.0, -1.0, 3.0, -3.0):
+        with contextlib.suppress(OrbitNotFound, ParameterError):
+            return find_orbit(word, p, times + shift * math.sqrt(distance))
+    near = [orbit for orbit in all_orbits(word, p) if np.abs(orbit.t - times).max() < 10 * math.sqrt(distance)]
+    if not near:
+        raise OrbitNotFound(f"no {word} orbit beside these times at {p}; there is one on the other side")
+    return min(near, key=lambda orbit: float(np.abs(orbit.t - times).max()))

@@ -1,0 +1,184 @@
+"""The physics of every stored row, table by table, a row group at a time."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from vines import schema
+from vines.stages.audit._bifurcations import bifurcation_defects, branch_defects, curve_defects
+from vines.stages.audit._defect import Defect
+from vines.stages.audit._files import check_table
+from vines.stages.audit._impacts import POINT_COLUMNS, impact_defects, motion_defects
+from vines.stages.audit._orbits import orbit_defects
+from vines.stages.audit._others import basin_defects, check_defects, optimum_defects, reduced_defects
+from vines.stages.audit._points import attractor_defects, point_defects
+from vines.stages.audit._rows import PARAMETERS, Rows
+
+if TYPE_CHECKING:
+    import pyarrow as pa
+
+    from vines.stages.audit._ledger import Ledger
+    from vines.store import Result
+
+__all__ = ["check_physics", "describe_row"]
+
+_CHECKS: dict[str, Callable[[Rows], Iterator[Defect]]] = {
+    "attractors": attractor_defects,
+    "basins": basin_defects,
+    "bifurcations": bifurcation_defects,
+    "branches": branch_defects,
+    "checks": check_defects,
+    "curves": curve_defects,
+    "impacts": impact_defects,
+    "optima": optimum_defects,
+    "orbits": orbit_defects,
+    "points": point_defects,
+    "reduced": reduced_defects,
+}
+_WHOLE = ("basins",)
+"""Tables that are checked as a whole: their rows share a sum."""
+_SCALED = {"optimum": ("A",)}
+"""Parameters that a kind changes though they are fixed in its declaration: a longer cavity, a smaller A = E/b."""
+
+
+def check_physics(ledger: Ledger, where: str, result: Result, name: str) -> None:
+    """Check all rows of a table of a result.
+
+    Parameters
+    ----------
+    ledger : Ledger
+        Takes what is found.
+    where : str
+        ``<pipeline>.<stage>`` of the result.
+    result : Result
+        Its tables can be read and have the columns of their schemas.
+    name : str
+        The table.
+    """
+    path = result.folder / f"{name}.parquet"
+    motion = _Motion(result) if name == "impacts" and "points" in result.tables else None
+    start = 0
+    for piece in _pieces(path, whole=name in _WHOLE, by_point=motion is not None):
+        table = schema.cast(name, piece)  # columns that came later are empty
+        check_table(ledger, where, name, table)
+        rows = Rows(table)
+        _note(ledger, where, name, _fixed(rows, result), rows, start)
+        with np.errstate(all="ignore"):  # rows that were tampered with may hold anything
+            for defect in _CHECKS.get(name, _nothing)(rows):
+                _note(ledger, where, name, defect, rows, start)
+            if motion is not None:
+                for defect, places in motion.defects(rows):
+                    _note(ledger, where, name, defect, rows, start, places)
+        start += len(rows)
+
+
+def describe_row(table: pa.Table, place: int) -> str:
+    """Return the parameters by which a reader finds a row."""
+    row: dict[str, Any] = table.slice(place, 1).to_pylist()[0]
+    told = [f"{name} = {row[name]:.10g}" for name in PARAMETERS[:3] if isinstance(row.get(name), float)]
+    return ", ".join([*told, f"point_id {row['point_id']}"])
+
+
+def _nothing(rows: Rows) -> Iterator[Defect]:
+    del rows
+    return iter(())
+
+
+def _note(
+    ledger: Ledger,
+    where: str,
+    name: str,
+    defect: Defect,
+    rows: Rows,
+    start: int,
+    places: Any = None,
+) -> None:
+    line = ledger.line(name, defect.name, defect.says, "rows", defect.allowed)
+    first = ledger.values(line, defect.values)
+    if first >= 0 and not line.first:
+        at = int(places[first]) if places is not None else first
+        off = defect.values[first]
+        amount = f"off by {off:.2g}, allowed {defect.allowed:g}" if np.isfinite(off) else "it does not hold"
+        line.first = f"{where}: {name} row {start + at} ({describe_row(rows.table, at)}): {amount}"
+
+
+def _fixed(rows: Rows, result: Result) -> Defect:
+    """Return the check that parameters which do not vary are those of the declaration."""
+    form = result.manifest["ingredients"]
+    varied = {axis[0] for axis in form["vary"]} | set(_SCALED.get(form["kind"], ()))
+    wrong = np.zeros(len(rows))
+    for parameter, value in form["params"].items():
+        if parameter not in varied and rows.has(parameter) and parameter in PARAMETERS:
+            wrong[rows[parameter] != value] = np.inf
+    return Defect("declared parameters", "those that do not vary are as declared", 0.0, wrong)
+
+
+def _pieces(path: Path, *, whole: bool, by_point: bool) -> Iterator[pa.Table]:
+    """Yield the rows of a file, a row group at a time; with `by_point` the rows of a point stay together."""
+    import pyarrow as pa
+    import pyarrow.parquet as pq
+
+    with pq.ParquetFile(path) as file:
+        if whole or file.num_row_groups <= 1:
+            yield file.read()
+            return
+        kept: Any = None
+        for number in range(file.num_row_groups):
+            table: Any = file.read_row_group(number)
+            if kept is not None:
+                table = pa.concat_tables([kept, table])
+            if by_point and number < file.num_row_groups - 1:
+                ids = table.column("point_id")
+                cut = table.num_rows
+                while cut and ids[cut - 1] == ids[table.num_rows - 1]:
+                    cut -= 1
+                table, kept = table.slice(0, cut), table.slice(cut)
+            if table.num_rows:
+                yield table
+
+
+class _Motion:
+    """The points and attractors that impacts belong to."""
+
+    def __init__(self, result: Result) -> None:
+        import pyarrow.parquet as pq
+
+        self.points = Rows(pq.read_table(result.folder / "points.parquet", columns=list(POINT_COLUMNS)))
+        self.others: Rows | None = None
+        if "attractors" in result.tables:
+            columns = ["point_id", "attractor", "sticks_per_period"]
+            self.others = Rows(pq.read_table(result.folder / "attractors.parquet", columns=columns))
+
+    def defects(self, rows: Rows) -> Iterator[tuple[Defect, Any]]:
+        """Yield the checks of the motion between impacts."""
+        which = _find(rows.table.column("point_id"), self.points.table.column("point_id"))
+        flying = which >= 0
+        quiet = (self.points["sticks_per_period"] == 0) & (self.points.text("status") == "ok")
+        flying[flying] = quiet[which[flying]]
+        if self.others is not None:
+            at = _find(_names(rows), _names(self.others))
+            random = rows["attractor"] > 0
+            flying = np.where(random, (at >= 0) & (self.others["sticks_per_period"][at] == 0), flying)
+        yield from motion_defects(rows, self.points, which, flying)
+
+
+def _find(wanted: Any, known: Any) -> Any:
+    """Return the place of each wanted text among the known ones, -1 if it is not there."""
+    import pyarrow.compute
+
+    pc: Any = pyarrow.compute
+    found = pc.index_in(wanted.combine_chunks(), known.combine_chunks())
+    return np.array(pc.fill_null(found, -1), dtype=np.int64)
+
+
+def _names(rows: Rows) -> Any:
+    """Return a text that names the attractor of each row."""
+    import pyarrow.compute
+
+    pc: Any = pyarrow.compute
+    table: Any = rows.table
+    return pc.binary_join_element_wise(table.column("point_id"), table.column("attractor").cast("string"), "/")

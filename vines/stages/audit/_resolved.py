@@ -1,0 +1,90 @@
+"""Orbits solved again from a disturbed state, and flown by the simulator as a check of another kind."""
+
+from __future__ import annotations
+
+import contextlib
+from typing import TYPE_CHECKING
+
+import numpy as np
+import numpy.typing as npt
+
+from vines.dynamics import simulate
+from vines.errors import OrbitNotFound
+from vines.model import Params, Word
+from vines.orbits import Orbit, find_orbit, orbit_row
+from vines.stages.audit._compare import TOLERANCE, Comparison, compare_rows, params_of, stored_row
+
+if TYPE_CHECKING:
+    from vines.store import Result
+
+__all__ = ["resolve_again"]
+
+_DISTURBED = 1e-6
+"""Disturbance of the impact times from which an orbit is solved again, relative to the period."""
+_ROUNDING = 1e-13
+_UNSTABLE = 1e4
+"""Largest multiplier up to which the simulator is asked to follow an orbit for a period."""
+_MULTIPLIERS = ("multipliers_re", "multipliers_im", "max_multiplier", "stable")
+_NAMES = ("point_id", "orbit_id", "branch_id", "violation_time")
+
+
+def resolve_again(result: Result, place: int, rng: np.random.Generator) -> tuple[float, str]:
+    """Solve the orbit of a row of ``orbits`` again and compare everything that is stored of it.
+
+    Near a bifurcation the solution is as sensitive as the multiplier is near 1, and what is allowed grows with that.
+    Multipliers are compared by the coefficients of their polynomial, which are smooth where two of them meet.
+    """
+    row = stored_row(result, "orbits", place)
+    word, p = Word(row["word"]), params_of(row)
+    t = np.array(row["t"])
+    scale = _DISTURBED * word.p * p.period
+    # The relative times are disturbed by less than a tenth of the shortest flight, so that their order stays.
+    shortest = float(np.diff(t, append=t[0] + word.p * p.period).min())
+    orbit = _solve(word, p, t, rng.uniform(-1, 1, len(t)) * min(scale, 0.1 * shortest))
+    comparison = Comparison()
+    m = np.array(row["multipliers_re"]) + 1j * np.array(row["multipliers_im"])
+    finite = bool(np.isfinite(m).all())
+    nearest = float(np.abs(m - 1).min()) if finite else 0.0
+    allowed = max(TOLERANCE, _ROUNDING / max(nearest, 1e-10))
+    compare_rows(comparison, "orbits", row, orbit_row(orbit), leave=(*_MULTIPLIERS, *_NAMES), tolerance=allowed)
+    if finite and np.abs(m).max() < _UNSTABLE:
+        one, other = np.poly(m), np.poly(orbit.multipliers)
+        largest = float(np.abs(one).max())
+        for k, (a, b) in enumerate(zip(one, other, strict=True)):
+            comparison.number(f"coefficient {k} of the multipliers", float(abs(a - b)), 0.0, allowed * 10 * largest)
+        if row["admissible"]:
+            _fly(comparison, orbit)
+    return comparison.told
+
+
+def _solve(word: Word, p: Params, t: npt.NDArray[np.float64], disturbance: npt.NDArray[np.float64]) -> Orbit:
+    """Solve for the orbit; where Newton's method all but stalls, next to a bifurcation, from a smaller disturbance."""
+    for part in (1.0, 1e-2, 1e-4):
+        with contextlib.suppress(OrbitNotFound):
+            return find_orbit(word, p, t + part * disturbance)
+    return find_orbit(word, p, t)
+
+
+def _fly(comparison: Comparison, orbit: Orbit) -> None:
+    """Compare the impacts of the orbit with those that the simulator meets in a period from the first one."""
+    start = orbit.start()
+    p = orbit.params
+    run = simulate(
+        p,
+        x1=start["x1"],
+        v1=start["v1"],
+        x2=start["x2"],
+        v2=start["v2"],
+        t=start["t"],
+        periods=orbit.word.p * (1 + 1e-9),
+    )
+    met = run.impacts[: len(orbit.t)]
+    comparison.same("number of impacts in the simulator", len(orbit.t), len(met))
+    if len(met) != len(orbit.t):
+        return
+    allowed = TOLERANCE * max(1.0, orbit.max_multiplier)
+    stored = np.roll(orbit.states, -1, axis=0)
+    times = np.append(orbit.t[1:], orbit.t[0] + orbit.period)
+    flown = np.column_stack([met[name] for name in ("x1", "v1", "x2", "v2")])
+    comparison.number("an impact in the simulator", float(np.abs(flown - stored).max()), 0.0, allowed)
+    comparison.number("a time in the simulator", float(np.abs(met["t"] - times).max()), 0.0, allowed)
