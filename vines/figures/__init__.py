@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from vines.figures._multipliers import MultiplierLines, MultiplierPanel, multiplier_figure
     from vines.figures._names import ERRORS, NAMES, PANELS, RUN_PANELS, SYMBOLS
     from vines.figures._reduced import ErrorMap, reduced_figure
+    from vines.figures._regimes import REGIME_CLASSES, RegimeMap, regimes_figure
     from vines.figures._response import VelocityPanel, response_figure
     from vines.figures._runs import EndsPanel, GapPanel, PhasePlanePanel, RunCurves
     from vines.figures._sheet import Panel, sheet_figure
@@ -27,6 +28,7 @@ __all__ = [
     "NAMES",
     "PALETTE",
     "PANELS",
+    "REGIME_CLASSES",
     "RUN_PANELS",
     "SYMBOLS",
     "BasinMap",
@@ -44,6 +46,7 @@ __all__ = [
     "MultiplierPanel",
     "Panel",
     "PhasePlanePanel",
+    "RegimeMap",
     "Region",
     "RunCurves",
     "SpecialMark",
@@ -53,6 +56,7 @@ __all__ = [
     "chart_figure",
     "multiplier_figure",
     "reduced_figure",
+    "regimes_figure",
     "response_figure",
     "save",
     "sheet_figure",
@@ -84,6 +88,9 @@ _HOME = {
     "CurveLine": "_chart",
     "ErrorMap": "_reduced",
     "MultiplierLines": "_multipliers",
+    "REGIME_CLASSES": "_regimes",
+    "RegimeMap": "_regimes",
+    "regimes_figure": "_regimes",
     "Region": "_chart",
     "SpecialMark": "_chart",
     "basins_figure": "_basins",

@@ -13,11 +13,12 @@ if TYPE_CHECKING:
     from vines.stages._found import found
     from vines.stages._keeping import Difference, clean, declaration_schema, diff, graph
     from vines.stages._kinds import register_kinds
+    from vines.stages._opening import open_store
     from vines.stages._orbit_log import orbit_log
     from vines.stages._parts import load_pipeline, members_of
     from vines.stages._report import report
     from vines.stages._rig_running import ingest_folder
-    from vines.stages._running import compile_if_cold, list_pipelines, open_store, run, status, warm_up
+    from vines.stages._running import compile_if_cold, list_pipelines, run, status, warm_up
     from vines.stages._study import init_study
     from vines.stages.audit import Verification, verify
 
@@ -77,7 +78,7 @@ _HOME = {
     "list_tables": "_asking",
     "load_pipeline": "_parts",
     "members_of": "_parts",
-    "open_store": "_running",
+    "open_store": "_opening",
     "query": "_asking",
     "register_kinds": "_kinds",
     "report": "_report",

@@ -9,9 +9,8 @@ from typing import TYPE_CHECKING, Any, Literal
 from vines import schema
 from vines.catalogue import connect
 from vines.errors import QueryError, UnknownNameError, nearest
-from vines.pipeline import available, members
 from vines.places import find_root
-from vines.stages._running import open_store
+from vines.stages._opening import open_store
 
 if TYPE_CHECKING:
     import pyarrow as pa
@@ -127,6 +126,8 @@ def checks(name: str | None = None) -> list[dict[str, Any]]:
     UnknownNameError
         If there is no such pipeline, or if nothing was checked yet.
     """
+    from vines.pipeline import available, members
+
     known = {*available(find_root()), *open_store().pinned()}
     if name is not None and name not in known:
         raise UnknownNameError(f"unknown pipeline {name!r}: {nearest(name, known)}")

@@ -8,7 +8,7 @@ from pathlib import Path
 from vines.errors import FileMissingError, UnknownNameError
 from vines.pipeline import available, with_included
 from vines.places import find_root, shipped
-from vines.stages._running import open_store
+from vines.stages._opening import open_store
 from vines.stages._stored import stored_pipelines
 
 __all__ = ["export"]

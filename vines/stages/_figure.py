@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from typing import Any
 
-from vines.figures import basins_figure, reduced_figure, save
+from vines.figures import basins_figure, reduced_figure, regimes_figure, save
 from vines.pipeline import Batch, WholeJob
 from vines.stages._basin_map import basin_map
 from vines.stages._chart import chart
 from vines.stages._diagram import bifurcation_diagram
 from vines.stages._error_map import error_map
 from vines.stages._multipliers import multipliers
+from vines.stages._regime_map import regime_map
 from vines.stages._response import response
 from vines.stages._sheet import sheet
 
@@ -26,6 +27,9 @@ def compute(job: WholeJob) -> Batch:
     elif options.plot == "reduced":
         maps = [error_map(stage) for stage in job.inputs.values()]
         figure = reduced_figure(maps, panels=options.panels, title=options.title, width=options.width)
+    elif options.plot == "regimes":
+        (stage,) = job.inputs.values()
+        figure = regimes_figure(regime_map(stage), title=options.title, width=options.width)
     elif options.plot == "multipliers":
         figure = multipliers(job.inputs, options)
     elif options.plot == "chart":

@@ -6,7 +6,7 @@ from pathlib import Path
 
 from vines.errors import FileMissingError, UnknownNameError, nearest
 from vines.places import cache_folder
-from vines.stages._running import open_store
+from vines.stages._opening import open_store
 
 __all__ = ["all_logs", "find_logs", "recordings_folder"]
 

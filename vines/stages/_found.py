@@ -9,8 +9,8 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from vines.stages._opening import open_store
 from vines.stages._parts import load_parts
-from vines.stages._running import open_store
 
 if TYPE_CHECKING:
     import pyarrow as pa

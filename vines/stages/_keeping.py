@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Any
 from vines.errors import StoreError, UnknownNameError, VinesError, nearest
 from vines.pipeline import available, mermaid, mermaid_of_all, plan, pool_keys, what_changed
 from vines.places import find_root
+from vines.stages._opening import open_store
 from vines.stages._parts import load_parts
-from vines.stages._running import open_store
 
 if TYPE_CHECKING:
     from vines.catalogue import TableDifference

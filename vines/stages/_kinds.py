@@ -214,7 +214,7 @@ class FigureOptions(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     strip with the reduction of max|x1| below each that shows energies.
     """
 
-    plot: Literal["bifurcation", "reduced", "multipliers", "chart", "basins", "sheet", "response"]
+    plot: Literal["bifurcation", "reduced", "multipliers", "chart", "basins", "sheet", "response", "regimes"]
     panels: tuple[str, ...] = ()
     title: str = ""
     width: float = 7.0

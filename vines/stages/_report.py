@@ -12,8 +12,8 @@ from vines import schema
 from vines.errors import FileMissingError, UnknownNameError, nearest
 from vines.pipeline import available, with_included
 from vines.places import find_root
+from vines.stages._opening import open_store
 from vines.stages._report_page import Figure, Head, Run, Section, StageFacts, page
-from vines.stages._running import open_store
 from vines.stages._stored import stored_pipelines
 from vines.store import Result, Store, canonical, write_text
 

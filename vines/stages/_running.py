@@ -9,19 +9,14 @@ from typing import TYPE_CHECKING, Any, Literal
 
 from vines.errors import EngineError, VinesError
 from vines.pipeline import available, kind, plan
-from vines.places import data_folder, find_root
+from vines.places import find_root
+from vines.stages._opening import open_store
 from vines.stages._parts import Part, load_parts
-from vines.store import Store
 
 if TYPE_CHECKING:
     from vines.pipeline import Declaration, Event, RunSummary, StageOutcome, StagePlan
 
-__all__ = ["compile_if_cold", "list_pipelines", "open_store", "run", "status", "warm_up"]
-
-
-def open_store() -> Store:
-    """Return the store of the project that the current folder belongs to (see :func:`vines.places.data_folder`)."""
-    return Store(data_folder())
+__all__ = ["compile_if_cold", "list_pipelines", "run", "status", "warm_up"]
 
 
 def run(

@@ -82,6 +82,11 @@ def _figure(stage: Stage, pipeline: Pipeline) -> None:
                 raise _refuse(stage, pipeline, f"unknown panel {panel!r}: {nearest(panel, known)}")
     if options.plot == "chart":
         _chart(stage, pipeline)
+    if options.plot == "regimes":
+        shown = [pipeline.stages[name] for name in stage.needs]
+        if len(shown) != 1 or shown[0].kind.name != "sweep" or len(shown[0].axes) != 2:
+            listed = ", ".join(f"{one.name} ({one.kind.name} over {len(one.axes)})" for one in shown)
+            raise _refuse(stage, pipeline, f"plot regimes needs one sweep over two parameters; it is given {listed}")
     if options.plot == "sheet":
         _sheet(stage, pipeline)
     elif options.plot == "response":

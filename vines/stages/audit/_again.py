@@ -64,7 +64,7 @@ class PointsAgain:
             return comparison.told
         # the impacts of other attractors at the point may be chaotic
         ours, theirs = (
-            [row for row in rows[table] if table != "impacts" or not row["attractor"]] for rows in (stored, again)
+            [row for row in rows[table] if table != "impacts" or not row.get("attractor")] for rows in (stored, again)
         )
         comparison.same("number of rows", len(ours), len(theirs))
         for one, other in zip(ours, theirs, strict=False):

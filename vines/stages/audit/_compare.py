@@ -95,14 +95,17 @@ def compare_rows(
 
 
 def compare_within_errors(comparison: Comparison, stored: Mapping[str, Any], again: Mapping[str, Any]) -> None:
-    """Compare rows of points that are not periodic: regime and parameters, and the measures within their errors."""
+    """Compare rows of points that are not periodic: regime and parameters, and the measures within their errors.
+
+    Both rows are samples of the motion, so four standard errors are those of their difference.
+    """
     for name in ("mu", "A", "Omega", "r", "lam", "x1", "v1", "x2", "v2", "phase"):
         comparison.number(name, stored[name], again[name], TOLERANCE * (1 + abs(stored[name] or 0.0)))
     for name in ("regime", "settled", "status"):
         comparison.same(name, stored[name], again[name])
     for name in ("kinetic_ratio", "max_abs_x1", "rms_x1", "lyapunov"):
-        error = stored[f"{name}_error"]
-        allowed = _ERRORS * error if error is not None and math.isfinite(error) else 0.0
+        errors = [math.nan if row[f"{name}_error"] is None else row[f"{name}_error"] for row in (stored, again)]
+        allowed = _ERRORS * math.hypot(*errors) if all(map(math.isfinite, errors)) else 0.0
         comparison.number(name, stored[name], again[name], max(allowed, TOLERANCE * (1 + abs(stored[name] or 0.0))))
 
 

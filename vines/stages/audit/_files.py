@@ -64,9 +64,8 @@ def check_schema(ledger: Ledger, where: str, result: Result, name: str) -> bool:
         "tables",
         "" if same else f"{where}: {name} tells another origin than the manifest",
     )
-    return set(form.names) >= set(schema.table(name).names) and all(
-        form.field(column).type == schema.arrow_schema(name).field(column).type for column in schema.table(name).names
-    )
+    wanted = schema.arrow_schema(name)
+    return all(column in wanted.names and form.field(column).type == wanted.field(column).type for column in form.names)
 
 
 def check_table(ledger: Ledger, where: str, name: str, table: pa.Table) -> None:

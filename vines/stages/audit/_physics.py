@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from vines import schema
 from vines.stages.audit._bifurcations import bifurcation_defects, branch_defects, curve_defects
 from vines.stages.audit._defect import Defect
 from vines.stages.audit._files import check_table
@@ -61,7 +62,8 @@ def check_physics(ledger: Ledger, where: str, result: Result, name: str) -> None
     path = result.folder / f"{name}.parquet"
     motion = _Motion(result) if name == "impacts" and "points" in result.tables else None
     start = 0
-    for table in _pieces(path, whole=name in _WHOLE, by_point=motion is not None):
+    for piece in _pieces(path, whole=name in _WHOLE, by_point=motion is not None):
+        table = schema.cast(name, piece)  # columns that came later are empty
         check_table(ledger, where, name, table)
         rows = Rows(table)
         _note(ledger, where, name, _fixed(rows, result), rows, start)

@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from vines.errors import VinesError
+from vines.pipeline import kind
+from vines.pipeline._code import CodeDigests
 from vines.stages._kinds import register_kinds
 from vines.stages.audit._again import PointsAgain, start_again
 from vines.stages.audit._located import locate_again
@@ -73,7 +75,7 @@ def recompute_rows(
             source = _Source(where, result, table)
             if table in _SAYS and source.rows and _can(result, table):
                 sources.setdefault(table, []).append(source)
-    points = PointsAgain()
+    points, codes = PointsAgain(), CodeDigests(None)
     for table, share in _shares({name: sum(s.rows for s in found) for name, found in sources.items()}, count).items():
         say(f"computing {share} rows of {table} again")
         line = ledger.line("recomputed", table, _SAYS[table], "rows", 1.0)
@@ -87,17 +89,21 @@ def recompute_rows(
                 line.largest = max(line.largest, off)
             if wrong:
                 line.failed += 1
-                line.first = line.first or f"{source.where}: {table} row {place}: {wrong}"
+                aside = "" if _same_code(source.result, codes) else " (it was computed by other code than this)"
+                line.first = line.first or f"{source.where}: {table} row {place}: {wrong}{aside}"
+
+
+def _same_code(result: Result, codes: CodeDigests) -> bool:
+    """Say whether the result was computed by the sources that are here now."""
+    return codes.digest(kind(result.manifest["kind"]).body) == result.manifest["provenance"]["code"]
 
 
 def _can(result: Result, table: str) -> bool:
     """Say whether a row of the table has what is needed to compute it again."""
-    kind = result.manifest["kind"]
-    if table in ("orbits", "bifurcations"):
+    of = result.manifest["kind"]
+    if table in ("orbits", "bifurcations") or (table == "attractors" and of == "basins"):
         return True
-    if table == "attractors" and kind == "basins":
-        return True
-    return kind == "basins" if table == "basins" else PointsAgain.can(result)
+    return of == "basins" if table == "basins" else PointsAgain.can(result)
 
 
 def _again(source: _Source, place: int, points: PointsAgain, rng: np.random.Generator) -> tuple[float, str]:

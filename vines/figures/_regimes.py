@@ -1,0 +1,175 @@
+"""A map over two parameters: what is reached at each point, and K2/K1 beside it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+import numpy.typing as npt
+
+from vines.figures._names import NAMES, SYMBOLS
+from vines.figures._style import RC, new_figure
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+__all__ = ["REGIME_CLASSES", "RegimeMap", "regimes_figure"]
+
+REGIME_CLASSES = {
+    "1:1, symmetric": "#33658a",
+    "1:1, asymmetric": "#86bbd8",
+    "n:n, n > 1": "#117733",
+    "n:m, n ≠ m": "#ddcc77",
+    "p > 1 periods": "#aa4499",
+    "quasi-periodic": "#e07a1f",
+    "chaotic": "#c9c9c9",
+    "no impact": "#ffffff",
+    "unsettled": "#000000",
+}
+"""What a point can be, and its colour: told apart by all kinds of colour vision (after Tol's muted scheme)."""
+
+SHADE = 0.62
+"""Factor on the colour where the ball sticks again and again."""
+
+LABELS = 9
+"""Most names written into the map."""
+
+LEAST = 0.004
+"""Smallest share of the map that a region must fill for its name to be written into it."""
+
+ROOM = 0.01
+"""Least distance of a name from the edge of its region, in parts of the map's longer side: else names run together."""
+
+
+@dataclass(frozen=True, slots=True)
+class RegimeMap:
+    """A grid over two parameters, y down the rows and x along the columns of each array.
+
+    Attributes
+    ----------
+    axes : (str, str)
+        Names of the parameters along x and y.
+    x, y : (nx,), (ny,) array
+        Their values, ascending.
+    regime : (ny, nx) array of int
+        Place in :data:`REGIME_CLASSES`, -1 where there is no point.
+    sticks : (ny, nx) array of bool
+        Whether the ball sticks again and again.
+    name : (ny, nx) array of object
+        n:m/pT where periodic, else None.
+    ratio : (ny, nx) array
+        K2/K1.
+    caption : str
+        The fixed parameters.
+    """
+
+    axes: tuple[str, str]
+    x: npt.NDArray[np.float64]
+    y: npt.NDArray[np.float64]
+    regime: npt.NDArray[np.int64]
+    sticks: npt.NDArray[np.bool_]
+    name: npt.NDArray[np.object_]
+    ratio: npt.NDArray[np.float64]
+    caption: str
+
+
+def regimes_figure(data: RegimeMap, *, title: str = "", width: float = 7.0) -> Figure:
+    """Draw the map of what is reached, and that of K2/K1 beside it.
+
+    Parameters
+    ----------
+    data : RegimeMap
+        The grid.
+    title : str
+        Above the picture.
+    width : float
+        In inches.
+    """
+    import matplotlib as mpl
+    from matplotlib.colors import LogNorm, to_rgb
+    from matplotlib.patches import Patch
+
+    colours = np.array([to_rgb(colour) for colour in REGIME_CLASSES.values()] + [(1.0, 1.0, 1.0)])
+    shown = colours[data.regime]
+    shown = np.where(data.sticks[..., None], SHADE * shown, shown)
+    with mpl.rc_context(RC):
+        figure = new_figure(width, 0.56 * width)
+        left, right = figure.subplots(1, 2, sharey=True)
+        left.pcolormesh(data.x, data.y, shown, shading="nearest", rasterized=True)
+        finite = data.ratio[np.isfinite(data.ratio) & (data.ratio > 0)]
+        low, high = np.quantile(finite, [0.005, 1.0]) if finite.size else (1e-3, 1.0)
+        drawn = right.pcolormesh(
+            data.x,
+            data.y,
+            np.ma.masked_invalid(np.where(data.ratio > 0, data.ratio, np.nan)),
+            norm=LogNorm(max(low, 1e-6 * high), high),
+            cmap="cividis",
+            shading="nearest",
+            rasterized=True,
+        )
+        right.set_facecolor("#ffffff")
+        figure.colorbar(drawn, ax=right, label=r"$K_2/K_1$", extend="min", pad=0.015)
+        for ax, letter, what in ((left, "a", "what is reached"), (right, "b", r"kinetic energy of ball and mass")):
+            ax.set_title(f"({letter})  {what}", fontsize=8.5, loc="left")
+            _scale(ax, data)
+        left.set_ylabel(_label(data.axes[1]))
+        _write_names(left, data)
+        used = np.unique(data.regime)
+        handles = [
+            Patch(facecolor=colour, edgecolor="#777777", linewidth=0.5, label=label)
+            for k, (label, colour) in enumerate(REGIME_CLASSES.items())
+            if k in used
+        ]
+        if data.sticks.any():
+            dark = SHADE * np.array(to_rgb(REGIME_CLASSES["1:1, symmetric"]))
+            handles.append(
+                Patch(facecolor=dark, edgecolor="#777777", linewidth=0.5, label="any, darker: the ball sticks")
+            )
+        figure.legend(handles=handles, loc="outside lower center", ncols=5)
+        figure.suptitle(", ".join(part for part in (title, data.caption) if part), fontsize=9)
+    return figure
+
+
+def _label(name: str) -> str:
+    return f"{NAMES.get(name, name)}  ${SYMBOLS.get(name, name)}$"
+
+
+def _scale(ax: Axes, data: RegimeMap) -> None:
+    for values, scale in ((data.x, ax.set_xscale), (data.y, ax.set_yscale)):
+        if len(values) > 2 and values[0] > 0 and values[-1] > 20 * values[0]:
+            scale("log")
+    ax.set_xlim(data.x[0], data.x[-1])
+    ax.set_ylim(data.y[0], data.y[-1])
+    ax.set_xlabel(_label(data.axes[0]))
+
+
+def _write_names(ax: Axes, data: RegimeMap) -> None:
+    """Write the names of the largest regions where they are widest."""
+    from matplotlib.patheffects import withStroke
+    from scipy.ndimage import distance_transform_edt, label
+
+    regions = []
+    for name in sorted({name for name in data.name.ravel() if name}):
+        parts, count = label(np.equal(data.name, name))
+        sizes = np.bincount(parts.ravel(), minlength=count + 1)
+        for k in np.flatnonzero(sizes >= LEAST * data.name.size):
+            if k:
+                regions.append((int(sizes[k]), name, parts == k))
+    for _, name, inside in sorted(regions, key=lambda region: -region[0])[:LABELS]:
+        # The frame counts as an edge, so that no name is cut by it.
+        depth = np.asarray(distance_transform_edt(np.pad(inside, 1)))[1:-1, 1:-1]
+        row, column = np.unravel_index(int(np.argmax(depth)), depth.shape)
+        if depth[row, column] < ROOM * max(depth.shape):
+            continue
+        ax.text(
+            data.x[column],
+            data.y[row],
+            name,
+            ha="center",
+            va="center",
+            fontsize=7,
+            color="#000000",
+            path_effects=[withStroke(linewidth=1.6, foreground="#ffffff")],
+        )
