@@ -166,7 +166,7 @@ SECTIONS = {
     "Periodic orbits, beside AUTO-07p": benchmark("orbits"),
     "The paper, from an empty store": paper,
     "The catalogue, beside its peers": benchmark("catalogue"),
-    "The rig, scored on synthetic runs": benchmark("rig"),
+    "Reading a run of the rig": benchmark("rig_ingest"),
     "Logs, beside mcap's own writer": benchmark("logs"),
     "Pipelines, beside their peers": benchmark("engine"),
     "Tests": tests,
