@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
@@ -123,7 +123,7 @@ def regimes_figure(data: RegimeMap, *, title: str = "", width: float = 7.0) -> F
             if k in used
         ]
         if data.sticks.any():
-            dark = SHADE * np.array(to_rgb(REGIME_CLASSES["1:1, symmetric"]))
+            dark: Any = SHADE * np.array(to_rgb(REGIME_CLASSES["1:1, symmetric"]))
             handles.append(
                 Patch(facecolor=dark, edgecolor="#777777", linewidth=0.5, label="any, darker: the ball sticks")
             )
@@ -152,7 +152,8 @@ def _write_names(ax: Axes, data: RegimeMap) -> None:
 
     regions = []
     for name in sorted({name for name in data.name.ravel() if name}):
-        parts, count = label(np.equal(data.name, name))
+        found: Any = label(np.equal(data.name, name))
+        parts, count = found
         sizes = np.bincount(parts.ravel(), minlength=count + 1)
         for k in np.flatnonzero(sizes >= LEAST * data.name.size):
             if k:
