@@ -29,6 +29,7 @@ _HOME = {
     "ensemble": "vines.dynamics",
     "simulate": "vines.dynamics",
     "Attractor": "vines.attractors",
+    "classify_many": "vines.attractors",
     "settle": "vines.attractors",
     "Branch": "vines.orbits",
     "Orbit": "vines.orbits",
