@@ -69,3 +69,14 @@ def quickstart(tmp_path_factory):
     project = Project(root)
     project.first = project.vines("run", "quickstart")
     return project
+
+
+@pytest.fixture(scope="session")
+def browser_program():
+    """Skip, aloud, where there is no Chromium; never on a CI machine, which must have one."""
+    program = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
+    if program is None:
+        if os.environ.get("CI"):
+            pytest.fail("Chromium is missing on a CI machine; make system installs it")
+        pytest.skip("Chromium is not installed, so no page is opened; make system installs it")
+    return program

@@ -1,7 +1,5 @@
 """The report: one page that asks nothing of a network, in a real browser."""
 
-import os
-import shutil
 import tempfile
 from html.parser import HTMLParser
 
@@ -11,17 +9,6 @@ from tests.viewer.chromium import chromium
 from vines.stages._report_page import Figure, Head, Run, Section, StageFacts, page
 
 SVG = b'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 40 20"><rect width="40" height="20" fill="#c8102e"/></svg>'
-
-
-@pytest.fixture(scope="module")
-def browser_program():
-    """Skip, aloud, where there is no Chromium; never on a CI machine, which must have one."""
-    program = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
-    if program is None:
-        if os.environ.get("CI"):
-            pytest.fail("Chromium is missing on a CI machine; make system installs it")
-        pytest.skip("Chromium is not installed, so the page is not opened; make system installs it")
-    return program
 
 
 @pytest.fixture(scope="module")

@@ -1,6 +1,5 @@
 """The web viewer in a real browser, and the catalogue of many logs: offline, on this machine only, and shown."""
 
-import os
 import shutil
 import tempfile
 from pathlib import Path
@@ -13,17 +12,6 @@ from tests.viewer.chromium import chromium
 from vines import viewer
 from vines.errors import ViewerError
 from vines.viewer._program import served
-
-
-@pytest.fixture(scope="module")
-def browser_program():
-    """Skip, aloud, where there is no Chromium; never on a CI machine, which must have one."""
-    program = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
-    if program is None:
-        if os.environ.get("CI"):
-            pytest.fail("Chromium is missing on a CI machine; make system installs it")
-        pytest.skip("Chromium is not installed, so the web viewer is not tried; make system installs it")
-    return program
 
 
 def listening():
