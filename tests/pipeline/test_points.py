@@ -165,10 +165,11 @@ def test_401_points_to_801_computes_400_and_to_1201_computes_800(lab):
 
 @pytest.mark.parametrize("direction", ["up", "down"])
 def test_a_carried_sweep_extended_at_its_far_end_computes_only_the_new_points(lab, direction):
-    text = UP + f'    carry = {{ axis = "A", direction = "{direction}" }}\n'
-    declared = lab.declare(text)
+    # Two steps of .1 below the near end A is still an amplitude, which is never negative.
+    text = UP.replace("from = 0.1, to = 0.5", "from = 0.3, to = 0.7")
+    declared = lab.declare(text + f'    carry = {{ axis = "A", direction = "{direction}" }}\n')
     lab.run(declared, jobs=1)
-    far = {"up": {"stages.up.vary.A.to": 0.7}, "down": {"stages.up.vary.A.from": -0.1}}[direction]
+    far = {"up": {"stages.up.vary.A.to": 0.9}, "down": {"stages.up.vary.A.from": 0.1}}[direction]
     assert lab.run(declared, {**far, "stages.up.vary.A.count": 7}, jobs=1).new == 2
 
 

@@ -122,7 +122,7 @@ def natural(ringdowns: tuple[RingDown, ...], temperature: float) -> tuple[Uncert
     >>> cold = RingDown("a", Uncertain(55.4, 1e-4), Uncertain(0.012, 1e-5), 20.0, 0.001)
     >>> omega0, lam = natural((cold,), 21.0)
     >>> round(omega0.value, 5), round(omega0.u, 5)
-    (55.39169, 0.00279)
+    (55.39169, 0.00289)
     """
     if not ringdowns:
         raise RigError("no ring-down is at hand; omega0 must be known to .01 %: record one before and after the sweep")
