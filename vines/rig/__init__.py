@@ -7,7 +7,10 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from vines.rig._compare import Calibration, calibrate, compare, compare_all
     from vines.rig._inspect import channel_facts, draw_file, spark
+    from vines.rig._match import Candidate
+    from vines.rig._model import Predicted
     from vines.rig._read_run import Ingested, read_run
     from vines.rig._reconstruct import reconstruct
     from vines.rig._reconstruction import QUANTITIES, Finding, Reconstruction
@@ -15,19 +18,29 @@ if TYPE_CHECKING:
     from vines.rig._ring_down import RingDown, ring_down
     from vines.rig._run_folder import find_runs, read_folder
     from vines.rig._template import write_template
+    from vines.rig._verdict import VERDICTS, Comparison, Likeness
 
 __all__ = [
     "QUANTITIES",
     "ROLES",
+    "VERDICTS",
+    "Calibration",
+    "Candidate",
+    "Comparison",
     "Finding",
     "Ingested",
+    "Likeness",
+    "Predicted",
     "Reconstruction",
     "Recording",
     "RingDown",
     "RunInfo",
     "Sampled",
     "Uncertain",
+    "calibrate",
     "channel_facts",
+    "compare",
+    "compare_all",
     "draw_file",
     "find_runs",
     "read_folder",
@@ -41,15 +54,24 @@ __all__ = [
 _HOME = {
     "QUANTITIES": "_reconstruction",
     "ROLES": "_recording",
+    "VERDICTS": "_verdict",
+    "Calibration": "_compare",
+    "Candidate": "_match",
+    "Comparison": "_verdict",
     "Finding": "_reconstruction",
     "Ingested": "_read_run",
+    "Likeness": "_verdict",
+    "Predicted": "_model",
     "Reconstruction": "_reconstruction",
     "Recording": "_recording",
     "RingDown": "_ring_down",
     "RunInfo": "_recording",
     "Sampled": "_recording",
     "Uncertain": "_recording",
+    "calibrate": "_compare",
     "channel_facts": "_inspect",
+    "compare": "_compare",
+    "compare_all": "_compare",
     "draw_file": "_inspect",
     "find_runs": "_run_folder",
     "read_folder": "_run_folder",

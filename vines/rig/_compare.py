@@ -1,0 +1,169 @@
+"""Runs beside the model, at measured parameters and at calibrated ones."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from vines.errors import OrbitNotFound, ParameterError
+from vines.model import Params
+from vines.rig._match import candidates, word_of
+from vines.rig._model import measured_params, predict
+from vines.rig._reconstruction import Reconstruction
+from vines.rig._verdict import Comparison, decide, likeness, order
+
+__all__ = ["Calibration", "calibrate", "compare", "compare_all"]
+
+_FREE = {"Omega": 1e-3, "A": 0.03, "r": 0.01}
+"""What a calibration may move, with the relative (r: absolute) standard deviation that it may move by."""
+
+
+@dataclass(frozen=True, slots=True)
+class Calibration:
+    """Corrections found on one half of the runs.
+
+    Attributes
+    ----------
+    Omega, A : float
+        Factors.
+    r : float
+        Added.
+    runs : tuple of str
+        The runs they come from.
+    """
+
+    Omega: float = 1.0
+    A: float = 1.0
+    r: float = 0.0
+    runs: tuple[str, ...] = ()
+
+    def on(self, p: Params) -> Params:
+        """Return corrected parameters."""
+        return p.replace(Omega=p.Omega * self.Omega, A=p.A * self.A, r=min(max(p.r + self.r, 0.0), 1.0))
+
+
+def compare(
+    run: Reconstruction,
+    catalogue: Sequence[Mapping[str, Any]] = (),
+    *,
+    calibration: Calibration | None = None,
+    seed: int = 0,
+) -> Comparison:
+    """Compare a run with every branch that coexists at its parameters.
+
+    Parameters
+    ----------
+    run : Reconstruction
+    catalogue : sequence of mapping
+        Rows of the table ``orbits``: words that may exist near.
+    calibration : Calibration, optional
+        Corrections of the measured parameters; the comparison then says ``calibrated``.
+    seed : int
+        Of the ensembles.
+    """
+    basis = "measured" if calibration is None else "calibrated"
+    try:
+        p = measured_params(run)
+        p = calibration.on(p) if calibration is not None else p
+    except ParameterError as error:
+        empty = Params(mu=1.0, A=0.0)
+        return Comparison(run, empty, basis, (), "undecidable", f"the measured parameters are impossible: {error}")
+    if not run.accepted or not run.pattern.holds:
+        verdict, reason = decide(run, ())
+        return Comparison(run, p, basis, (), verdict, reason)
+    found = candidates(p, [word_of(run.pattern.word)], catalogue)
+    branches = order([likeness(run, predict(run, p, one, seed=seed)) for one in found])
+    verdict, reason = decide(run, branches)
+    return Comparison(run, p, basis, branches, verdict, reason)
+
+
+def calibrate(measured: Sequence[Comparison]) -> Calibration:
+    """Find common corrections of Omega, A and r that bring runs nearest to their branches.
+
+    Parameters
+    ----------
+    measured : sequence of Comparison
+        At measured parameters; only those count whose pattern the model shows.
+
+    Returns
+    -------
+    Calibration
+        One Gauss–Newton step with the deterministic orbit's derivatives, held near 1 by what may be wrong with a rig's
+        omega0, E and r.
+    """
+    from vines.orbits import find_orbit
+
+    rows, left, names = [], [], []
+    for one in measured:
+        if one.verdict not in ("agree", "pattern_only") or not one.branches[0].predicted.candidate.orbit:
+            continue
+        best = one.branches[0]
+        orbit = best.predicted.candidate.orbit
+        assert orbit is not None
+        scale = {
+            name: float(np.hypot(best.measured[name].u, best.model[name].u)) or 1.0 for name in best.errors
+        }  # fmt: skip
+        try:
+            place = int(
+                np.argmin(
+                    np.abs(np.exp(1j * (orbit.phase - one.run.periods.cut)) - np.exp(1j * best.model["phase"].value))
+                )
+            )
+            slopes = {key: _slopes(orbit, key, find_orbit, place) for key in _FREE}
+        except OrbitNotFound:
+            continue
+        for name in ("phase", "max_abs_x1", "kinetic_ratio"):
+            gap = best.measured[name].value - best.model[name].value
+            if name == "phase":
+                gap = float((gap + np.pi) % (2 * np.pi) - np.pi)
+            rows.append([slopes[key][name] / scale[name] for key in _FREE])
+            left.append(gap / scale[name])
+        names.append(one.run.run.run_id)
+    if not rows:
+        return Calibration()
+    free = np.array([_FREE["Omega"], _FREE["A"], _FREE["r"]])
+    matrix = np.vstack([np.array(rows), np.diag(1 / free)])
+    step = np.linalg.lstsq(matrix, np.concatenate([left, np.zeros(3)]), rcond=None)[0]
+    return Calibration(1 + float(step[0]), 1 + float(step[1]), float(step[2]), tuple(names))
+
+
+def compare_all(
+    runs: Sequence[Reconstruction], catalogue: Sequence[Mapping[str, Any]] = (), *, seed: int = 0
+) -> tuple[tuple[Comparison, ...], tuple[Comparison, ...], Calibration]:
+    """Compare runs at measured parameters, calibrate on every other one, and compare the rest again.
+
+    Returns
+    -------
+    measured, calibrated : tuple of Comparison
+        All runs; those that the calibration did not use.
+    calibration : Calibration
+        Without runs in it where fewer than four are at hand.
+    """
+    measured = tuple(compare(run, catalogue, seed=seed) for run in runs)
+    if len(runs) < 4:
+        return measured, (), Calibration()
+    found = calibrate(measured[::2])
+    if not found.runs:
+        return measured, (), found
+    return measured, tuple(compare(run, catalogue, calibration=found, seed=seed) for run in runs[1::2]), found
+
+
+def _slopes(orbit: Any, key: str, find: Any, place: int) -> dict[str, float]:
+    """Return derivatives of an orbit's numbers by a correction."""
+    p = orbit.params
+    step = 0.1 * _FREE[key]
+    values = []
+    for sign in (-1, 1):
+        moved = p.replace(**{key: getattr(p, key) + sign * step * (1.0 if key == "r" else getattr(p, key))})
+        other = find(orbit.word, moved, guess=orbit)
+        values.append((float(other.phase[place]), other.measures.max_abs_x1, other.measures.kinetic_ratio))
+    low, high = values
+    turn = float((high[0] - low[0] + np.pi) % (2 * np.pi) - np.pi)
+    return {
+        "phase": turn / (2 * step),
+        "max_abs_x1": (high[1] - low[1]) / (2 * step),
+        "kinetic_ratio": (high[2] - low[2]) / (2 * step),
+    }
