@@ -1,5 +1,7 @@
 """Bad input: one clear line, exit 2, nothing written."""
 
+import json
+
 import pytest
 
 PIPELINE = """
@@ -43,6 +45,14 @@ def test_bad_declaration(project, case):
     assert expected in done.stderr
     assert not (project.data / "results").exists()
     assert not (project.data / "points").exists()
+
+
+def test_one_bad_declaration_leaves_the_others_their_status(project):
+    (project.root / "pipelines" / "mine.toml").write_text(PIPELINE.replace('"sweep"', '"swep"'))
+    lines = project.vines("status").stdout.splitlines()
+    assert any(line.startswith("mine") and "cannot be read" in line for line in lines)
+    assert any(line.startswith("quickstart") and "of 8" in line for line in lines)
+    assert "'swep'" in json.loads(project.vines("status", "--json").stdout)["mine"]["error"]
 
 
 def test_a_declaration_that_needs_itself(project):

@@ -58,15 +58,19 @@ SWAPPED = {
 
 
 class Study:
-    """A copy of vines and its pipelines, right or mutated, that runs the reduced pipelines."""
+    """The pipelines, right or mutated, run by vines as it is or by a copy that was patched."""
 
     def __init__(self, folder):
         self.folder = folder
-        for name in ("vines", "schemas", "pipelines"):
-            shutil.copytree(REPOSITORY / name, folder / name, ignore=shutil.ignore_patterns("__pycache__"))
+        self.sources = REPOSITORY  # whose kernels are compiled already
+        shutil.copytree(REPOSITORY / "pipelines", folder / "pipelines")
 
     def patch(self, name, old, new):
         """Replace a text of a file, which has to be there once."""
+        if self.sources != self.folder:
+            self.sources = self.folder
+            for part in ("vines", "schemas"):
+                shutil.copytree(REPOSITORY / part, self.folder / part, ignore=shutil.ignore_patterns("__pycache__"))
         path = self.folder / name
         text = path.read_text()
         assert text.count(old) == 1, (name, old)
@@ -99,7 +103,7 @@ class Study:
         return numeric
 
     def _vines(self, *arguments):
-        environment = {**os.environ, "VINES_ROOT": str(self.folder), "PYTHONPATH": str(self.folder)}
+        environment = {**os.environ, "VINES_ROOT": str(self.folder), "PYTHONPATH": str(self.sources)}
         done = subprocess.run(
             [sys.executable, "-m", "vines.cli", *arguments],
             capture_output=True,

@@ -250,6 +250,27 @@ def test_the_draw_follows_the_seed(data):
     assert first == second
 
 
+def test_a_row_that_nothing_can_be_compared_with_is_passed_over(data):
+    rewrite(data, "up", "points", lambda table: failed(table))
+    (line,) = [
+        each
+        for each in verify("quickstart", recompute=400).lines
+        if each.name == "points" and each.group == "recomputed"
+    ]
+    assert line.good
+    rows = sum(result_of(data, stage).manifest["tables"]["points"]["rows"] for stage in STAGES_WITH_POINTS)
+    swept = result_of(data, "up").manifest["tables"]["points"]["rows"]
+    assert (line.checked, line.skipped) == (rows - swept, swept)
+
+
+STAGES_WITH_POINTS = ("symmetric_run", "asymmetric_run", "doubled_run", "two_one_run", "up")
+
+
+def failed(table):
+    i = table.schema.names.index("status")
+    return table.set_column(i, table.schema.field(i), pa.array(["failed"] * table.num_rows))
+
+
 def test_chaotic_rows_are_compared_within_four_standard_errors():
     stored = dict.fromkeys(("mu", "A", "Omega", "r", "lam", "x1", "v1", "x2", "v2", "phase"), 0.1)
     stored |= {"regime": "chaotic", "settled": True, "status": "ok"}

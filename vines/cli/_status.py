@@ -18,12 +18,22 @@ if TYPE_CHECKING:
 def command(name: str | None, as_json: bool) -> None:
     """Say what is computed, what is stale, and why: of the pipeline or collection NAME, or of all."""
     from vines.cli._layout import print_rows
+    from vines.errors import VinesError
     from vines.stages import list_pipelines, members_of, status
 
     names = members_of(name) if name is not None else [row["name"] for row in list_pipelines() if not row["pipelines"]]
-    plans = {each: status(each) for each in names}
+    plans: dict[str, list[StagePlan]] = {}
+    unreadable: dict[str, str] = {}
+    for each in names:
+        try:
+            plans[each] = status(each)
+        except VinesError as error:
+            if each == name:
+                raise
+            unreadable[each] = str(error)
     if as_json:
-        click.echo(json.dumps({each: [asdict(p) for p in found] for each, found in plans.items()}, indent=2))
+        told: dict[str, object] = {each: [asdict(p) for p in found] for each, found in plans.items()}
+        click.echo(json.dumps({**told, **{each: {"error": why} for each, why in unreadable.items()}}, indent=2))
         return
     if name not in plans:
         rows = []
@@ -31,7 +41,8 @@ def command(name: str | None, as_json: bool) -> None:
             ready = sum(p.state == "up_to_date" for p in found)
             first = next((f"{p.name}: {p.reason}" for p in found if p.state != "up_to_date"), "up to date")
             rows.append([each, f"{ready} of {len(found)}", first])
-        print_rows(["pipeline", "stages ready", "first to do"], rows, wrap=2)
+        rows += [[each, "", f"cannot be read: {why}"] for each, why in unreadable.items()]
+        print_rows(["pipeline", "stages ready", "first to do"], sorted(rows), wrap=2)
         return
     print_rows(
         ["stage", "kind", "state", "points", "failed", "why"],

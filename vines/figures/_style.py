@@ -77,11 +77,16 @@ def new_figure(width: float, height: float) -> Figure:
 
 
 def save(figure: Figure, folder: Path, name: str = "picture") -> list[Path]:
-    """Write ``<name>.png`` and ``<name>.svg`` into a folder, without dates, and return the paths."""
+    """Write ``<name>.png`` and ``<name>.svg`` into a folder, without dates, and return the paths.
+
+    Panels are laid out once, the dearest part of drawing, so both files show the same.
+    """
     import matplotlib as mpl
 
     files = [folder / f"{name}.png", folder / f"{name}.svg"]
     with mpl.rc_context(RC):
+        figure.draw_without_rendering()
+        figure.set_layout_engine("none")
         figure.savefig(files[0], metadata={"Software": "vines"})
         figure.savefig(files[1], metadata={"Date": None, "Creator": "vines"})
     return files

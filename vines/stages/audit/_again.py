@@ -45,23 +45,25 @@ class PointsAgain:
         """Say whether points of this result can be computed again from their rows."""
         return result.manifest["kind"] in _KINDS
 
-    def compare(self, result: Result, table: str, place: int) -> tuple[float, str]:
-        """Compute the point of a row again and compare the rows that it has in the table."""
+    def compare(self, result: Result, table: str, place: int) -> Comparison:
+        """Compute the point of a row again and compare the rows that it has in the table.
+
+        Of a point that failed, or that is not periodic, there is nothing to compare but the row of ``points``.
+        """
         point = stored_row(result, table, place)["point_id"]
         key = (result.key, point)
-        if key not in self._known:
-            stored = _rows_of(result, point)
-            self._known[key] = (stored, _compute(result, stored[result.tables[0]][0]))
-        stored, again = self._known[key]
         comparison = Comparison()
-        primary = stored[result.tables[0]][0]
-        if primary.get("status") == "failed":
-            return comparison.told
+        primary = _rows_of(result, point, result.tables[0])[0]
         regular = primary.get("regime") is None or (primary["settled"] and primary["regime"] in _REGULAR)
+        if primary.get("status") == "failed" or not (regular or table == "points"):
+            return comparison
+        if key not in self._known:
+            stored = {name: _rows_of(result, point, name) for name in result.tables}
+            self._known[key] = (stored, _compute(result, primary))
+        stored, again = self._known[key]
         if not regular:
-            if table == "points":
-                compare_within_errors(comparison, primary, again["points"][0])
-            return comparison.told
+            compare_within_errors(comparison, primary, again["points"][0])
+            return comparison
         # the impacts of other attractors at the point may be chaotic
         ours, theirs = (
             [row for row in rows[table] if table != "impacts" or not row.get("attractor")] for rows in (stored, again)
@@ -69,7 +71,7 @@ class PointsAgain:
         comparison.same("number of rows", len(ours), len(theirs))
         for one, other in zip(ours, theirs, strict=False):
             compare_rows(comparison, table, one, other, leave=() if _settled(one) else _ROUGH)
-        return comparison.told
+        return comparison
 
 
 _ROUGH = tuple(
@@ -82,16 +84,12 @@ def _settled(row: dict[str, Any]) -> bool:
     return "fraction" not in row or row["regime"] in _REGULAR
 
 
-def _rows_of(result: Result, point: str) -> dict[str, list[dict[str, Any]]]:
-    """Return all rows of a point by table."""
+def _rows_of(result: Result, point: str, table: str) -> list[dict[str, Any]]:
+    """Return all rows of a point in a table."""
     import pyarrow.parquet as pq
 
-    return {
-        name: pq.read_table(
-            result.folder / f"{name}.parquet", filters=[("point_id", "=", point)], use_threads=False
-        ).to_pylist()
-        for name in result.tables
-    }
+    path = result.folder / f"{table}.parquet"
+    return pq.read_table(path, filters=[("point_id", "=", point)], use_threads=False).to_pylist()
 
 
 def _compute(result: Result, row: dict[str, Any]) -> dict[str, list[dict[str, Any]]]:
@@ -120,7 +118,7 @@ def _compute(result: Result, row: dict[str, Any]) -> dict[str, list[dict[str, An
     return {name: schema.cast(name, batch.tables.get(name, ())).to_pylist() for name in result.tables}
 
 
-def start_again(result: Result, table: str, place: int) -> tuple[float, str]:
+def start_again(result: Result, table: str, place: int) -> Comparison:
     """Settle from the start of a cell of ``basins``, or the end state of an attractor, and compare what it comes to.
 
     Starts that came to a periodic motion late, or never, are not compared: where chaos is a long transient, rounding
@@ -131,11 +129,11 @@ def start_again(result: Result, table: str, place: int) -> tuple[float, str]:
     comparison = Comparison()
     regular = wanted["regime"] in _REGULAR
     if row["attractor"] < 0 or (table == "basins" and not (regular and row["periods"] <= _PROMPT)):
-        return comparison.told
+        return comparison
     found = _from_cell(result, row) if table == "basins" else _from_end(row)
     comparison.same("periodic motion", regular, found.regime in _REGULAR)
     if not regular or comparison.wrong:
-        return comparison.told
+        return comparison
     n, m = found.n or 0, found.m or 0
     if found.name is not None and wanted["name"] != found.name.replace(f"{n}:{m}", f"{m}:{n}", 1):
         comparison.same("name", wanted["name"], found.name)
@@ -143,7 +141,7 @@ def start_again(result: Result, table: str, place: int) -> tuple[float, str]:
     for name in ("max_abs_x1", "kinetic_ratio"):
         value = getattr(found.measures, name)
         comparison.number(name, wanted[name], value, allowed * (1 + abs(wanted[name] or 0.0)))
-    return comparison.told
+    return comparison
 
 
 def _from_end(row: dict[str, Any]) -> Attractor:

@@ -24,14 +24,12 @@ class Comparison:
     def __init__(self) -> None:
         self.largest = 0.0
         self.wrong = ""
-
-    @property
-    def told(self) -> tuple[float, str]:
-        """Both."""
-        return self.largest, self.wrong
+        self.made = False
+        """Whether anything was compared: a row to which no comparison applies is no row that holds."""
 
     def number(self, name: str, stored: float | None, again: float | None, allowed: float) -> None:
         """Compare two numbers; missing ones and nan are alike."""
+        self.made = True
         a, b = (math.nan if value is None else float(value) for value in (stored, again))
         if math.isnan(a) and math.isnan(b):
             return
@@ -44,6 +42,7 @@ class Comparison:
 
     def same(self, name: str, stored: Any, again: Any) -> None:
         """Compare what has to be equal; an empty text is like a missing one."""
+        self.made = True
         if (stored or None) != (again or None) and not self.wrong:
             self.largest = math.inf
             self.wrong = f"{name} is stored as {stored!r} and comes out as {again!r}"

@@ -24,16 +24,16 @@ _BESIDE = (1e-3, 1e-4, 1e-5)
 """Distances of the orbit that is followed from the bifurcation, relative to the value of the parameter."""
 
 
-def locate_again(result: Result, place: int) -> tuple[float, str]:
+def locate_again(result: Result, place: int) -> Comparison:
     """Locate the bifurcation of a row of ``bifurcations`` again and compare where it lies."""
     row = stored_row(result, "bifurcations", place)
     comparison = Comparison()
     nearest = min(_met(row), key=lambda found: abs(found.value - row["value"]), default=None)
     if nearest is None:
         comparison.same(f"{row['type']} at {row['parameter']} = {row['value']:.10g}", "there", "not met again")
-        return comparison.told
+        return comparison
     comparison.number("value", row["value"], nearest.value, TOLERANCE)
-    return comparison.told
+    return comparison
 
 
 def _met(row: dict[str, Any]) -> Iterator[Bifurcation]:

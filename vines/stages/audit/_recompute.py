@@ -17,11 +17,14 @@ from vines.stages.audit._located import locate_again
 from vines.stages.audit._resolved import resolve_again
 
 if TYPE_CHECKING:
+    from vines.stages.audit._compare import Comparison
     from vines.stages.audit._ledger import Ledger
     from vines.store import Result
 
 __all__ = ["recompute_rows"]
 
+_REDRAWN = 20
+"""So many rows are drawn for each that is wanted: those that nothing can be compared with are passed over."""
 _SAYS = {
     "points": "settled periodic ones to 1e-9, the others within four standard errors",
     "impacts": "with their point: of settled periodic ones to 1e-9",
@@ -79,11 +82,17 @@ def recompute_rows(
     for table, share in _shares({name: sum(s.rows for s in found) for name, found in sources.items()}, count).items():
         say(f"computing {share} rows of {table} again")
         line = ledger.line("recomputed", table, _SAYS[table], "rows", 1.0)
-        for source, place in _draw(sources[table], share, rng):
+        for source, place in _draw(sources[table], _REDRAWN * share, rng):
+            if line.checked == share:
+                break
             try:
-                off, wrong = _again(source, place, points, rng)
+                found = _again(source, place, points, rng)
+                off, wrong, made = found.largest, found.wrong, found.made
             except VinesError as error:
-                off, wrong = np.inf, str(error)
+                off, wrong, made = np.inf, str(error), True
+            if not made:
+                line.skipped += 1
+                continue
             line.checked += 1
             if np.isfinite(off):
                 line.largest = max(line.largest, off)
@@ -106,8 +115,8 @@ def _can(result: Result, table: str) -> bool:
     return of == "basins" if table == "basins" else PointsAgain.can(result)
 
 
-def _again(source: _Source, place: int, points: PointsAgain, rng: np.random.Generator) -> tuple[float, str]:
-    """Return the largest difference in units of what is allowed, and what is wrong, empty if nothing is."""
+def _again(source: _Source, place: int, points: PointsAgain, rng: np.random.Generator) -> Comparison:
+    """Compute a row again and compare it with the stored one."""
     match source.table:
         case "orbits":
             return resolve_again(source.result, place, rng)
@@ -141,9 +150,10 @@ def _shares(rows: dict[str, int], count: int) -> dict[str, int]:
 
 
 def _draw(sources: list[_Source], count: int, rng: np.random.Generator) -> list[tuple[_Source, int]]:
-    """Draw rows without putting them back."""
+    """Draw rows without putting them back, as many as there are if there are fewer."""
     ends = np.cumsum([source.rows for source in sources])
-    drawn: Any = np.sort(rng.choice(int(ends[-1]), size=count, replace=False))
+    total = int(ends[-1])
+    drawn: Any = rng.choice(total, size=min(count, total), replace=False)
     which = np.searchsorted(ends, drawn, side="right")
     return [
         (sources[k], int(row - (ends[k - 1] if k else 0)))

@@ -28,7 +28,7 @@ _MULTIPLIERS = ("multipliers_re", "multipliers_im", "max_multiplier", "stable")
 _NAMES = ("point_id", "orbit_id", "branch_id", "violation_time")
 
 
-def resolve_again(result: Result, place: int, rng: np.random.Generator) -> tuple[float, str]:
+def resolve_again(result: Result, place: int, rng: np.random.Generator) -> Comparison:
     """Solve the orbit of a row of ``orbits`` again and compare everything that is stored of it.
 
     Near a bifurcation the solution is as sensitive as the multiplier is near 1, and what is allowed grows with that.
@@ -54,7 +54,7 @@ def resolve_again(result: Result, place: int, rng: np.random.Generator) -> tuple
             comparison.number(f"coefficient {k} of the multipliers", float(abs(a - b)), 0.0, allowed * 10 * largest)
         if row["admissible"]:
             _fly(comparison, orbit)
-    return comparison.told
+    return comparison
 
 
 def _solve(word: Word, p: Params, t: npt.NDArray[np.float64], disturbance: npt.NDArray[np.float64]) -> Orbit:
