@@ -10,6 +10,7 @@ COMMANDS = {
     "init": ("vines.cli._rig_init", "Write a commented template of a run folder."),
     "inspect": ("vines.cli._rig_inspect", "Show what a raw file holds: channels, units, rates, gaps, clipping."),
     "ingest": ("vines.cli._rig_ingest", "Read run folders into the catalogue and as MCAP logs."),
+    "reconstruct": ("vines.cli._rig_reconstruct", "Bring a run to the quantities of the model, with uncertainties."),
     "campaign": ("vines.cli._rig_campaign", "Make a synthetic sweep up and down with ring-downs."),
     "synth": ("vines.cli._rig_synth", "Make a run folder of a synthetic rig, its truth sealed."),
 }
@@ -23,4 +24,5 @@ def command() -> None:
     vines rig init my_run              a template to fill in
     vines rig inspect recording.tdms   what is in this file?
     vines rig ingest my_run            into the catalogue; 'vines view' shows it
+    vines rig reconstruct my_run       omega0, A, mu, r, impacts, pattern, with uncertainties
     """  # noqa: D301

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from vines.pipeline._axes import Axis
     from vines.pipeline._builder import Declaration, span
+    from vines.pipeline._code import CodeDigests
     from vines.pipeline._collection import Collection, load_collection, members
     from vines.pipeline._declaration import Carry, Pipeline, Refine, Stage, available, find, load
     from vines.pipeline._events import Event, RunSummary, StageOutcome, silent
@@ -24,6 +25,7 @@ __all__ = [
     "Axis",
     "Batch",
     "Carry",
+    "CodeDigests",
     "Collection",
     "Declaration",
     "Event",
@@ -65,6 +67,7 @@ __all__ = [
 _HOME = {
     "Axis": "vines.pipeline._axes",
     "Batch": "vines.pipeline._jobs",
+    "CodeDigests": "vines.pipeline._code",
     "Carry": "vines.pipeline._declaration",
     "Collection": "vines.pipeline._collection",
     "Declaration": "vines.pipeline._builder",

@@ -5,10 +5,10 @@ from __future__ import annotations
 import math
 import multiprocessing
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from concurrent.futures import FIRST_COMPLETED, Executor, Future, wait
 from types import TracebackType
-from typing import Protocol
+from typing import Protocol, TypeVar
 
 from vines.errors import StoreError
 from vines.pipeline._work import Chunk, Pace, Work
@@ -20,6 +20,9 @@ WORTH_SECONDS = 4.0
 """Work that would take one process longer than this is worth starting others, which costs each about 1.5 s."""
 _DEATHS = 3
 _LOOK_SECONDS = 1.0
+
+_Item = TypeVar("_Item")
+_Made = TypeVar("_Made")
 
 
 def cores() -> int:
@@ -164,6 +167,49 @@ class Engine:
             if min(self.crew.size(), work.width) > 1 and pace.seconds_for(work.left) >= self.crew.worth:
                 self._together(work, make, stored, pace)
 
+    def spread(
+        self, function: Callable[[_Item], _Made], items: Sequence[_Item], told: Callable[[int, int, int], None]
+    ) -> list[_Made]:
+        """Return what a function makes of each item, in their order; processes share the items if there are several.
+
+        Parameters
+        ----------
+        function : callable
+            Can be imported by its name; what it makes of an item depends on that alone.
+        items : sequence
+            Whole seconds of work each, so that a process is worth its start.
+        told : callable
+            Told how many items are done, of how many, and how many processes are at work.
+
+        Raises
+        ------
+        StoreError
+            If worker processes die again and again.
+        EngineError
+            If the scheduler is lost.
+        """
+        made: dict[int, _Made] = {}
+        size = min(self.crew.size(), len(items)) if len(items) > 1 else 1
+        if size < 2:
+            for place, item in enumerate(items):
+                made[place] = function(item)
+                told(len(made), len(items), 1)
+        deaths = 0
+        while len(made) < len(items):
+            try:
+                executor = self.crew.executor()
+                flying = {executor.submit(function, items[k]): k for k in range(len(items)) if k not in made}
+                while flying:
+                    ready, _ = wait(flying, timeout=_LOOK_SECONDS, return_when=FIRST_COMPLETED)
+                    if not ready:
+                        self.crew.look()
+                    for future in ready:
+                        made[flying.pop(future)] = future.result()
+                        told(len(made), len(items), size)
+            except Exception as error:
+                deaths = self._count(error, deaths)
+        return [made[place] for place in range(len(items))]
+
     def __enter__(self) -> Engine:
         return self
 
@@ -182,14 +228,18 @@ class Engine:
             try:
                 self._drain(flying, work, make, stored, pace)
             except Exception as error:
-                if not self.crew.is_loss(error):
-                    raise
-                deaths += 1
                 for chunk in reversed(list(flying.values())):
                     work.give_back(chunk)
-                if deaths >= _DEATHS:
-                    text = f"worker processes died {deaths} times, perhaps for want of memory"
-                    raise StoreError(f"{text}; what was computed is kept; run again with fewer --jobs") from None
+                deaths = self._count(error, deaths)
+
+    def _count(self, error: Exception, deaths: int) -> int:
+        """Return how often workers were lost by now; raise the error if it is another, or if it were too often."""
+        if not self.crew.is_loss(error):
+            raise error
+        if deaths + 1 >= _DEATHS:
+            text = f"worker processes died {deaths + 1} times, perhaps for want of memory"
+            raise StoreError(f"{text}; what was computed is kept; run again with fewer --jobs") from None
+        return deaths + 1
 
     def _drain(
         self,

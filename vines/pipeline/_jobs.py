@@ -6,10 +6,10 @@ Bodies import these types, so this module stays small: it belongs to the code di
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple, overload
+from typing import TYPE_CHECKING, Any, NamedTuple, Protocol, TypeVar, overload
 
 from vines.errors import UnknownNameError, nearest
 
@@ -20,7 +20,10 @@ if TYPE_CHECKING:
 
     from vines.store import Ids
 
-__all__ = ["Batch", "Input", "Job", "Point", "Points", "Range", "WholeJob"]
+__all__ = ["Batch", "Input", "Job", "Point", "Points", "Range", "Spread", "WholeJob", "one_by_one"]
+
+_Item = TypeVar("_Item")
+_Made = TypeVar("_Made")
 
 
 class Point(NamedTuple):
@@ -195,6 +198,25 @@ class Input:
         return pq.read_table(self.folder / f"{wanted}.parquet")
 
 
+class Spread(Protocol):
+    """Apply a function to items that do not depend on each other, in as many processes as the run may use."""
+
+    def __call__(self, function: Callable[[_Item], _Made], items: Sequence[_Item]) -> list[_Made]:
+        """Return what the function, which can be imported by its name, makes of each item, in their order."""
+        ...
+
+
+def one_by_one(function: Callable[[_Item], _Made], items: Sequence[_Item]) -> list[_Made]:
+    """Return what a function makes of each item, one after the other in this process.
+
+    Examples
+    --------
+    >>> one_by_one(len, ["LR", "LLR"])
+    [2, 3]
+    """
+    return [function(item) for item in items]
+
+
 @dataclass(frozen=True, slots=True)
 class WholeJob:
     """A stage of the whole shape, to be computed in one call.
@@ -215,6 +237,8 @@ class WholeJob:
         An empty folder; every file that the body leaves there becomes part of the result.
     provenance : dict
         As in :class:`Job`.
+    spread : Spread
+        For parts of the work that do not depend on each other; how many processes share them changes no result.
     """
 
     options: msgspec.Struct
@@ -224,6 +248,7 @@ class WholeJob:
     files: tuple[Path, ...]
     folder: Path
     provenance: dict[str, Any]
+    spread: Spread = one_by_one
 
 
 @dataclass(frozen=True, slots=True)

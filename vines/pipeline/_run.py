@@ -185,14 +185,21 @@ class _Run:
         self.report(Event(what, name, outcome.wanted, outcome.wanted, outcome.failed, text=text))
 
     def _whole(self, prepared: Prepared, each: StagePlan, *, force: bool) -> StageOutcome:
+        from functools import partial
+
         from vines.pipeline._whole import compute_whole
 
         if self.store.has(each.key) and not force:
             return StageOutcome(each.name, "computed", 1, 0, 0, each.key, each.reason)
-        problem = compute_whole(prepared, self.store, self.planner, replace=force)
+        spread = partial(self.engine.spread, told=partial(self._part, each.name))
+        problem = compute_whole(prepared, self.store, self.planner, spread, replace=force)
         if problem:
             return StageOutcome(each.name, "failed", 1, reason=problem)
         return StageOutcome(each.name, "computed", 1, 1, 0, each.key, each.reason)
+
+    def _part(self, name: str, done: int, of: int, processes: int) -> None:
+        """Tell that a part of a stage of the whole shape is done."""
+        self.report(Event("progress", name, of, done, jobs=processes))
 
     def _points(self, prepared: Prepared, each: StagePlan, *, force: bool) -> StageOutcome:
         from vines.pipeline._gather import put_together

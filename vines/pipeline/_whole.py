@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from vines.errors import SchemaError
-from vines.pipeline._jobs import Batch, Input, Range, WholeJob
+from vines.pipeline._jobs import Batch, Input, Range, Spread, WholeJob
 from vines.pipeline._worker import body_of
 from vines.store import Result, Store, describe_table, write_parquet
 
@@ -18,7 +18,7 @@ __all__ = ["compute_whole"]
 _PICTURES = ("picture.png", "picture.svg")
 
 
-def compute_whole(prepared: Prepared, store: Store, planner: Planner, *, replace: bool) -> str:
+def compute_whole(prepared: Prepared, store: Store, planner: Planner, spread: Spread, *, replace: bool) -> str:
     """Compute a stage and store its result; return in one line why that failed, empty if it did not.
 
     Parameters
@@ -29,6 +29,8 @@ def compute_whole(prepared: Prepared, store: Store, planner: Planner, *, replace
         Where the result goes.
     planner : Planner
         Knows the keys of the inputs.
+    spread : Spread
+        Shares the work of the body among processes, if the body asks for it.
     replace : bool
         Whether to replace a result of the same key.
     """
@@ -46,6 +48,7 @@ def compute_whole(prepared: Prepared, store: Store, planner: Planner, *, replace
             files=prepared.ingredients.files,
             folder=folder,
             provenance=provenance,
+            spread=spread,
         )
         try:
             for need in stage.needs:

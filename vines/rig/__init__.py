@@ -9,7 +9,9 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from vines.rig._compare import Calibration, calibrate, compare, compare_all
     from vines.rig._inspect import channel_facts, draw_file, spark
+    from vines.rig._keep import load_reconstruction, save_reconstruction
     from vines.rig._match import Candidate
+    from vines.rig._match_ring_downs import match_ring_downs
     from vines.rig._model import Predicted
     from vines.rig._read_run import Ingested, read_run
     from vines.rig._reconstruct import reconstruct
@@ -43,10 +45,13 @@ __all__ = [
     "compare_all",
     "draw_file",
     "find_runs",
+    "load_reconstruction",
+    "match_ring_downs",
     "read_folder",
     "read_run",
     "reconstruct",
     "ring_down",
+    "save_reconstruction",
     "spark",
     "write_template",
 ]
@@ -74,10 +79,13 @@ _HOME = {
     "compare_all": "_compare",
     "draw_file": "_inspect",
     "find_runs": "_run_folder",
+    "load_reconstruction": "_keep",
+    "match_ring_downs": "_match_ring_downs",
     "read_folder": "_run_folder",
     "read_run": "_read_run",
     "reconstruct": "_reconstruct",
     "ring_down": "_ring_down",
+    "save_reconstruction": "_keep",
     "spark": "_inspect",
     "write_template": "_template",
 }

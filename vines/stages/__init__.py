@@ -17,12 +17,14 @@ if TYPE_CHECKING:
     from vines.stages._orbit_log import orbit_log
     from vines.stages._parts import load_pipeline, members_of
     from vines.stages._report import report
+    from vines.stages._rig_by_hand import Derived, reconstruct_run
     from vines.stages._rig_running import ingest_folder
     from vines.stages._running import compile_if_cold, list_pipelines, run, status, warm_up
     from vines.stages._study import init_study
     from vines.stages.audit import Verification, verify
 
 __all__ = [
+    "Derived",
     "Difference",
     "Verification",
     "all_logs",
@@ -44,6 +46,7 @@ __all__ = [
     "open_store",
     "orbit_log",
     "query",
+    "reconstruct_run",
     "recordings_folder",
     "register_kinds",
     "report",
@@ -62,6 +65,7 @@ _HOME = {
     "all_logs": "_finding",
     "orbit_log": "_orbit_log",
     "recordings_folder": "_finding",
+    "Derived": "_rig_by_hand",
     "Difference": "_keeping",
     "checks": "_asking",
     "compile_if_cold": "_running",
@@ -80,6 +84,7 @@ _HOME = {
     "members_of": "_parts",
     "open_store": "_opening",
     "query": "_asking",
+    "reconstruct_run": "_rig_by_hand",
     "register_kinds": "_kinds",
     "report": "_report",
     "rows_of": "_asking",

@@ -16,6 +16,8 @@ _LINKS = (
     ("orbits", "branch_id", "branches", "branch_id"),
     ("bifurcations", "branch_id", "branches", "branch_id"),
     ("branches", "parent", "branches", "branch_id"),
+    ("rig_channels", "run_id", "rig_runs", "run_id"),
+    ("rig_impacts", "run_id", "reconstructions", "run_id"),
 )
 
 

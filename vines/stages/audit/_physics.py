@@ -16,6 +16,7 @@ from vines.stages.audit._impacts import POINT_COLUMNS, impact_defects, motion_de
 from vines.stages.audit._orbits import orbit_defects
 from vines.stages.audit._others import basin_defects, check_defects, optimum_defects, reduced_defects
 from vines.stages.audit._points import attractor_defects, point_defects
+from vines.stages.audit._rig import reconstruction_defects, rig_impact_defects
 from vines.stages.audit._rows import PARAMETERS, Rows
 
 if TYPE_CHECKING:
@@ -37,7 +38,9 @@ _CHECKS: dict[str, Callable[[Rows], Iterator[Defect]]] = {
     "optima": optimum_defects,
     "orbits": orbit_defects,
     "points": point_defects,
+    "reconstructions": reconstruction_defects,
     "reduced": reduced_defects,
+    "rig_impacts": rig_impact_defects,
 }
 _WHOLE = ("basins",)
 """Tables that are checked as a whole: their rows share a sum."""

@@ -1,4 +1,4 @@
-"""The kinds of stages of a rig: light specifications, as in :mod:`vines.stages._kinds`."""
+"""Kinds of a rig: a synthetic campaign, what was measured, what follows from it, and the model beside it."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import msgspec
 from vines.errors import ParameterError
 from vines.pipeline import Kind, register
 
-__all__ = ["IngestOptions", "SynthOptions", "register_rig_kinds"]
+__all__ = ["IngestOptions", "ReconstructOptions", "SynthOptions", "register_rig"]
 
 
 class SynthOptions(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -37,6 +37,12 @@ class IngestOptions(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     log_rate: float = 2048.0
 
 
+class ReconstructOptions(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """Every run with the ball of the needed stages of kind `ingest`; `seed` is that of the draws for uncertainties."""
+
+    seed: int = 0
+
+
 def _check_synth(params: dict[str, float], options: Any) -> None:
     del params
     if (
@@ -45,6 +51,15 @@ def _check_synth(params: dict[str, float], options: Any) -> None:
         or options.amplitudes[0] <= 0
     ):
         raise ParameterError(f"amplitudes are {list(options.amplitudes)}, allowed are positive numbers in rising order")
+    _check_seed(options)
+
+
+def _check_reconstruct(params: dict[str, float], options: Any) -> None:
+    del params
+    _check_seed(options)
+
+
+def _check_seed(options: Any) -> None:
     if options.seed < 0:
         raise ParameterError(f"seed is {options.seed}, allowed is seed >= 0")
 
@@ -68,7 +83,7 @@ def _run_files(options: Any, root: Path) -> tuple[Path, ...]:
     return tuple(files)
 
 
-def register_rig_kinds() -> None:
+def register_rig() -> None:
     """Make the kinds of a rig known to declarations."""
     register(
         Kind(
@@ -93,5 +108,17 @@ def register_rig_kinds() -> None:
             logs=True,
             check=_check_ingest,
             files=_run_files,
+        )
+    )
+    register(
+        Kind(
+            name="reconstruct",
+            summary="runs of a rig brought to the quantities of the model, with uncertainties, gates and their impacts",
+            shape="whole",
+            options=ReconstructOptions,
+            body="vines.stages._rig_reconstruct:compute",
+            tables=("reconstructions", "rig_impacts"),
+            needs=True,
+            check=_check_reconstruct,
         )
     )

@@ -1,0 +1,150 @@
+"""The rehearsal of a campaign, coarse: raw TDMS of two runs of twelve seconds, through to the tables and commands."""
+
+import json
+import shutil
+from pathlib import Path
+
+import pytest
+
+from vines.rig import load_reconstruction, save_reconstruction
+
+PIPELINES = Path(__file__).parents[2] / "pipelines"
+COARSE = {"amplitudes": "[0.015]", "settings.duration": "12.0", "settings.settle": "15.0"}
+
+
+@pytest.fixture(scope="module")
+def rehearsed(tmp_path_factory):
+    """Return a project in which the coarse rehearsal has been run; not to be changed."""
+    from tests.conftest import Project
+
+    root = tmp_path_factory.mktemp("rehearsal")
+    (root / "pipelines").mkdir()
+    shutil.copy(PIPELINES / "rehearsal.toml", root / "pipelines")
+    project = Project(root)
+    project.settings = [f"--set=stages.campaign.{key}={value}" for key, value in COARSE.items()]
+    project.first = project.vines("run", "rehearsal", *project.settings)
+    return project
+
+
+@pytest.fixture
+def campaign(rehearsed, tmp_path):
+    """Return a copy of the campaign's run folders."""
+    (made,) = rehearsed.data.glob("results/*/sealed")
+    shutil.copytree(made.parent / "runs", tmp_path / "runs")
+    return tmp_path / "runs"
+
+
+def rows(project, sql):
+    return json.loads(project.vines("query", sql, "--format", "json").stdout)
+
+
+def test_each_run_is_a_row_with_uncertainties_and_its_ring_downs(rehearsed):
+    up, down = rows(rehearsed, "select * from reconstructions order by run_id")
+    assert (up["run_id"], up["protocol"], up["ringdown"]) == ("01_up", "sweep_up", "00_ringdown 02_ringdown")
+    assert (down["run_id"], down["protocol"], down["ringdown"]) == ("03_down", "sweep_down", "02_ringdown 04_ringdown")
+    for row in (up, down):
+        assert row["status"] == "ok"
+        assert row["accepted"], row["findings"]
+        assert (row["pattern"], row["n"], row["m"], row["p"], row["word"]) == ("1:1", 1, 1, 1, "LR")
+        # r falls as speed^-.08 from .65 at .5 m/s; the shaker sags by 4 %
+        assert row["r"] == pytest.approx(0.65 * (row["w_before"] / 0.5) ** -0.08, abs=0.005)
+        assert row["A"] == pytest.approx(0.96 * 0.015, abs=4 * row["u_A"])
+        assert row["mu"] == pytest.approx(0.032 / 3.807, abs=4 * row["u_mu"])
+        assert 0 < row["u_r"] < 0.005
+
+
+def test_impacts_are_rows_of_their_own(rehearsed):
+    counts = rows(
+        rehearsed,
+        "select i.run_id, count(*) as impacts, any_value(r.impacts) as told from rig_impacts i "
+        "join reconstructions r using (run_id) group by i.run_id",
+    )
+    assert len(counts) == 2
+    assert all(row["impacts"] == row["told"] > 180 for row in counts)
+    (mean,) = rows(rehearsed, "select avg(r) as r from rig_impacts where run_id = '01_up' and not suspect")
+    (told,) = rows(rehearsed, "select r from reconstructions where run_id = '01_up'")
+    assert mean["r"] == pytest.approx(told["r"], abs=1e-3)
+
+
+def test_verify_understands_the_tables(rehearsed):
+    said = rehearsed.vines("verify", "rehearsal").stdout
+    assert "all hold" in said
+    assert "A = E/b" in said
+    assert "r = -w_dot_after/w_dot" in said
+
+
+def test_tampered_rows_are_seen(rehearsed):
+    import numpy as np
+    import pyarrow as pa
+    import pyarrow.parquet as pq
+
+    from vines.stages.audit._rig import reconstruction_defects, rig_impact_defects
+    from vines.stages.audit._rows import Rows
+
+    def broken(table, checks, column, change, row=1):
+        (path,) = rehearsed.data.glob(f"results/*/{table}.parquet")
+        good = pq.read_table(path)
+        values = good.column(column).to_pylist()
+        values[row] = change(values[row])
+        place = good.column_names.index(column)
+        bad = good.set_column(place, column, pa.array(values, type=good.schema.field(column).type))
+        return [defect.name for defect in checks(Rows(bad)) if np.nanmax(defect.values) > defect.allowed]
+
+    assert broken("reconstructions", reconstruction_defects, "A", lambda a: 1.001 * a) == ["amplitude"]
+    assert broken("reconstructions", reconstruction_defects, "omega0", lambda a: 1.001 * a) == ["frequency ratio"]
+    assert broken("reconstructions", reconstruction_defects, "fraction", lambda a: 0.9 * a) == ["pattern"]
+    assert broken("reconstructions", reconstruction_defects, "word", lambda a: a + "L") == ["word"]
+    assert broken("reconstructions", reconstruction_defects, "accepted", lambda a: not a) == ["gates"]
+    assert broken("rig_impacts", rig_impact_defects, "side", lambda a: -a) == ["walls"]
+    assert broken("rig_impacts", rig_impact_defects, "r", lambda a: a + 0.01) == ["restitution"]
+    assert broken("rig_impacts", rig_impact_defects, "t", lambda a: a + 1.0) == ["order", "flights"]
+    assert broken("rig_impacts", rig_impact_defects, "v2_after", lambda a: a + 0.01) == ["relative velocity", "flights"]
+
+
+def test_an_interrupted_campaign_goes_on_with_what_was_reconstructed(rehearsed):
+    kept = sorted(rehearsed.data.glob("cache/rig/*.npz"))
+    assert len(kept) == 2
+    before = [path.stat().st_mtime_ns for path in kept]
+    (table,) = rehearsed.data.glob("results/*/reconstructions.parquet")
+    bytes_before = table.read_bytes()
+    rehearsed.vines("run", "rehearsal", "reconstruct", "--force", *rehearsed.settings)
+    assert [path.stat().st_mtime_ns for path in kept] == before
+    assert table.read_bytes() == bytes_before
+
+
+def test_a_reconstruction_is_the_same_after_it_was_kept(rehearsed, tmp_path):
+    import numpy as np
+
+    (path,) = rehearsed.data.glob("results/*/reconstructions/01_up.npz")
+    found = load_reconstruction(path)
+    save_reconstruction(found, tmp_path / "again.npz")
+    assert (tmp_path / "again.npz").read_bytes() == path.read_bytes()
+    t = np.linspace(1.0, 2.0, 50)
+    assert np.array_equal(found.track.w(t), load_reconstruction(tmp_path / "again.npz").track.w(t))
+
+
+def test_reconstruct_by_hand_gives_the_row_and_writes_derived(rehearsed, campaign):
+    said = json.loads(rehearsed.vines("rig", "reconstruct", campaign / "01_up", "--json").stdout)
+    (row,) = rows(rehearsed, "select * from reconstructions where run_id = '01_up'")
+    assert said == {name: row[name] for name in said}
+    derived = campaign / "01_up" / "derived"
+    assert json.loads((derived / "reconstruction.json").read_text()) == said
+    assert (derived / "rig_impacts.parquet").is_file()
+    shown = rehearsed.vines("rig", "reconstruct", campaign / "01_up", "--ringdown", campaign / "00_ringdown").stdout
+    assert "omega0 and lam by 00_ringdown\n" in shown
+    assert "Mean coefficient of restitution" in shown
+
+
+def test_reconstruct_refuses_in_one_line(rehearsed, campaign):
+    def refused(*arguments):
+        done = rehearsed.vines("rig", "reconstruct", *arguments, check=False)
+        assert done.returncode == 2
+        assert done.stderr.count("\n") == 1
+        return done.stderr
+
+    assert "it gives omega0 and lam of the runs that name it" in refused(campaign / "00_ringdown")
+    assert "name one of them" in refused(campaign)
+    assert "allowed for --ringdown is ringdown" in refused(campaign / "01_up", "--ringdown", campaign / "03_down")
+    shutil.rmtree(campaign / "02_ringdown")
+    assert "names the ring-down '02_ringdown', which is not at hand" in refused(campaign / "01_up")
+    assert "there is no run.json" in refused(campaign.parent / "nowhere")

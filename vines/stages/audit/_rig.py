@@ -1,0 +1,68 @@
+"""What can be told of the rows that follow from measurements: identities between their columns, and plausibility."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+import numpy.typing as npt
+
+from vines.stages.audit._defect import Defect, relative
+from vines.stages.audit._rows import Floats, Rows
+
+__all__ = ["reconstruction_defects", "rig_impact_defects"]
+
+
+def reconstruction_defects(rows: Rows) -> Iterator[Defect]:
+    """Yield the checks of rows of the table ``reconstructions``."""
+    done = rows.text("status") == "ok"
+
+    def where(values: Floats) -> Floats:
+        return np.where(done, values, np.nan)
+
+    yield Defect("amplitude", "A = E/b", 1e-12, where(relative(rows["A"] * rows["b"], rows["E"])))
+    turning = relative(rows["Omega"] * rows["omega0"], 2 * np.pi * rows["f"])
+    yield Defect("frequency ratio", "Omega = 2 pi f/omega0", 1e-12, where(turning))
+    holds = np.isin(rows.text("pattern").astype(str), ("mixed", "none"), invert=True)
+    wrong = ((rows["holds"] == 1) != holds) | (holds & (rows["fraction"] < 0.95))
+    yield Defect("pattern", "holds in at least 95 % of the periods, else mixed", 0.0, where(_inf(wrong)))
+    yield Defect("word", "n and m count its letters, p its periods", 0.0, where(_inf(_miscounted(rows))))
+    quiet = rows.text("failed").astype(str) == ""
+    yield Defect("gates", "accepted where none failed", 0.0, where(_inf((rows["accepted"] == 1) != quiet)))
+    count = (rows["suspect"] > rows["impacts"]) | (rows["impacts"] < 0)
+    yield Defect("impacts", "no more are suspect than there are", 0.0, where(_inf(count)))
+
+
+def rig_impact_defects(rows: Rows) -> Iterator[Defect]:
+    """Yield the checks of rows of the table ``rig_impacts``."""
+    off = np.fmax(
+        np.abs(rows["w_dot"] - (rows["v1"] - rows["v2"])),
+        np.abs(rows["w_dot_after"] - (rows["v1_after"] - rows["v2_after"])),
+    )
+    yield Defect("relative velocity", "w_dot = v1 - v2, before and after [m/s]", 1e-9, off)
+    yield Defect("restitution", "r = -w_dot_after/w_dot", 1e-9, np.abs(rows["r"] * rows["w_dot"] + rows["w_dot_after"]))
+    side = rows["side"]
+    yield Defect("side", "+1 or -1", 0.0, _inf(np.abs(side) != 1))
+    run = rows.codes("run_id")[0]
+    same = np.concatenate([[False], run[1:] == run[:-1]]) if len(rows) else np.zeros(0, dtype=bool)
+    half = side * (rows["x1"] - rows["x2"])
+    off = np.where(same, relative(half, np.concatenate([half[:1], half[:-1]])), np.nan)
+    yield Defect("walls", "side (x1 - x2) = b, the same in all impacts of a run", 1e-9, off)
+    step = _inf(~(np.diff(rows["t"], prepend=np.nan) > 0) | (np.diff(rows["index"], prepend=np.nan) != 1))
+    yield Defect("order", "times rise, one number after the other", 0.0, np.where(same, step, np.nan))
+    mean = 0.5 * (rows["v2"][1:] + rows["v2_after"][:-1])
+    flown = np.concatenate([[np.nan], np.diff(rows["x2"]) - mean * np.diff(rows["t"])]) if len(rows) else mean
+    says = "the ball flies from wall to wall at the mean of its velocities [m]"
+    yield Defect("flights", says, 1e-9, np.where(same, np.abs(flown), np.nan))
+
+
+def _miscounted(rows: Rows) -> npt.NDArray[np.bool_]:
+    """Return where n, m and p are not those of the word."""
+    words = [str(word).split() for word in rows.text("word")]
+    n, m = (np.array(["".join(word).count(end) for word in words]) for end in "LR")
+    p = np.array([max(len(word), 1) for word in words])
+    return (rows["n"] != n) | (rows["m"] != m) | (rows["p"] != p)
+
+
+def _inf(wrong: npt.NDArray[np.bool_]) -> Floats:
+    return np.where(wrong, np.inf, 0.0)
