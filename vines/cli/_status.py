@@ -21,7 +21,8 @@ def command(name: str | None, as_json: bool) -> None:
     from vines.errors import VinesError
     from vines.stages import list_pipelines, members_of, status
 
-    names = members_of(name) if name is not None else [row["name"] for row in list_pipelines() if not row["pipelines"]]
+    alone = [row["name"] for row in list_pipelines() if not row["pipelines"]] if name is None else members_of(name)
+    names = [str(each) for each in alone]
     plans: dict[str, list[StagePlan]] = {}
     unreadable: dict[str, str] = {}
     for each in names:
