@@ -6,7 +6,7 @@ import pytest
 import vines
 from vines.model import Params
 from vines.orbits import all_orbits
-from vines.stages import run
+from vines.stages import run, verify
 
 SMALL = """
 title = "small"
@@ -90,3 +90,9 @@ def test_senseless_declarations_are_refused(small, old, new, said):
     with pytest.raises(vines.errors.VinesError, match=said):
         run("wrong")
     file.unlink()
+
+
+def test_what_is_stored_verifies_and_comes_out_again(small):
+    found = verify("small", recompute=6)
+    assert found.good, [line.first for line in found.lines if not line.good]
+    assert {line.group for line in found.lines} >= {"atlas", "orbits", "branches", "bifurcations", "recomputed"}
