@@ -104,7 +104,8 @@ class Study:
         return numeric
 
     def _vines(self, *arguments):
-        environment = {**os.environ, "VINES_ROOT": str(self.folder), "PYTHONPATH": str(self.sources)}
+        path = os.pathsep.join(filter(None, [str(self.sources), os.environ.get("PYTHONPATH")]))
+        environment = {**os.environ, "VINES_ROOT": str(self.folder), "PYTHONPATH": path}
         done = subprocess.run(
             [sys.executable, "-m", "vines.cli", *arguments],
             capture_output=True,
