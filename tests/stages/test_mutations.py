@@ -77,6 +77,12 @@ class Study:
         assert text.count(old) == 1, (name, old)
         path.write_text(text.replace(old, new))
 
+    def leave_kernels_cold(self):
+        """Say that the kernels are compiled: warming up calls some with numbers that are only right in the right model."""
+        mark = "from vines.stages._running import _compiled as f; f().parent.mkdir(parents=True, exist_ok=True); f().touch()"
+        path = os.pathsep.join(filter(None, [str(self.sources), os.environ.get("PYTHONPATH")]))
+        subprocess.run([sys.executable, "-c", mark], env={**os.environ, "PYTHONPATH": path}, check=True)
+
     def change_restitution(self, by):
         """Change r in all declarations, and in the claims where they pick rows by it."""
 
@@ -166,6 +172,7 @@ def test_masses_exchanged_in_the_impact_law_turn_most_numeric_verdicts(right, tm
     wrong = Study(tmp_path / "wrong")
     for name, (old, new) in SWAPPED.items():
         wrong.patch(name, old, new)
+    wrong.leave_kernels_cold()
     assert share(right, wrong.values(REDUCED), "1 and mu exchanged", capsys) >= 0.7
 
 
