@@ -78,8 +78,8 @@ class Study:
         path.write_text(text.replace(old, new))
 
     def leave_kernels_cold(self):
-        """Say that the kernels are compiled: warming up calls some with numbers that are only right in the right model."""
-        mark = "from vines.stages._running import _compiled as f; f().parent.mkdir(parents=True, exist_ok=True); f().touch()"
+        """Say that the kernels are compiled: to warm them up calls some with numbers that only the right model has."""
+        mark = "from vines.stages._running import _compiled as f; f().parent.mkdir(parents=True); f().touch()"
         path = os.pathsep.join(filter(None, [str(self.sources), os.environ.get("PYTHONPATH")]))
         subprocess.run([sys.executable, "-c", mark], env={**os.environ, "PYTHONPATH": path}, check=True)
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import math
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -13,6 +14,7 @@ from vines.errors import OrbitNotFound
 from vines.model import Params, Word
 from vines.orbits import Orbit, find_orbit, orbit_row
 from vines.stages.audit._compare import TOLERANCE, Comparison, compare_rows, params_of, stored_row
+from vines.stages.audit._located import locate_again
 
 if TYPE_CHECKING:
     from vines.store import Result
@@ -24,6 +26,8 @@ _DISTURBED = 1e-6
 _ROUNDING = 1e-13
 _UNSTABLE = 1e4
 """Largest multiplier up to which the simulator is asked to follow an orbit for a period."""
+_FOLD = 1e-6
+"""Multipliers so near to 1 are those of an orbit at a fold, which solutions near it approach as a square root."""
 _MULTIPLIERS = ("multipliers_re", "multipliers_im", "max_multiplier", "stable")
 _NAMES = ("point_id", "orbit_id", "branch_id", "violation_time")
 
@@ -32,9 +36,13 @@ def resolve_again(result: Result, place: int, rng: np.random.Generator) -> Compa
     """Solve the orbit of a row of ``orbits`` again and compare everything that is stored of it.
 
     Near a bifurcation the solution is as sensitive as the multiplier is near 1, and what is allowed grows with that.
-    Multipliers are compared by the coefficients of their polynomial, which are smooth where two of them meet.
+    Multipliers are compared by the coefficients of their polynomial, which are smooth where two of them meet. At a fold
+    two orbits meet and none is isolated at these parameters: its row is located again, as the bifurcation that it is.
     """
     row = stored_row(result, "orbits", place)
+    if min(math.hypot(a - 1, b) for a, b in zip(row["multipliers_re"], row["multipliers_im"], strict=True)) < _FOLD:
+        places = _bifurcations_of(result, row["orbit_id"])
+        return locate_again(result, places[0]) if places else Comparison()
     word, p = Word(row["word"]), params_of(row)
     t = np.array(row["t"])
     scale = _DISTURBED * word.p * p.period
@@ -55,6 +63,14 @@ def resolve_again(result: Result, place: int, rng: np.random.Generator) -> Compa
         if row["admissible"]:
             _fly(comparison, orbit)
     return comparison
+
+
+def _bifurcations_of(result: Result, orbit_id: str) -> list[int]:
+    """Return the rows of ``bifurcations`` that are this orbit."""
+    if "bifurcations" not in result.tables:
+        return []
+    ids = result.table("bifurcations").column("orbit_id").to_pylist()
+    return [place for place, each in enumerate(ids) if each == orbit_id]
 
 
 def _solve(word: Word, p: Params, t: npt.NDArray[np.float64], disturbance: npt.NDArray[np.float64]) -> Orbit:
