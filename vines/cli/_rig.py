@@ -11,8 +11,9 @@ COMMANDS = {
     "inspect": ("vines.cli._rig_inspect", "Show what a raw file holds: channels, units, rates, gaps, clipping."),
     "ingest": ("vines.cli._rig_ingest", "Read run folders into the catalogue and as MCAP logs."),
     "reconstruct": ("vines.cli._rig_reconstruct", "Bring a run to the quantities of the model, with uncertainties."),
-    "campaign": ("vines.cli._rig_campaign", "Make a synthetic sweep up and down with ring-downs."),
+    "compare": ("vines.cli._rig_compare", "Lay a run beside the branches of the model that coexist: the verdict."),
     "synth": ("vines.cli._rig_synth", "Make a run folder of a synthetic rig, its truth sealed."),
+    "campaign": ("vines.cli._rig_campaign", "Make a synthetic sweep up and down with ring-downs."),
 }
 
 
@@ -25,4 +26,5 @@ def command() -> None:
     vines rig inspect recording.tdms   what is in this file?
     vines rig ingest my_run            into the catalogue; 'vines view' shows it
     vines rig reconstruct my_run       omega0, A, mu, r, impacts, pattern, with uncertainties
+    vines rig compare my_run           agree, pattern_only, disagree or undecidable, with the reason
     """  # noqa: D301

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -131,9 +132,24 @@ def calibrate(measured: Sequence[Comparison]) -> Calibration:
 
 
 def compare_all(
-    runs: Sequence[Reconstruction], catalogue: Sequence[Mapping[str, Any]] = (), *, seed: int = 0
+    runs: Sequence[Reconstruction],
+    catalogue: Sequence[Mapping[str, Any]] = (),
+    *,
+    seed: int = 0,
+    spread: Callable[..., Iterable[Comparison]] = map,
 ) -> tuple[tuple[Comparison, ...], tuple[Comparison, ...], Calibration]:
     """Compare runs at measured parameters, calibrate on every other one, and compare the rest again.
+
+    Parameters
+    ----------
+    runs : sequence of Reconstruction
+        In the order of time.
+    catalogue : sequence of mapping
+        As for `compare`.
+    seed : int
+        Of the ensembles.
+    spread : callable
+        ``spread(function, runs)`` applies a function to each run, such as :func:`map`, or in several processes.
 
     Returns
     -------
@@ -142,13 +158,14 @@ def compare_all(
     calibration : Calibration
         Without runs in it where fewer than four are at hand.
     """
-    measured = tuple(compare(run, catalogue, seed=seed) for run in runs)
+    measured = tuple(spread(partial(compare, catalogue=catalogue, seed=seed), runs))
     if len(runs) < 4:
         return measured, (), Calibration()
     found = calibrate(measured[::2])
     if not found.runs:
         return measured, (), found
-    return measured, tuple(compare(run, catalogue, calibration=found, seed=seed) for run in runs[1::2]), found
+    again = partial(compare, catalogue=catalogue, calibration=found, seed=seed)
+    return measured, tuple(spread(again, runs[1::2])), found
 
 
 def _slopes(orbit: Any, key: str, find: Any, place: int) -> dict[str, float]:

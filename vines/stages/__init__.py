@@ -17,19 +17,21 @@ if TYPE_CHECKING:
     from vines.stages._orbit_log import orbit_log
     from vines.stages._parts import load_pipeline, members_of
     from vines.stages._report import report
-    from vines.stages._rig_by_hand import Derived, reconstruct_run
+    from vines.stages._rig_by_hand import Compared, Derived, compare_run, reconstruct_run
     from vines.stages._rig_running import ingest_folder
     from vines.stages._running import compile_if_cold, list_pipelines, run, status, warm_up
     from vines.stages._study import init_study
     from vines.stages.audit import Verification, verify
 
 __all__ = [
+    "Compared",
     "Derived",
     "Difference",
     "Verification",
     "all_logs",
     "checks",
     "clean",
+    "compare_run",
     "compile_if_cold",
     "declaration_schema",
     "diff",
@@ -65,7 +67,9 @@ _HOME = {
     "all_logs": "_finding",
     "orbit_log": "_orbit_log",
     "recordings_folder": "_finding",
+    "Compared": "_rig_by_hand",
     "Derived": "_rig_by_hand",
+    "compare_run": "_rig_by_hand",
     "Difference": "_keeping",
     "checks": "_asking",
     "compile_if_cold": "_running",

@@ -10,7 +10,7 @@ import msgspec
 from vines.errors import ParameterError
 from vines.pipeline import Kind, register
 
-__all__ = ["IngestOptions", "ReconstructOptions", "SynthOptions", "register_rig"]
+__all__ = ["CompareOptions", "IngestOptions", "ReconstructOptions", "SynthOptions", "register_rig"]
 
 
 class SynthOptions(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -43,6 +43,16 @@ class ReconstructOptions(msgspec.Struct, frozen=True, forbid_unknown_fields=True
     seed: int = 0
 
 
+class CompareOptions(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """Every run of the needed stages of kind `reconstruct` beside the branches that coexist at its parameters.
+
+    Needed stages with orbits, such as those of kind `branch`, are the catalogue: they say which words to look for.
+    `seed` is that of the ensembles.
+    """
+
+    seed: int = 0
+
+
 def _check_synth(params: dict[str, float], options: Any) -> None:
     del params
     if (
@@ -54,7 +64,7 @@ def _check_synth(params: dict[str, float], options: Any) -> None:
     _check_seed(options)
 
 
-def _check_reconstruct(params: dict[str, float], options: Any) -> None:
+def _check_seeded(params: dict[str, float], options: Any) -> None:
     del params
     _check_seed(options)
 
@@ -119,6 +129,18 @@ def register_rig() -> None:
             body="vines.stages._rig_reconstruct:compute",
             tables=("reconstructions", "rig_impacts"),
             needs=True,
-            check=_check_reconstruct,
+            check=_check_seeded,
+        )
+    )
+    register(
+        Kind(
+            name="compare",
+            summary="runs of a rig beside the branches that coexist at their parameters, with verdicts",
+            shape="whole",
+            options=CompareOptions,
+            body="vines.stages._rig_compare:compute",
+            tables=("comparisons", "rig_cycles"),
+            needs=True,
+            check=_check_seeded,
         )
     )

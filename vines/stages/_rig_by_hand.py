@@ -1,4 +1,4 @@
-"""Reconstructing a run folder by hand: its ring-downs are found beside it, what follows goes to ``derived/``."""
+"""Reconstructing and comparing a run folder by hand: ring-downs are found beside it, what follows goes to derived/."""
 
 from __future__ import annotations
 
@@ -13,15 +13,18 @@ from vines import schema
 from vines.errors import RigError, VinesError
 from vines.pipeline import CodeDigests
 from vines.places import cache_folder
-from vines.rig import RunInfo, find_runs, load_reconstruction, match_ring_downs, read_folder
+from vines.rig import RunInfo, compare, find_runs, load_reconstruction, match_ring_downs, read_folder
+from vines.rig._comparison_rows import comparison_rows
 from vines.rig._reconstruction_rows import impact_columns, reconstruction_row
+from vines.stages._asking import query
 from vines.stages._rig_runs import free_decay, make, wanted
 from vines.store import write_parquet, write_text
 
 if TYPE_CHECKING:
     from vines.rig import Reconstruction
+    from vines.rig._verdict import Comparison
 
-__all__ = ["Derived", "plain", "reconstruct_run"]
+__all__ = ["Compared", "Derived", "compare_run", "reconstruct_run"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -83,13 +86,65 @@ def reconstruct_run(folder: Path, ring_downs: Sequence[Path] = ()) -> Derived:
     derived = folder / "derived"
     derived.mkdir(exist_ok=True)
     told, impacts = derived / "reconstruction.json", derived / "rig_impacts.parquet"
-    write_text(told, json.dumps({name: plain(value) for name, value in row.items()}, indent=1) + "\n")
+    write_text(told, json.dumps({name: _plain(value) for name, value in row.items()}, indent=1) + "\n")
     origin = {"stage": "vines rig reconstruct", "code": code, "raw_sha256": found.sha256, "ring_downs": list(chosen)}
     write_parquet(impacts, "rig_impacts", schema.cast("rig_impacts", impact_columns([found])), provenance=origin)
     return Derived(found, tuple(chosen), row, (told, impacts))
 
 
-def plain(value: Any) -> Any:
+@dataclass(frozen=True, slots=True)
+class Compared:
+    """A run folder beside the model.
+
+    Attributes
+    ----------
+    derived : Derived
+        The run.
+    found : Comparison
+    rows : list of dict
+        As in the table ``comparisons``.
+    file : Path
+        What was written to ``derived/``.
+    """
+
+    derived: Derived
+    found: Comparison
+    rows: list[dict[str, Any]]
+    file: Path
+
+
+def compare_run(folder: Path, ring_downs: Sequence[Path] = ()) -> Compared:
+    """Reconstruct one run, compare it with the branches that coexist, and write ``derived/comparison.json``.
+
+    The orbits that the catalogue holds near the run's parameters say which words are looked for beside the usual ones.
+
+    Parameters
+    ----------
+    folder, ring_downs
+        As for `reconstruct_run`.
+
+    Raises
+    ------
+    FileMissingError, RigError
+        As for `reconstruct_run`.
+    """
+    derived = reconstruct_run(folder, ring_downs)
+    found = compare(derived.found, _near(derived.row))
+    rows = [{name: _plain(value) for name, value in row.items()} for row in comparison_rows(found)]
+    file = folder / "derived" / "comparison.json"
+    write_text(file, json.dumps(rows, indent=1) + "\n")
+    return Compared(derived, found, rows, file)
+
+
+def _near(row: dict[str, Any]) -> list[dict[str, Any]]:
+    """Return what the catalogue says of orbits within a fifth of a run's A and mu."""
+    if not all(row[name] for name in ("A", "mu")):
+        return []
+    about = " and ".join(f"abs({name} - {row[name]!r}) <= 0.2 * {row[name]!r}" for name in ("A", "mu"))
+    return query(f"select distinct word, mu, A, Omega, r, lam from orbits where {about} order by all").to_pylist()
+
+
+def _plain(value: Any) -> Any:
     """Return a value as JSON knows it; what is not finite is null."""
     return None if isinstance(value, float) and not math.isfinite(value) else value
 

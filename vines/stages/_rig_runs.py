@@ -53,12 +53,10 @@ def kept_runs(inputs: Mapping[str, Input]) -> dict[str, tuple[Path, RunInfo]]:
     Raises
     ------
     RigError
-        If another kind is needed, or two runs have one name.
+        If two runs have one name.
     """
     found: dict[str, tuple[Path, RunInfo]] = {}
     for stage in inputs.values():
-        if stage.kind != "ingest":
-            raise RigError(f"needs a stage of kind ingest, but {stage.name} is a {stage.kind}")
         for path in find_runs(stage.folder / "runs"):
             info = read_folder(path).info
             if info.run_id in found:

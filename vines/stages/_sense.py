@@ -7,7 +7,7 @@ stage together with those it needs.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -39,7 +39,7 @@ def check_stages(pipeline: Pipeline) -> None:
         One line with the file, the stage, what is wrong and the remedy.
     """
     for stage in pipeline.stages.values():
-        check = {"branch": _branch, "curve": _curve, "figure": _figure, "check": _check}.get(stage.kind.name)
+        check = _SENSE.get(stage.kind.name)
         if check is not None:
             check(stage, pipeline)
 
@@ -174,3 +174,37 @@ def _check(stage: Stage, pipeline: Pipeline) -> None:
     for name in options.claims:
         if name not in known:
             raise _refuse(stage, pipeline, f"unknown claim {name!r}: {nearest(name, known)}")
+
+
+def _reconstruct(stage: Stage, pipeline: Pipeline) -> None:
+    for need in stage.needs:
+        if pipeline.stages[need].kind.name != "ingest":
+            raise _refuse(
+                stage,
+                pipeline,
+                f"it reconstructs what stages of kind ingest keep; {need} is none, remove it from needs",
+            )
+    if not stage.needs:
+        raise _refuse(stage, pipeline, "it reconstructs what was ingested; name a stage of kind ingest in needs")
+
+
+def _compare(stage: Stage, pipeline: Pipeline) -> None:
+    kinds = [pipeline.stages[need].kind for need in stage.needs]
+    for need, kind in zip(stage.needs, kinds, strict=True):
+        if kind.name != "reconstruct" and "orbits" not in kind.tables:
+            raise _refuse(
+                stage, pipeline, f"it compares reconstructed runs with orbits; {need} has neither, remove it from needs"
+            )
+    if all(kind.name != "reconstruct" for kind in kinds):
+        raise _refuse(stage, pipeline, "it compares what was reconstructed; name a stage of kind reconstruct in needs")
+
+
+_SENSE: dict[str, Callable[[Stage, Pipeline], None]] = {
+    "branch": _branch,
+    "check": _check,
+    "compare": _compare,
+    "curve": _curve,
+    "figure": _figure,
+    "reconstruct": _reconstruct,
+}
+"""What each kind of stage must fulfil."""

@@ -17,6 +17,7 @@ _LINKS = (
     ("bifurcations", "branch_id", "branches", "branch_id"),
     ("branches", "parent", "branches", "branch_id"),
     ("rig_channels", "run_id", "rig_runs", "run_id"),
+    ("rig_cycles", "run_id", "comparisons", "run_id"),
     ("rig_impacts", "run_id", "reconstructions", "run_id"),
 )
 

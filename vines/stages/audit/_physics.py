@@ -16,7 +16,7 @@ from vines.stages.audit._impacts import POINT_COLUMNS, impact_defects, motion_de
 from vines.stages.audit._orbits import orbit_defects
 from vines.stages.audit._others import basin_defects, check_defects, optimum_defects, reduced_defects
 from vines.stages.audit._points import attractor_defects, point_defects
-from vines.stages.audit._rig import reconstruction_defects, rig_impact_defects
+from vines.stages.audit._rig import comparison_defects, cycle_defects, reconstruction_defects, rig_impact_defects
 from vines.stages.audit._rows import PARAMETERS, Rows
 
 if TYPE_CHECKING:
@@ -33,6 +33,7 @@ _CHECKS: dict[str, Callable[[Rows], Iterator[Defect]]] = {
     "bifurcations": bifurcation_defects,
     "branches": branch_defects,
     "checks": check_defects,
+    "comparisons": comparison_defects,
     "curves": curve_defects,
     "impacts": impact_defects,
     "optima": optimum_defects,
@@ -40,6 +41,7 @@ _CHECKS: dict[str, Callable[[Rows], Iterator[Defect]]] = {
     "points": point_defects,
     "reconstructions": reconstruction_defects,
     "reduced": reduced_defects,
+    "rig_cycles": cycle_defects,
     "rig_impacts": rig_impact_defects,
 }
 _WHOLE = ("basins",)

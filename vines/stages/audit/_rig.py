@@ -10,7 +10,7 @@ import numpy.typing as npt
 from vines.stages.audit._defect import Defect, relative
 from vines.stages.audit._rows import Floats, Rows
 
-__all__ = ["reconstruction_defects", "rig_impact_defects"]
+__all__ = ["comparison_defects", "cycle_defects", "reconstruction_defects", "rig_impact_defects"]
 
 
 def reconstruction_defects(rows: Rows) -> Iterator[Defect]:
@@ -54,6 +54,41 @@ def rig_impact_defects(rows: Rows) -> Iterator[Defect]:
     flown = np.concatenate([[np.nan], np.diff(rows["x2"]) - mean * np.diff(rows["t"])]) if len(rows) else mean
     says = "the ball flies from wall to wall at the mean of its velocities [m]"
     yield Defect("flights", says, 1e-9, np.where(same, np.abs(flown), np.nan))
+
+
+def comparison_defects(rows: Rows) -> Iterator[Defect]:
+    """Yield the checks of rows of the table ``comparisons``."""
+    errors = np.stack([rows[f"E_n_{name}"] for name in ("phase", "max_abs_x1", "kinetic_ratio")])
+    off = np.zeros(len(rows))
+    for error, name in zip(errors, ("phase", "max_abs_x1", "kinetic_ratio"), strict=True):
+        gap = rows[name] - rows[f"model_{name}"]
+        gap = (gap + np.pi) % (2 * np.pi) - np.pi if name == "phase" else gap
+        own = np.abs(gap) / (2 * np.hypot(rows[f"u_{name}"], rows[f"u_model_{name}"]))
+        off = np.fmax(off, relative(error, own))
+    there = np.isfinite(errors).any(axis=0)
+    yield Defect("E_n", "|measured - model|/(2 sqrt(u^2 + u_model^2))", 1e-6, np.where(there, off, np.nan))
+    verdict = rows.text("verdict")
+    nearest = rows["rank"] == 0
+    far = (verdict == "agree") & nearest & ~(errors <= 1).all(axis=0)
+    kept = (rows["accepted"] == 1) & ~np.isin(rows.text("pattern").astype(str), ("mixed", "none", "None"))
+    wrong = far | ((verdict != "undecidable") & ~kept)
+    yield Defect(
+        "verdict", "agree where every E_n <= 1; undecidable where a gate failed or nothing holds", 0.0, _inf(wrong)
+    )
+    basis, own, other = rows.text("basis"), rows.text("run_id"), rows.text("calibrated_on")
+    used = [
+        b == "calibrated" and (o is None or name in o.split()) for b, name, o in zip(basis, own, other, strict=True)
+    ]
+    yield Defect("calibration", "on other runs than those it is scored on", 0.0, _inf(np.array(used, dtype=bool)))
+
+
+def cycle_defects(rows: Rows) -> Iterator[Defect]:
+    """Yield the checks of rows of the table ``rig_cycles``."""
+    table = rows.table.to_pylist()
+    sizes = [len({len(row[name]) for name in ("time", "w", "w_dot", "model_w", "model_w_dot")}) > 1 for row in table]
+    yield Defect("lengths", "the curves of a row have one length", 0.0, _inf(np.array(sizes, dtype=bool)))
+    shares = np.array([max(sum(row[name]) for name in ("wait_share", "model_wait_share")) for row in table])
+    yield Defect("shares", "no more than all waits", 1e-9, np.maximum(shares - 1, 0.0) if table else np.zeros(0))
 
 
 def _miscounted(rows: Rows) -> npt.NDArray[np.bool_]:
