@@ -13,10 +13,13 @@ if TYPE_CHECKING:
     from vines.figures._diagram_panel import BranchLine, DiagramPanel, ImpactDots, Marker
     from vines.figures._energy import FOUND, EnergyCurve, EnergyPanel
     from vines.figures._multipliers import MultiplierLines, MultiplierPanel, multiplier_figure
-    from vines.figures._names import ERRORS, NAMES, PANELS, RUN_PANELS, SYMBOLS
+    from vines.figures._names import ERRORS, MEASURES, NAMES, PANELS, RIG_PANELS, RUN_PANELS, SYMBOLS
     from vines.figures._reduced import ErrorMap, reduced_figure
     from vines.figures._regimes import REGIME_CLASSES, RegimeMap, regimes_figure
     from vines.figures._response import VelocityPanel, response_figure
+    from vines.figures._rig_branches import RigPoints, rig_branches_figure
+    from vines.figures._rig_cycles import RigCycle, rig_cycles_figure, rig_waits_figure
+    from vines.figures._rig_residual import rig_residual_figure
     from vines.figures._runs import EndsPanel, GapPanel, PhasePlanePanel, RunCurves
     from vines.figures._sheet import Panel, sheet_figure
     from vines.figures._style import COLOURS, PALETTE, save
@@ -25,10 +28,12 @@ __all__ = [
     "COLOURS",
     "ERRORS",
     "FOUND",
+    "MEASURES",
     "NAMES",
     "PALETTE",
     "PANELS",
     "REGIME_CLASSES",
+    "RIG_PANELS",
     "RUN_PANELS",
     "SYMBOLS",
     "BasinMap",
@@ -48,6 +53,8 @@ __all__ = [
     "PhasePlanePanel",
     "RegimeMap",
     "Region",
+    "RigCycle",
+    "RigPoints",
     "RunCurves",
     "SpecialMark",
     "VelocityPanel",
@@ -58,6 +65,10 @@ __all__ = [
     "reduced_figure",
     "regimes_figure",
     "response_figure",
+    "rig_branches_figure",
+    "rig_cycles_figure",
+    "rig_residual_figure",
+    "rig_waits_figure",
     "save",
     "sheet_figure",
 ]
@@ -80,7 +91,15 @@ _HOME = {
     "EnergyCurve": "_energy",
     "EnergyPanel": "_energy",
     "FOUND": "_energy",
+    "MEASURES": "_names",
     "NAMES": "_names",
+    "RIG_PANELS": "_names",
+    "RigCycle": "_rig_cycles",
+    "RigPoints": "_rig_branches",
+    "rig_branches_figure": "_rig_branches",
+    "rig_cycles_figure": "_rig_cycles",
+    "rig_residual_figure": "_rig_residual",
+    "rig_waits_figure": "_rig_cycles",
     "PALETTE": "_style",
     "PANELS": "_names",
     "SYMBOLS": "_names",

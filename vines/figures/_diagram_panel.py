@@ -12,7 +12,7 @@ import numpy.typing as npt
 
 from vines.figures._legend import legend_entries
 from vines.figures._marks import DOTTED, mark_style
-from vines.figures._names import NAMES, PANELS, SYMBOLS
+from vines.figures._names import MEASURES, NAMES, PANELS, SYMBOLS
 from vines.figures._style import COLOURS, FAMILIES
 
 if TYPE_CHECKING:
@@ -71,7 +71,7 @@ class BranchLine:
     x : (n,) array
         Value of the varied parameter along the branch.
     side : int
-        +1 on the left end, -1 on the right.
+        +1 on the left end, -1 on the right, 0 for a quantity of the whole orbit.
     stable : (n,) array of bool
         Solid where true, dotted where not.
     values : dict of str to (n,) array
@@ -111,7 +111,7 @@ class DiagramPanel:
     axis : str
         The varied parameter.
     quantity : str
-        One of :data:`PANELS`.
+        One of :data:`PANELS` or :data:`MEASURES`.
     dots, lines, markers : sequences
         What is drawn.
     window, y : (float, float), optional
@@ -145,7 +145,7 @@ class DiagramPanel:
         self._dots(ax, dots)
         self._lines(ax, lines)
         self._markers(ax, markers)
-        ax.set_ylabel(PANELS[self.quantity])
+        ax.set_ylabel({**PANELS, **MEASURES}[self.quantity])
         ax.set_xlabel(f"{NAMES.get(self.axis, self.axis)}  ${SYMBOLS.get(self.axis, self.axis)}$")
         _widen(ax)
         _spare_outliers(ax, self.quantity, dots, lines)
@@ -206,7 +206,8 @@ class DiagramPanel:
                 o is not line and o.side != line.side and _coincide(o, line, self.quantity) for o in lines
             )
             left, right = FAMILIES[line.family]
-            colour = COLOURS["ink"] if twin else left if line.side == 1 else right
+            plain = twin or (line.side == 0 and line.family == "symmetric")
+            colour = COLOURS["ink"] if plain else right if line.side < 0 else left
             for start, stop, stable in runs(line.stable):
                 # One point is shared with the next run, so that the line has no gap where stability changes.
                 part = slice(start, min(stop + 1, len(line.x)))

@@ -1,6 +1,6 @@
 """What the figures call quantities and parameters. No import: declarations are checked against these names."""
 
-__all__ = ["ERRORS", "NAMES", "PANELS", "RUN_PANELS", "SYMBOLS"]
+__all__ = ["ERRORS", "MEASURES", "NAMES", "PANELS", "RIG_PANELS", "RUN_PANELS", "SYMBOLS"]
 
 PANELS = {
     "w_dot": r"relative impact velocity  $\dot w$",
@@ -8,6 +8,15 @@ PANELS = {
     "x1": r"displacement at impact  $x_1$",
     "phase": r"impact phase  $\psi$  [rad]",
 }
+
+MEASURES = {
+    "max_abs_x1": r"largest displacement  $\max|x_1|$",
+    "kinetic_ratio": r"kinetic energies  $K_2/K_1$",
+}
+"""Quantities of a whole orbit or run."""
+
+RIG_PANELS = ("max_abs_x1", "kinetic_ratio", "w_dot", "phase")
+"""Quantities in which rig points are shown beside branches."""
 
 RUN_PANELS = ("ends", "gap", "phase_plane")
 """Panels that show runs: displacements of the cavity's ends and the ball, gap and relative velocity, their plane."""

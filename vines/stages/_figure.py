@@ -13,6 +13,7 @@ from vines.stages._error_map import error_map
 from vines.stages._multipliers import multipliers
 from vines.stages._regime_map import regime_map
 from vines.stages._response import response
+from vines.stages._rig_figures import PLOTS as RIG_PLOTS
 from vines.stages._sheet import sheet
 
 __all__ = ["compute"]
@@ -34,6 +35,8 @@ def compute(job: WholeJob) -> Batch:
         figure = multipliers(job.inputs, options)
     elif options.plot == "chart":
         figure = chart(job.inputs, options)
+    elif options.plot in RIG_PLOTS:
+        figure = RIG_PLOTS[options.plot](job.inputs, options)
     elif options.plot == "sheet":
         figure = sheet(job.inputs, options)
     elif options.plot == "response":

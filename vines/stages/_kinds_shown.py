@@ -50,9 +50,26 @@ class FigureOptions(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     drawn too. A sheet has `cells` of several kinds in `columns`, in rows of the `height` given in inches,
     with `letters` on each panel or each row. A response has `cells` of sweeps with all attractors that coexist, and a
     strip with the reduction of max|x1| below each that shows energies.
+
+    Plots of a rig: `rig_branches` lays reconstructed runs on needed branches over the forcing amplitude (panels
+    max_abs_x1, kinetic_ratio, w_dot, phase), `rig_residual` shows what fits leave over the temperature, `rig_cycles`
+    and `rig_waits` show compared runs beside the model: w' over w, and the times between impacts.
     """
 
-    plot: Literal["bifurcation", "reduced", "multipliers", "chart", "basins", "sheet", "response", "regimes"]
+    plot: Literal[
+        "bifurcation",
+        "reduced",
+        "multipliers",
+        "chart",
+        "basins",
+        "sheet",
+        "response",
+        "regimes",
+        "rig_branches",
+        "rig_residual",
+        "rig_cycles",
+        "rig_waits",
+    ]
     panels: tuple[str, ...] = ()
     title: str = ""
     width: float = 7.0

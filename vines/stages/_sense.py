@@ -80,6 +80,8 @@ def _figure(stage: Stage, pipeline: Pipeline) -> None:
         for panel in options.panels:
             if panel not in known:
                 raise _refuse(stage, pipeline, f"unknown panel {panel!r}: {nearest(panel, known)}")
+    if options.plot.startswith("rig_"):
+        _rig_figure(stage, pipeline)
     if options.plot == "chart":
         _chart(stage, pipeline)
     if options.plot == "regimes":
@@ -103,6 +105,23 @@ def _figure(stage: Stage, pipeline: Pipeline) -> None:
         )
     if options.plot == "multipliers" and not any(pipeline.stages[name].kind.name == "branch" for name in stage.needs):
         raise _refuse(stage, pipeline, "multipliers are those of branches; name a stage of kind 'branch' in needs")
+
+
+def _rig_figure(stage: Stage, pipeline: Pipeline) -> None:
+    from vines.figures import RIG_PANELS
+
+    options: Any = stage.options
+    kind = "compare" if options.plot in ("rig_cycles", "rig_waits") else "reconstruct"
+    if all(pipeline.stages[name].kind.name != kind for name in stage.needs):
+        raise _refuse(stage, pipeline, f"plot {options.plot} needs a stage of kind {kind}; name one in needs")
+    for panel in options.panels:
+        if options.plot != "rig_branches" or panel not in RIG_PANELS:
+            raise _refuse(stage, pipeline, f"unknown panel {panel!r}: {nearest(panel, RIG_PANELS)}")
+    if options.plot == "rig_branches":
+        for name in stage.needs:
+            axes = [axis.name for axis in pipeline.stages[name].axes]
+            if axes not in ([], ["A"]):
+                raise _refuse(stage, pipeline, f"rig points lie over A; {name} varies {' and '.join(axes)}")
 
 
 def _cells(stage: Stage, pipeline: Pipeline) -> Iterator[tuple[str, Any, list[Stage]]]:
