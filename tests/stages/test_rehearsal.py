@@ -9,7 +9,15 @@ import pytest
 from vines.rig import load_reconstruction, save_reconstruction
 
 PIPELINES = Path(__file__).parents[2] / "pipelines"
-COARSE = {"amplitudes": "[0.015]", "settings.duration": "12.0", "settings.settle": "15.0"}
+COARSE = {
+    "campaign.amplitudes": "[0.015]",
+    "campaign.settings.duration": "12.0",
+    "campaign.settings.settle": "15.0",
+    "one_to_one.points": "12",
+    "one_to_one.switch": "0",
+    "two_to_one.points": "6",
+    "two_to_one.seeds": "3",
+}
 
 
 @pytest.fixture(scope="module")
@@ -21,7 +29,7 @@ def rehearsed(tmp_path_factory):
     (root / "pipelines").mkdir()
     shutil.copy(PIPELINES / "rehearsal.toml", root / "pipelines")
     project = Project(root)
-    project.settings = [f"--set=stages.campaign.{key}={value}" for key, value in COARSE.items()]
+    project.settings = [f"--set=stages.{key}={value}" for key, value in COARSE.items()]
     project.first = project.vines("run", "rehearsal", *project.settings)
     return project
 
@@ -68,6 +76,7 @@ def test_impacts_are_rows_of_their_own(rehearsed):
 
 def test_verify_understands_the_tables(rehearsed):
     said = rehearsed.vines("verify", "rehearsal").stdout
+    assert "|measured - model|/(2 sqrt(u^2 + u_model^2))" in said
     assert "all hold" in said
     assert "A = E/b" in said
     assert "r = -w_dot_after/w_dot" in said
@@ -99,6 +108,85 @@ def test_tampered_rows_are_seen(rehearsed):
     assert broken("rig_impacts", rig_impact_defects, "r", lambda a: a + 0.01) == ["restitution"]
     assert broken("rig_impacts", rig_impact_defects, "t", lambda a: a + 1.0) == ["order", "flights"]
     assert broken("rig_impacts", rig_impact_defects, "v2_after", lambda a: a + 0.01) == ["relative velocity", "flights"]
+
+
+def test_every_run_has_a_verdict_with_its_reason(rehearsed):
+    found = rows(rehearsed, "select * from comparisons where rank = 0 order by run_id")
+    assert [(row["run_id"], row["basis"]) for row in found] == [("01_up", "measured"), ("03_down", "measured")]
+    for row in found:
+        assert row["verdict"] == "agree", row["reason"]
+        assert (row["branch"], row["word"], row["regime"], row["mirrored"]) == ("1:1", "LR", "periodic", False)
+        assert max(row["E_n_phase"], row["E_n_max_abs_x1"], row["E_n_kinetic_ratio"]) <= 1
+        assert row["holding"] > 0.95
+        assert row["rms_w"] < 0.05
+        assert row["rms_w_dot"] < 0.15
+        assert row["calibrated_on"] is None  # two runs are too few to calibrate on
+
+
+def test_cycles_and_waits_of_run_and_model(rehearsed):
+    import numpy as np
+
+    (row,) = rows(rehearsed, "select * from rig_cycles where run_id = '01_up' and rank = 0")
+    assert len(row["time"]) == len(row["w"]) == len(row["model_w_dot"])
+    assert np.abs(row["w"]).max() <= 1.001
+    assert sum(row["wait_share"]) > 0.99
+    middle = np.convolve(row["wait_edges"], [0.5, 0.5], "valid")
+    assert np.dot(middle, row["wait_share"]) == pytest.approx(0.5, abs=0.01)  # 1:1: half a period from wall to wall
+    assert np.dot(middle, row["model_wait_share"]) == pytest.approx(0.5, abs=0.01)
+
+
+def test_measured_and_modelled_run_have_one_clock(rehearsed):
+    import numpy as np
+
+    from vines import logs
+
+    (folder,) = {path.parent for path in rehearsed.data.glob("results/*/01_up.measured.mcap")}
+    measured, model = (logs.read(folder / f"01_up.{what}.mcap") for what in ("measured", "model"))
+    assert measured.parameters == model.parameters
+    w = {}
+    for log in (measured, model):
+        t, phase = log.states["t"].to_numpy(), log.states["phase"].to_numpy()
+        assert np.allclose(np.exp(1j * (phase - log.parameters["Omega"] * t)), 1.0, atol=1e-6)
+        w[log.path.name] = np.interp(np.linspace(10.0, 60.0, 2000), t, log.states["w"].to_numpy())
+    one, other = w.values()
+    assert np.sqrt(np.mean((one - other) ** 2)) < 0.1 * np.sqrt(np.mean(other**2))
+    listed = rehearsed.vines("view", "rehearsal.compare/01_up", "--overlay", "--save", rehearsed.root / "o.rrd")
+    assert "wrote" in listed.stdout
+
+
+def test_the_figures_are_drawn_and_the_report_tells_the_verdicts(rehearsed, tmp_path):
+    drawn = list(rehearsed.data.glob("results/*/picture.svg"))
+    assert len(drawn) == 5
+    rehearsed.vines("report", "rehearsal", "--out", tmp_path / "rehearsal.html")
+    text = (tmp_path / "rehearsal.html").read_text("utf-8")
+    assert "Rig beside the model, measured parameters: 2 agree" in text
+    assert text.count("<figure>") == 5
+    assert "vines view rehearsal.compare/01_up/model" in text
+
+
+def test_compare_by_hand_gives_the_verdict_and_writes_derived(rehearsed, campaign):
+    said = json.loads(rehearsed.vines("rig", "compare", campaign / "01_up", "--json").stdout)
+    assert json.loads((campaign / "01_up" / "derived" / "comparison.json").read_text()) == said
+    (row,) = rows(rehearsed, "select * from comparisons where run_id = '01_up' and rank = 0")
+    assert said[0]["verdict"] == row["verdict"] == "agree"
+    assert said[0]["E_n_phase"] == pytest.approx(row["E_n_phase"])
+    shown = rehearsed.vines("rig", "compare", campaign / "01_up").stdout
+    assert shown.startswith("01_up: agree
+1:1: E_n(phase)")
+
+
+def test_a_declaration_that_cannot_compare_is_refused_before_anything_runs(project):
+    form = 'title = "t"\n[stages.a]\nkind = "ingest"\nfolder = "runs"\n'
+    for more, words in (
+        ('[stages.b]\nkind = "reconstruct"\n', "name a stage of kind ingest in needs"),
+        ('[stages.b]\nkind = "compare"\nneeds = ["a"]\n', "a has neither, remove it from needs"),
+        ('[stages.b]\nkind = "figure"\nplot = "rig_cycles"\nneeds = ["a"]\n', "needs a stage of kind compare"),
+    ):
+        (project.root / "pipelines" / "mine.toml").write_text(form + more)
+        done = project.vines("status", "mine", check=False)
+        assert done.returncode == 2
+        assert words in done.stderr
+        assert done.stderr.count("\n") == 1
 
 
 def test_an_interrupted_campaign_goes_on_with_what_was_reconstructed(rehearsed):

@@ -88,6 +88,7 @@ def section(name, **changes):
         "source": "Fig. 1",
         "figures": [Figure(f"{name}.figure", "A <figure>", SVG)],
         "checks": [{"id": "c", "verdict": "differs", "statement": "a < b & c", "remark": '"x"'}],
+        "comparisons": [],
         "runs": [Run(f"{name}.run", "1:1", "run.mcap")],
         "tables": [Head(f"{name}.up", "points", 300, ["A", "name"], [[0.1, None], [float("nan"), "<2:1>"]])],
         "stages": [StageFacts("up", "sweep", 300, 0, 12_345, 75.0, {"key": "ab" * 32})],

@@ -14,15 +14,19 @@ _FILE = click.Path(dir_okay=False, path_type=Path)
 @click.option("--web", is_flag=True, help="Serve the web viewer on 127.0.0.1 and print its page; needs no network.")
 @click.option("--png", type=_FILE, help="Draw a picture without any screen.")
 @click.option("--save", type=_FILE, help="Write a recording (.rrd) with its blueprint.")
+@click.option("--overlay", is_flag=True, help="Curves of all runs in the same views, as of a rig and of the model.")
 @click.option("--at", type=float, help="Simulation time that the picture shows; a moment past the middle if left out.")
-def command(logs: tuple[str, ...], web: bool, png: Path | None, save: Path | None, at: float | None) -> None:
-    """Look at logged runs in the Rerun viewer, several side by side.
+def command(
+    logs: tuple[str, ...], web: bool, png: Path | None, save: Path | None, overlay: bool, at: float | None
+) -> None:
+    """Look at logged runs in the Rerun viewer, several side by side or laid over each other.
 
     LOG is <pipeline>.<stage>, <pipeline>.<stage>/<point>, a log id, or the path of an MCAP file.
 
     \b
     vines view quickstart.asymmetric_run
     vines view quickstart.doubled_run --png doubled.png
+    vines view rehearsal.compare/01_up --overlay        measured and modelled
     """  # noqa: D301
     from vines import viewer
     from vines.stages import find_logs, recordings_folder
@@ -33,12 +37,12 @@ def command(logs: tuple[str, ...], web: bool, png: Path | None, save: Path | Non
         raise click.UsageError("--at is the time of a picture; give --png FILE too")
     paths = [path for name in logs for path in find_logs(name)]
     if save is not None:
-        viewer.save_rrd(paths, save)
+        viewer.save_rrd(paths, save, overlay=overlay)
         click.echo(f"wrote {save}")
     if png is not None:
-        viewer.screenshot(paths, png, at=at)
+        viewer.screenshot(paths, png, at=at, overlay=overlay)
         click.echo(f"wrote {png}")
     if web:
-        viewer.web(paths, cache=recordings_folder(), tell=click.echo)
+        viewer.web(paths, cache=recordings_folder(), tell=click.echo, overlay=overlay)
     elif png is None and save is None:
-        viewer.view(paths, cache=recordings_folder())
+        viewer.view(paths, cache=recordings_folder(), overlay=overlay)

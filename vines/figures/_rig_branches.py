@@ -98,7 +98,8 @@ def rig_branches_figure(
             panel = DiagramPanel("A", quantity, (), mine, marks, window=window)
             panel.draw(ax)
             _draw(ax, own)
-            ax.text(-0.09, 1.0, f"({letter})", transform=ax.transAxes, va="top", fontweight="bold")
+            if len(points) > 1:
+                ax.text(-0.09, 1.0, f"({letter})", transform=ax.transAxes, va="top", fontweight="bold")
             entries |= {label: entries.get(label, drawn) for label, drawn in (*_entries(own), *panel.entries())}
         for ax in axes[:-1]:
             ax.set_xlabel("")

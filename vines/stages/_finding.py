@@ -47,7 +47,7 @@ def find_logs(name: str) -> list[Path]:
     Parameters
     ----------
     name : str
-        ``<pipeline>.<stage>`` (all its logs), ``<pipeline>.<stage>/<point>``, a log id, or a path.
+        ``<pipeline>.<stage>`` (all its logs), ``<pipeline>.<stage>/<point>`` (all of that point), a log id, or a path.
 
     Raises
     ------
@@ -69,8 +69,10 @@ def find_logs(name: str) -> list[Path]:
         if not point:
             return list(logs[stage].values())
         found = [path for key, path in logs[stage].items() if key.startswith(point)]
-        if len(found) == 1:
-            return found
+        # A run of a rig has several logs: as measured, and of the model.
+        own = [path for key, path in logs[stage].items() if key.startswith(f"{point}/")]
+        if len(found) == 1 or own:
+            return own or found
         raise UnknownNameError(
             f"stage {stage!r} has {len(found)} logs of point {point!r}: {nearest(point, logs[stage])}"
         )

@@ -47,10 +47,11 @@ class CompareOptions(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """Every run of the needed stages of kind `reconstruct` beside the branches that coexist at its parameters.
 
     Needed stages with orbits, such as those of kind `branch`, are the catalogue: they say which words to look for.
-    `seed` is that of the ensembles.
+    `seed` is that of the ensembles. `record` forcing periods of each run go into a log, beside one of the model.
     """
 
     seed: int = 0
+    record: int = 12
 
 
 def _check_synth(params: dict[str, float], options: Any) -> None:
@@ -67,6 +68,13 @@ def _check_synth(params: dict[str, float], options: Any) -> None:
 def _check_seeded(params: dict[str, float], options: Any) -> None:
     del params
     _check_seed(options)
+
+
+def _check_compare(params: dict[str, float], options: Any) -> None:
+    del params
+    _check_seed(options)
+    if options.record < 0:
+        raise ParameterError(f"record is {options.record}, allowed is record >= 0")
 
 
 def _check_seed(options: Any) -> None:
@@ -141,6 +149,7 @@ def register_rig() -> None:
             body="vines.stages._rig_compare:compute",
             tables=("comparisons", "rig_cycles"),
             needs=True,
-            check=_check_seeded,
+            logs=True,
+            check=_check_compare,
         )
     )

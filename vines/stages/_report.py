@@ -20,7 +20,7 @@ from vines.store import Result, Store, canonical, write_text
 __all__ = ["report"]
 
 _FEW = 10
-_ALL = ("checks", "bifurcations", "branches", "optima")
+_ALL = ("checks", "bifurcations", "branches", "comparisons", "optima", "reconstructions")
 _MOST = 200
 """Rows that are shown of a table: few, but of tables that are read line by line up to this many."""
 
@@ -80,6 +80,9 @@ def _section(store: Store, pipeline: str, files: dict[str, Path], folder: Path) 
         source=source,
         figures=[figure for stage, r in results.items() for figure in _figures(f"{pipeline}.{stage}", r, title)],
         checks=checks,
+        comparisons=[
+            row for r in results.values() if "comparisons" in r.tables for row in r.table("comparisons").to_pylist()
+        ],
         runs=[run for stage, result in results.items() for run in _runs(f"{pipeline}.{stage}", result, folder)],
         tables=[head for stage, result in results.items() for head in _heads(f"{pipeline}.{stage}", result)],
         stages=[_facts(stage, result, seconds.get(stage)) for stage, result in results.items()],

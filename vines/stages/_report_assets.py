@@ -26,7 +26,8 @@ th, td { text-align: left; padding: .25rem .6rem; border-bottom: 1px solid var(-
 th { position: sticky; top: 0; background: var(--shade); white-space: nowrap; }
 th button { all: unset; cursor: pointer; font-weight: 600; } th button:focus-visible { outline: 2px solid var(--link); }
 th small { font-weight: 400; color: var(--dim); } td.number { text-align: right; white-space: nowrap; }
-.reproduced { color: var(--good); } .differs { color: var(--bad); } .not_reproducible { color: var(--none); }
+.reproduced, .agree { color: var(--good); } .differs, .disagree { color: var(--bad); }
+.not_reproducible, .undecidable, .pattern_only { color: var(--none); }
 td.verdict { font-weight: 600; white-space: nowrap; } td.wide { min-width: 16rem; }
 details { margin: .5rem 0; } summary { cursor: pointer; padding: .2rem 0; }
 figure { margin: 1rem 0 1.5rem; border: 1px solid var(--line); border-radius: 4px; overflow: hidden; }

@@ -16,7 +16,10 @@ from vines.stages._report_assets import POLICY, SCRIPT, STYLE
 
 __all__ = ["Figure", "Head", "Run", "Section", "StageFacts", "page"]
 
-_SIGNS = {"reproduced": "✓", "differs": "✗", "not_reproducible": "–"}
+_SIGNS = {
+    **{"reproduced": "✓", "differs": "✗", "not_reproducible": "–"},
+    **{"agree": "✓", "pattern_only": "~", "disagree": "✗", "undecidable": "–"},
+}
 _SIZE = re.compile(rb'viewBox="0 0 ([\d.]+) ([\d.]+)"')
 
 
@@ -71,6 +74,7 @@ class Section:
     source: str
     figures: Sequence[Figure]
     checks: Sequence[Mapping[str, Any]]
+    comparisons: Sequence[Mapping[str, Any]]
     runs: Sequence[Run]
     tables: Sequence[Head]
     stages: Sequence[StageFacts]
@@ -139,6 +143,8 @@ def _section(section: Section, *, alone: bool) -> str:
     parts = [head, *map(_figure, section.figures)]
     if section.checks:
         parts.append(_checks(section))
+    if section.comparisons:
+        parts.append(_comparisons(section))
     if section.runs:
         parts.append(_runs(section.runs))
     if section.tables:
@@ -173,8 +179,7 @@ def _checks(section: Section) -> str:
         for name in names:
             value = check.get(name)
             if name == "verdict":
-                said = f"{_SIGNS.get(str(value), '')} {str(value).replace('_', ' ')}"
-                cells.append(f'<td class="verdict {escape(str(value))}" data-value="{escape(str(value))}">{said}</td>')
+                cells.append(_verdict(str(value)))
             else:
                 wide = ' class="wide"' if name in ("statement", "remark", "detail") else ""
                 cells.append(f"<td{wide}>{escape(_cell(value))}</td>")
@@ -184,6 +189,53 @@ def _checks(section: Section) -> str:
     table = _table(f"{section.name}-checks", [(name, "") for name in names], rows)
     tools = _tools(f"{section.name}-checks", f"{section.name}.checks.csv")
     return f"<h3>Published values: {told}</h3>{tools}{table}"
+
+
+def _comparisons(section: Section) -> str:
+    """Return the verdicts on the runs of a rig, those at measured parameters and those at calibrated ones apart."""
+    parts = []
+    for basis in ("measured", "calibrated"):
+        mine = [row for row in section.comparisons if row["basis"] == basis and row["rank"] == 0]
+        if not mine:
+            continue
+        counts = Counter(row["verdict"] for row in mine)
+        told = ", ".join(f"{count} {verdict.replace('_', ' ')}" for verdict, count in sorted(counts.items()))
+        note = ""
+        if basis == "calibrated":
+            first = mine[0]
+            factors = f"Omega × {first['calibrated_Omega']:.6f}, A × {first['calibrated_A']:.5f}"
+            told_on = f"Calibrated on {first['calibrated_on']}: {factors}, r + ({first['calibrated_r']:.5f})"
+            note = f"<p>{escape(told_on)}; scored on the other runs only.</p>"
+        name = f"{section.name}-{basis}"
+        table = _table(name, [(column, "") for column in _COMPARED], [_compared(row) for row in mine])
+        file = f"{section.name}.comparisons.{basis}.csv"
+        parts.append(f"<h3>Rig beside the model, {basis} parameters: {told}</h3>{note}{_tools(name, file)}{table}")
+    return "".join(parts)
+
+
+_COMPARED = (
+    *("run_id", "protocol", "A", "pattern", "branch", "verdict", "E_n_phase", "E_n_max_abs_x1", "E_n_kinetic_ratio"),
+    *("rms_w", "rms_w_dot", "holding", "reason"),
+)
+
+
+def _compared(row: Mapping[str, Any]) -> str:
+    cells = []
+    for name in _COMPARED:
+        value = row[name]
+        if name == "verdict":
+            cells.append(_verdict(str(value)))
+        elif isinstance(value, float):
+            cells.append(f'<td class="number" data-value="{value!r}">{value:.4g}</td>')
+        else:
+            wide = ' class="wide"' if name == "reason" else ""
+            cells.append(f"<td{wide}>{escape(_cell(value))}</td>")
+    return f"<tr>{''.join(cells)}</tr>"
+
+
+def _verdict(value: str) -> str:
+    said = f"{_SIGNS.get(value, '')} {value.replace('_', ' ')}"
+    return f'<td class="verdict {escape(value)}" data-value="{escape(value)}">{said}</td>'
 
 
 def _runs(runs: Sequence[Run]) -> str:

@@ -8,6 +8,7 @@ from vines.errors import RigError
 from vines.pipeline import Batch, Input, WholeJob
 from vines.rig import Reconstruction, compare_all, load_reconstruction
 from vines.rig._comparison_rows import comparison_rows, cycle_rows, row_id
+from vines.stages._rig_overlay import overlay_logs
 
 __all__ = ["compute"]
 
@@ -35,7 +36,10 @@ def compute(job: WholeJob) -> Batch:
     rows = [row for found in measured for row in comparison_rows(found)]
     rows += [row for found in calibrated for row in comparison_rows(found, calibration)]
     cycles = [row for found in (*measured, *calibrated) for row in cycle_rows(found)]
-    return Batch(tables={"comparisons": rows + lost, "rig_cycles": cycles})
+    logs: dict[str, str] = {}
+    for found in measured:
+        logs |= overlay_logs(job.folder, found, options.record, job.provenance)
+    return Batch(tables={"comparisons": rows + lost, "rig_cycles": cycles}, logs=logs)
 
 
 def _reconstructions(stage: Input) -> list[Reconstruction]:

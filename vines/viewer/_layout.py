@@ -11,7 +11,7 @@ from rerun.blueprint.encodings import TimelineColumn
 from vines.viewer._clock import CYCLE, IMPACT, SIM_TIME
 from vines.viewer._impacts import DIAL_BOUNDS, LANES
 from vines.viewer._scene import PHASE_BOUNDS, cavity_bounds
-from vines.viewer._style import CAVITY
+from vines.viewer._style import CAVITY, PARAMETERS, PLANE
 
 __all__ = ["Shown", "blueprint"]
 
@@ -135,7 +135,7 @@ def _phase(run: Shown) -> rrb.Spatial2DView:
     back = {SIM_TIME: _TRAIL * run.period, CYCLE: _TRAIL, IMPACT: 1.0}
     return rrb.Spatial2DView(
         origin=f"{run.root}/phase",
-        name="Phase plane: w across, w' up, trail of a quarter cycle",
+        name=f"{PLANE}: w across, w' up, trail of a quarter cycle",
         background=_DARK,
         visual_bounds=rrb.VisualBounds2D(x_range=(left, right), y_range=(top, bottom)),
         time_ranges=[
@@ -218,4 +218,4 @@ def _impacts(run: Shown) -> rrb.TextLogView:
 
 
 def _about(run: Shown) -> rrb.TextDocumentView:
-    return rrb.TextDocumentView(origin=f"{run.root}/about", name="Parameters")
+    return rrb.TextDocumentView(origin=f"{run.root}/about", name=PARAMETERS)

@@ -17,7 +17,7 @@ from urllib.parse import quote
 
 from vines.errors import ViewerError
 from vines.viewer._page import guarded
-from vines.viewer._style import CAVITY
+from vines.viewer._style import OURS
 
 if TYPE_CHECKING:
     from rerun.experimental import ViewerClient
@@ -239,7 +239,7 @@ def _loaded(kind: type[ViewerClient], port: int, laid_out: bool) -> ViewerClient
     except (RuntimeError, ConnectionError, ValueError):
         return None
     # Until the layout of the recording is in force, the viewer shows views that it made up.
-    shown = any(view.name.startswith(CAVITY) for view in state.views) if laid_out else bool(state.views)
+    shown = any(view.name.startswith(OURS) for view in state.views) if laid_out else bool(state.views)
     there = bool(state.recordings) and bool(state.recordings[0].timelines)
     return client if shown and there and not state.loading else None
 

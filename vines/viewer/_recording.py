@@ -19,6 +19,7 @@ from vines.viewer._clock import Clock
 from vines.viewer._curves import curves
 from vines.viewer._impacts import dial, lanes
 from vines.viewer._layout import Shown, blueprint
+from vines.viewer._overlay import check_overlay, overlaid, send_overlay
 from vines.viewer._rig import send_rig, shown_rig
 from vines.viewer._scene import cavity, phase_plane
 from vines.viewer._text import about, send_impact_log
@@ -29,8 +30,8 @@ APPLICATION = "vines"
 """Application id under which the viewer keeps layouts."""
 
 
-def write_recording(logs: Sequence[Log], out: Path, *, still: bool = False) -> None:
-    """Write runs as one recording, side by side, with the layout that shows them.
+def write_recording(logs: Sequence[Log], out: Path, *, still: bool = False, overlay: bool = False) -> None:
+    """Write runs as one recording, side by side or laid over each other, with the layout that shows them.
 
     Parameters
     ----------
@@ -40,11 +41,13 @@ def write_recording(logs: Sequence[Log], out: Path, *, still: bool = False) -> N
         The .rrd file, replaced if it exists.
     still : bool
         Whether its layout is for a picture.
+    overlay : bool
+        Whether the curves of all runs are in the same views.
 
     Raises
     ------
     ViewerError
-        If there is no log, or a log without a state.
+        If there is no log, a log without a state, or if runs that cannot be laid over each other shall be.
     """
     if not logs:
         raise ViewerError("no log was named; name one or more, as in `vines view quickstart.up`")
@@ -53,11 +56,15 @@ def write_recording(logs: Sequence[Log], out: Path, *, still: bool = False) -> N
     for root, log in zip(roots, logs, strict=True):
         shown.append(_shown(root, log))
     rec = rr.RecordingStream(APPLICATION, recording_id=_identity(logs), send_properties=False)
-    rec.save(out, default_blueprint=blueprint(shown, still=still))
+    if overlay:
+        check_overlay(logs)
+    rec.save(out, default_blueprint=overlaid(shown, still=still) if overlay else blueprint(shown, still=still))
     rec.send_recording_name(", ".join(log.name for log in logs))
     rec.send_property("vines", _properties(logs))
     for root, log in zip(roots, logs, strict=True):
         _send(rec, root, log)
+    if overlay:
+        send_overlay(rec, logs, [_columns(log.states) for log in logs])
     rec.flush()
     rec.disconnect()
 

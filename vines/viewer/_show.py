@@ -24,7 +24,9 @@ _SETTLE_SECONDS = 30.0
 _PAUSE_SECONDS = 0.4
 
 
-def save_rrd(logs: Sequence[str | os.PathLike[str] | Log], out: str | os.PathLike[str]) -> Path:
+def save_rrd(
+    logs: Sequence[str | os.PathLike[str] | Log], out: str | os.PathLike[str], *, overlay: bool = False
+) -> Path:
     """Write runs as one Rerun recording with its layout.
 
     A recording is made for one minor version of Rerun and can be made again: keep the logs.
@@ -35,6 +37,8 @@ def save_rrd(logs: Sequence[str | os.PathLike[str] | Log], out: str | os.PathLik
         One run, or several to be shown side by side.
     out : path-like
         The .rrd file; an existing one is replaced.
+    overlay : bool
+        Whether the curves of all runs are in the same views.
 
     Returns
     -------
@@ -51,7 +55,7 @@ def save_rrd(logs: Sequence[str | os.PathLike[str] | Log], out: str | os.PathLik
         If there is nothing to show.
     """
     with _replacing(Path(out)) as partial:
-        _record(logs, partial)
+        _record(logs, partial, overlay=overlay)
     return Path(out)
 
 
@@ -61,6 +65,7 @@ def screenshot(
     *,
     at: float | None = None,
     size: tuple[int, int] = (1600, 900),
+    overlay: bool = False,
 ) -> Path:
     """Draw runs as the viewer shows them, without a window, and keep the picture.
 
@@ -74,6 +79,8 @@ def screenshot(
         Time of the cursor, 1/omega0; shortly after an impact past the middle of the first run if left out.
     size : tuple of int
         Width and height in pixels.
+    overlay : bool
+        Whether the curves of all runs are in the same views.
 
     Returns
     -------
@@ -95,7 +102,7 @@ def screenshot(
     runs = _logs(logs)
     with _replacing(Path(out)) as partial, tempfile.TemporaryDirectory() as folder:
         recording = Path(folder) / "still.rrd"
-        _record(runs, recording, still=True)
+        _record(runs, recording, still=True, overlay=overlay)
         with headless(recording, size) as viewer:
             from vines.viewer._clock import SIM_TIME
 
@@ -113,7 +120,7 @@ def screenshot(
     return Path(out)
 
 
-def view(logs: Sequence[str | os.PathLike[str] | Log], *, cache: Path | None = None) -> None:
+def view(logs: Sequence[str | os.PathLike[str] | Log], *, cache: Path | None = None, overlay: bool = False) -> None:
     """Show runs in the viewer and wait until its window is closed.
 
     Parameters
@@ -122,6 +129,8 @@ def view(logs: Sequence[str | os.PathLike[str] | Log], *, cache: Path | None = N
         One run, or several side by side.
     cache : Path, optional
         Folder where their recording is kept for the next time; paths are needed then.
+    overlay : bool
+        Whether the curves of all runs are in the same views; such a recording is not kept.
 
     Raises
     ------
@@ -134,7 +143,7 @@ def view(logs: Sequence[str | os.PathLike[str] | Log], *, cache: Path | None = N
     """
     from vines.viewer._program import native
 
-    with _recorded(logs, cache) as recording:
+    with _recorded(logs, None if overlay else cache, overlay=overlay) as recording:
         native(recording)
 
 
@@ -143,6 +152,7 @@ def web(
     *,
     cache: Path | None = None,
     tell: Callable[[str], object] = print,
+    overlay: bool = False,
 ) -> None:
     """Serve runs in the web viewer, offline and on 127.0.0.1 only, until Ctrl-C.
 
@@ -154,6 +164,8 @@ def web(
         Folder where their recording is kept for the next time; paths are needed then.
     tell : callable
         Called with the line that names the page.
+    overlay : bool
+        Whether the curves of all runs are in the same views; such a recording is not kept.
 
     Raises
     ------
@@ -166,13 +178,13 @@ def web(
     """
     from vines.viewer._program import served
 
-    with _recorded(logs, cache) as recording, served(recording) as (url, wait):
+    with _recorded(logs, None if overlay else cache, overlay=overlay) as recording, served(recording) as (url, wait):
         tell(f"open {url} in a browser; Ctrl-C ends it")
         wait()
 
 
 @contextmanager
-def _recorded(logs: Sequence[str | os.PathLike[str] | Log], cache: Path | None) -> Iterator[Path]:
+def _recorded(logs: Sequence[str | os.PathLike[str] | Log], cache: Path | None, *, overlay: bool) -> Iterator[Path]:
     """Give a recording of runs, from the cache if there is one."""
     paths = [log for log in logs if not isinstance(log, Log)]
     if cache is not None and len(paths) == len(logs):
@@ -180,7 +192,7 @@ def _recorded(logs: Sequence[str | os.PathLike[str] | Log], cache: Path | None) 
         return
     with tempfile.TemporaryDirectory() as folder:
         recording = Path(folder) / "vines.rrd"
-        _record(logs, recording)
+        _record(logs, recording, overlay=overlay)
         yield recording
 
 
@@ -188,12 +200,14 @@ def _logs(logs: Sequence[str | os.PathLike[str] | Log]) -> list[Log]:
     return [log if isinstance(log, Log) else read(log) for log in logs]
 
 
-def _record(logs: Sequence[str | os.PathLike[str] | Log], out: Path, *, still: bool = False) -> None:
+def _record(
+    logs: Sequence[str | os.PathLike[str] | Log], out: Path, *, still: bool = False, overlay: bool = False
+) -> None:
     runs = _logs(logs)
     os.environ.setdefault("RERUN_ANALYTICS", "0")
     from vines.viewer._recording import write_recording
 
-    write_recording(runs, out, still=still)
+    write_recording(runs, out, still=still, overlay=overlay)
 
 
 @contextmanager

@@ -12,6 +12,10 @@ __all__ = [
     "LEFT",
     "LINE",
     "MASS",
+    "OURS",
+    "OVERLAID",
+    "PARAMETERS",
+    "PLANE",
     "RIGHT",
     "SPRING",
     "STORED",
@@ -29,7 +33,12 @@ IMPACTS = (255, 140, 66)
 STORED = (214, 220, 228)
 LINE = (120, 190, 200)
 TRAIL = (255, 200, 60)
+OVERLAID = ((255, 160, 60), (235, 240, 248), (120, 190, 200), (190, 130, 255))
+"""Of runs that are laid over each other, the first one wide."""
 GRID = (72, 78, 88)
 
 CAVITY = "Cavity and ball, to scale"
-"""Name of the first view; a viewer that has it has our layout."""
+PARAMETERS = "Parameters"
+PLANE = "Phase plane"
+OURS = (CAVITY, PARAMETERS, PLANE)
+"""How names of views begin of which each layout has one; a viewer that shows one has our layout."""
