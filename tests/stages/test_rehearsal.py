@@ -171,8 +171,7 @@ def test_compare_by_hand_gives_the_verdict_and_writes_derived(rehearsed, campaig
     assert said[0]["verdict"] == row["verdict"] == "agree"
     assert said[0]["E_n_phase"] == pytest.approx(row["E_n_phase"])
     shown = rehearsed.vines("rig", "compare", campaign / "01_up").stdout
-    assert shown.startswith("01_up: agree
-1:1: E_n(phase)")
+    assert shown.startswith("01_up: agree\n1:1: E_n(phase)")
 
 
 def test_a_declaration_that_cannot_compare_is_refused_before_anything_runs(project):
