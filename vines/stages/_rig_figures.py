@@ -193,12 +193,15 @@ def _cycles(inputs: Mapping[str, Input]) -> list[RigCycle]:
             if row["rank"] or row["basis"] != "measured":
                 continue
             about = told[row["point_id"]]
+            columns = {name: np.array(row[name]) for name in ("w", "w_dot", "model_w", "model_w_dot")}
             found.append(
                 RigCycle(
-                    f"{row['run_id']}: {row['branch']}, {about['verdict'].replace('_', ' ')}",
-                    *(np.array(row[name]) for name in ("w", "w_dot", "model_w", "model_w_dot")),
-                    *(np.array(row[name]) for name in ("wait_edges", "wait_share", "model_wait_share")),
-                    (about["rms_w"] or math.nan, about["rms_w_dot"] or math.nan),
+                    title=f"{row['run_id']}: {row['branch']}, {about['verdict'].replace('_', ' ')}",
+                    edges=np.array(row["wait_edges"]),
+                    share=np.array(row["wait_share"]),
+                    model_share=np.array(row["model_wait_share"]),
+                    rms=(about["rms_w"] or math.nan, about["rms_w_dot"] or math.nan),
+                    **columns,
                 )
             )
     return sorted(found, key=lambda cycle: cycle.title)

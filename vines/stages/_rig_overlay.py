@@ -120,15 +120,15 @@ def _model(found: Comparison, measured: np.ndarray, periods: int) -> Trajectory:
     """Return the nearest branch over the same time; of a pattern of p periods the turn that lies nearest."""
     p = found.params
     start = found.branches[0].predicted.candidate.start
-    place = {name: start[name] for name in ("x1", "v1", "x2", "v2")}
     begin, end = float(measured["t"][0]), float(measured["t"][-1])
     runs = []
     for turn in range(found.run.pattern.p):
         # Whole periods before the window, so that the start has the phase that belongs to it.
         t = start["phase"] / p.Omega - (turn + 1) * p.period
-        state = simulate(p, **place, t=t, periods=(begin - t) / p.period).final
-        part = {name: state[name] for name in place}
-        runs.append(simulate(p, **part, t=begin, periods=(end - begin) / p.period))
+        x1, v1, x2, v2 = (start[name] for name in ("x1", "v1", "x2", "v2"))
+        s = simulate(p, x1=x1, v1=v1, x2=x2, v2=v2, t=t, periods=(begin - t) / p.period).final
+        span = (end - begin) / p.period
+        runs.append(simulate(p, x1=s["x1"], v1=s["v1"], x2=s["x2"], v2=s["v2"], t=begin, periods=span))
     times = np.linspace(begin, end, 8 * periods + 1)[1:-1]
     own = np.interp(times, measured["t"], measured["w"])
 
