@@ -99,6 +99,12 @@ def _findings(results: dict[str, Result]) -> Iterable[str]:
                 yield f"and {len(rows) - MOST} more bifurcations and events: vines query 'select * from bifurcations'"
         if "curves" in result.tables:
             yield from (f"{line}  ({stage})" for line in _curves(result.table("curves").to_pylist()))
+        if "reconstructions" in result.tables:
+            rows = result.table("reconstructions").to_pylist()
+            accepted = sum(bool(row["accepted"]) for row in rows)
+            yield f"{len(rows)} runs of a rig, {accepted} of them pass every gate and check  ({stage})"
+        if "comparisons" in result.tables:
+            yield from (f"{line}  ({stage})" for line in _compared(result.table("comparisons").to_pylist()))
         if "points" in result.tables:
             yield f"{_attractors(result.table('points'))}  ({stage})"
     checked = _verdicts(results)
@@ -112,6 +118,15 @@ def _verdicts(results: dict[str, Result]) -> str:
         row["verdict"] for r in results.values() if "checks" in r.tables for row in r.table("checks").to_pylist()
     )
     return f"{verdicts['reproduced']} of {sum(verdicts.values())} published values reproduced" if verdicts else ""
+
+
+def _compared(rows: list[dict[str, Any]]) -> Iterable[str]:
+    """Yield the verdicts on the runs of a rig, at measured and at calibrated parameters."""
+    for basis in ("measured", "calibrated"):
+        counts = Counter(row["verdict"] for row in rows if row["basis"] == basis and row["rank"] == 0)
+        if counts:
+            listed = ", ".join(f"{count} {verdict.replace('_', ' ')}" for verdict, count in sorted(counts.items()))
+            yield f"rig beside the model at {basis} parameters: {listed}"
 
 
 def _atlas(rows: list[dict[str, Any]]) -> str:
@@ -190,8 +205,15 @@ def _next(pipeline: str, results: dict[str, Result]) -> Iterable[tuple[str, str]
     if logged:
         several = f" (one of {len(logged)}, also {logged[1]})" if logged[1:] else ""
         yield f"vines view {pipeline}.{logged[0]}", f"see a run in the Rerun viewer{several}"
+    for stage, result in results.items():
+        beside = [name for name in result.logs if name.endswith("/measured")]
+        if beside:
+            run = beside[0].removesuffix("/measured")
+            yield f"vines view {pipeline}.{stage}/{run} --overlay", "a measured run over the model's"
     if any("points" in result.tables for result in results.values()):
         yield 'vines query "select A, name, reduction from points order by A"', "ask the tables in SQL"
+    if any("comparisons" in result.tables for result in results.values()):
+        yield f"vines report {pipeline}", "verdicts, calibration and figures on one page"
     if any("checks" in result.tables for result in results.values()):
         yield f"vines check {pipeline}", "compare with the published values"
 

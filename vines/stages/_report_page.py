@@ -110,11 +110,18 @@ def page(name: str, title: str, source: str, sections: Sequence[Section]) -> str
 
 def _overview(sections: Sequence[Section]) -> str:
     checks = Counter(check["verdict"] for section in sections for check in section.checks)
+    verdicts = Counter(
+        row["verdict"]
+        for section in sections
+        for row in section.comparisons
+        if row["basis"] == "measured" and row["rank"] == 0
+    )
     stages = [stage for section in sections for stage in section.stages]
     figures = sum(len(section.figures) for section in sections)
     seconds = [stage.seconds for stage in stages if stage.seconds is not None]
     cards = [
         (f"{checks['reproduced']} of {checks.total()}", "published values reproduced") if checks else None,
+        (f"{verdicts['agree']} of {verdicts.total()}", "runs of a rig agree with the model") if verdicts else None,
         (str(figures), "figure" if figures == 1 else "figures"),
         (f"{sum(head.total for section in sections for head in section.tables):,}", "rows in tables"),
         (_bytes(sum(stage.size for stage in stages)), "stored"),
@@ -140,11 +147,12 @@ def _section(section: Section, *, alone: bool) -> str:
     head = "" if alone else f"<h2>{escape(section.name)}: {escape(section.title)}</h2>"
     if not alone and section.source:
         head += f'<p class="dim">{escape(section.source)}</p>'
-    parts = [head, *map(_figure, section.figures)]
-    if section.checks:
-        parts.append(_checks(section))
+    parts = [head]
     if section.comparisons:
         parts.append(_comparisons(section))
+    parts += map(_figure, section.figures)
+    if section.checks:
+        parts.append(_checks(section))
     if section.runs:
         parts.append(_runs(section.runs))
     if section.tables:
@@ -214,8 +222,8 @@ def _comparisons(section: Section) -> str:
 
 
 _COMPARED = (
-    *("run_id", "protocol", "A", "pattern", "branch", "verdict", "E_n_phase", "E_n_max_abs_x1", "E_n_kinetic_ratio"),
-    *("rms_w", "rms_w_dot", "holding", "reason"),
+    *("run_id", "A", "pattern", "branch", "verdict", "reason", "E_n_phase", "E_n_max_abs_x1", "E_n_kinetic_ratio"),
+    *("rms_w", "rms_w_dot", "holding", "protocol"),
 )
 
 

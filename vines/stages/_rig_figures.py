@@ -49,7 +49,9 @@ def rig_branches(inputs: Mapping[str, Input], options: Any) -> Figure:
     return rig_branches_figure(
         points,
         lines,
-        caption=options.title or (f"branches at {listed(shared_params(branches))}" if branches else ""),
+        caption="; ".join(
+            filter(None, (options.title, f"branches at {listed(shared_params(branches))}" if branches else ""))
+        ),
         width=options.width,
         window=options.window,
     )
