@@ -38,7 +38,7 @@ COMMANDS = {
     "recover": ("vines.cli._recover", "Save what is intact in a damaged log."),
     "diff": ("vines.cli._diff", "Compare two results, parameters and values."),
     "gc": ("vines.cli._gc", "Remove results that nothing refers to."),
-    "rig": ("vines.cli._rig", "Measured data of a rig: ingest it, or make a synthetic one."),
+    "rig": ("vines.cli._rig", "Measured data of a rig: ingest, reconstruct, compare; or a synthetic one."),
     "warm-up": ("vines.cli._warm_up", "Compile the kernels now, not at the first run."),
 }
 

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 from vines import schema
 from vines.errors import RigError, VinesError
 from vines.pipeline import CodeDigests
-from vines.places import cache_folder
+from vines.places import cache_folder, data_folder
 from vines.rig import RunInfo, compare, find_runs, load_reconstruction, match_ring_downs, read_folder
 from vines.rig._comparison_rows import comparison_rows
 from vines.rig._reconstruction_rows import impact_columns, reconstruction_row
@@ -73,6 +73,8 @@ def reconstruct_run(folder: Path, ring_downs: Sequence[Path] = ()) -> Derived:
     if not (folder / "run.json").is_file():
         find_runs(folder)  # says what is missing where there are no runs at all
         raise RigError(f"{folder} holds run folders; name one of them, or run the stage reconstruct of a pipeline")
+    if folder.resolve().is_relative_to((data_folder() / "results").resolve()):
+        raise RigError(f"{folder} is a stored result, which is never changed; name the run folder that was ingested")
     info = read_folder(folder).info
     if info.protocol == "ringdown":
         raise RigError(f"run {info.run_id!r} is a ring-down: it gives omega0 and lam of the runs that name it")
@@ -137,11 +139,14 @@ def compare_run(folder: Path, ring_downs: Sequence[Path] = ()) -> Compared:
 
 
 def _near(row: dict[str, Any]) -> list[dict[str, Any]]:
-    """Return what the catalogue says of orbits within a fifth of a run's A and mu."""
+    """Return of each branch of the catalogue its orbit nearest to a run, if that is within a fifth of its A and mu."""
     if not all(row[name] for name in ("A", "mu")):
         return []
-    about = " and ".join(f"abs({name} - {row[name]!r}) <= 0.2 * {row[name]!r}" for name in ("A", "mu"))
-    return query(f"select distinct word, mu, A, Omega, r, lam from orbits where {about} order by all").to_pylist()
+    apart = [f"abs({name} / {row[name]!r} - 1)" for name in ("A", "mu")]
+    return query(
+        f"select word, branch_id, mu, A, Omega, r, lam, t from orbits where greatest({', '.join(apart)}) <= 0.2 "
+        f"qualify row_number() over (partition by pipeline, stage, branch_id order by {' + '.join(apart)}, A, mu) = 1"
+    ).to_pylist()
 
 
 def _plain(value: Any) -> Any:

@@ -12,7 +12,8 @@ from vines.stages._rig_overlay import overlay_logs
 
 __all__ = ["compute"]
 
-_KNOWN = ("word", "mu", "A", "Omega", "r", "lam")
+_KNOWN = ("word", "branch_id", "mu", "A", "Omega", "r", "lam", "t")
+"""Columns of orbits from which a branch is followed to the parameters of a run."""
 
 
 def compute(job: WholeJob) -> Batch:

@@ -13,7 +13,7 @@ from vines.viewer._impacts import DIAL_BOUNDS, LANES
 from vines.viewer._scene import PHASE_BOUNDS, cavity_bounds
 from vines.viewer._style import CAVITY, PARAMETERS, PLANE
 
-__all__ = ["Shown", "blueprint"]
+__all__ = ["Shown", "blueprint", "cavity_view"]
 
 _WINDOW = 20
 """Forcing cycles up to which curves show a whole run; longer runs scroll with the time cursor."""
@@ -87,7 +87,7 @@ def _alone(run: Shown, still: bool) -> rrb.Horizontal:
     """Return the views of one run."""
     return rrb.Horizontal(
         rrb.Vertical(
-            _cavity(run),
+            cavity_view(run),
             _ends(run, still),
             _gap(run, still),
             _rate(run, still),
@@ -104,7 +104,7 @@ def _column(run: Shown, still: bool) -> rrb.Vertical:
     """Return one of several runs beside each other."""
     more = rrb.Tabs(_impacts(run), _about(run), _energy(run, still), _balance(run, still))
     return rrb.Vertical(
-        _cavity(run),
+        cavity_view(run),
         rrb.Horizontal(_phase(run), _dial(run), column_shares=[1.5, 1.0]),
         _gap(run, still),
         _rate(run, still),
@@ -120,7 +120,8 @@ def _measured(run: Shown, still: bool) -> rrb.Horizontal:
     return rrb.Horizontal(rrb.Vertical(*curves), _about(run), column_shares=[4.0, 1.4])
 
 
-def _cavity(run: Shown) -> rrb.Spatial2DView:
+def cavity_view(run: Shown) -> rrb.Spatial2DView:
+    """Return the view of cavity and ball."""
     (left, right), (top, bottom) = cavity_bounds(run.reach)
     return rrb.Spatial2DView(
         origin=f"{run.root}/cavity",

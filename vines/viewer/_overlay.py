@@ -11,8 +11,7 @@ import rerun.blueprint as rrb
 from vines.errors import ViewerError
 from vines.logs import Log
 from vines.viewer._clock import SIM_TIME, Clock
-from vines.viewer._layout import Shown
-from vines.viewer._scene import cavity_bounds
+from vines.viewer._layout import Shown, cavity_view
 from vines.viewer._style import GRID, OVERLAID, PLANE
 
 __all__ = ["check_overlay", "overlaid", "send_overlay"]
@@ -113,17 +112,7 @@ def overlaid(runs: Sequence[Shown], *, still: bool = False) -> rrb.Blueprint:
         background=_DARK,
         visual_bounds=rrb.VisualBounds2D(x_range=(-1.3, 1.3), y_range=(-1.35, 1.35)),
     )
-    cavities = []
-    for run in runs:
-        (left, right), (top, bottom) = cavity_bounds(run.reach)
-        cavities.append(
-            rrb.Spatial2DView(
-                origin=f"{run.root}/cavity",
-                name=run.name,
-                background=_DARK,
-                visual_bounds=rrb.VisualBounds2D(x_range=(left, right), y_range=(top, bottom)),
-            )
-        )
+    cavities = [cavity_view(run) for run in runs]
     abouts = rrb.Tabs(*(rrb.TextDocumentView(origin=f"{run.root}/about", name=run.name) for run in runs))
     body = rrb.Horizontal(
         rrb.Vertical(*curves),
