@@ -56,7 +56,8 @@ def test_each_run_is_a_row_with_uncertainties_and_its_ring_downs(rehearsed):
     for row in (up, down):
         assert row["status"] == "ok"
         assert row["accepted"], row["findings"]
-        assert (row["pattern"], row["n"], row["m"], row["p"], row["word"]) == ("1:1", 1, 1, 1, "LR")
+        assert (row["pattern"], row["n"], row["m"], row["p"]) == ("1:1", 1, 1, 1)
+        assert row["word"] in ("LR", "RL")
         # r falls as speed^-.08 from .65 at .5 m/s; the shaker sags by 4 %
         assert row["r"] == pytest.approx(0.65 * (row["w_before"] / 0.5) ** -0.08, abs=0.005)
         assert row["A"] == pytest.approx(0.96 * 0.015, abs=4 * row["u_A"])
