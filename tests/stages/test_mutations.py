@@ -79,7 +79,8 @@ class Study:
 
     def leave_kernels_cold(self):
         """Say that the kernels are compiled: to warm them up calls some with numbers that only the right model has."""
-        mark = "from vines.stages._running import _compiled as f; f().parent.mkdir(parents=True, exist_ok=True); f().touch()"
+        mark = "import os; from vines.stages._running import _compiled as f"
+        mark += "; os.makedirs(f().parent, exist_ok=True); f().touch()"
         path = os.pathsep.join(filter(None, [str(self.sources), os.environ.get("PYTHONPATH")]))
         subprocess.run([sys.executable, "-c", mark], env={**os.environ, "PYTHONPATH": path}, check=True)
 
