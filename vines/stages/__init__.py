@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from vines.stages._report import report
     from vines.stages._rig_by_hand import Compared, Derived, compare_run, reconstruct_run
     from vines.stages._rig_running import ingest_folder
-    from vines.stages._running import compile_if_cold, list_pipelines, run, status, warm_up
+    from vines.stages._running import compile_cold, compile_if_cold, list_pipelines, run, status, warm_up
     from vines.stages._study import init_study
     from vines.stages.audit import Verification, verify
 
@@ -32,6 +32,7 @@ __all__ = [
     "checks",
     "clean",
     "compare_run",
+    "compile_cold",
     "compile_if_cold",
     "declaration_schema",
     "diff",
@@ -72,6 +73,7 @@ _HOME = {
     "compare_run": "_rig_by_hand",
     "Difference": "_keeping",
     "checks": "_asking",
+    "compile_cold": "_running",
     "compile_if_cold": "_running",
     "clean": "_keeping",
     "declaration_schema": "_keeping",

@@ -16,7 +16,7 @@ from vines.stages._parts import Part, load_parts
 if TYPE_CHECKING:
     from vines.pipeline import Declaration, Event, RunSummary, StageOutcome, StagePlan
 
-__all__ = ["compile_if_cold", "list_pipelines", "run", "status", "warm_up"]
+__all__ = ["compile_cold", "compile_if_cold", "list_pipelines", "run", "status", "warm_up"]
 
 
 def run(
@@ -171,8 +171,16 @@ def warm_up(report: Callable[[str], object] = print) -> None:
 
 def compile_if_cold(plans: Iterable[StagePlan], report: Callable[[str], object]) -> None:
     """Compile the kernels visibly if these plans will need them and no cache of theirs exists yet."""
-    if not any(p.done < p.wanted and kind(p.kind).parameters for p in plans):
-        return
+    if any(p.done < p.wanted and (kind(p.kind).parameters or p.kind in _SIMULATE) for p in plans):
+        compile_cold(report)
+
+
+_SIMULATE = ("compare",)
+"""Kinds that run the model though a declaration gives them no parameters."""
+
+
+def compile_cold(report: Callable[[str], object]) -> None:
+    """Compile the kernels visibly if no cache of theirs exists yet."""
     if not _compiled().is_file():
         report("compiling the kernels, once for this version of their sources:")
         warm_up(report)
