@@ -23,7 +23,7 @@ from benchmarks.rk4 import rk4_run
 from vines.dynamics import _lane_fields as f
 from vines.dynamics import ensemble, lyapunov_spectrum, simulate
 from vines.dynamics._jit import loop_njit
-from vines.dynamics._lanes import half_turn, small_expm1
+from vines.dynamics._lane_motion import half_turn, small_expm1
 from vines.model import Params
 from vines.orbits import find_orbit
 

@@ -6,61 +6,73 @@ one array at constant distances of at least the length of a vector it can.
 
 from __future__ import annotations
 
-__all__ = ["LANES"]
+__all__ = ["LANES", "SIZE", "STRIDE"]
 
 LANES = 64
 """Lanes that run side by side: eight vectors of eight doubles, and all fields of all lanes stay in the first cache."""
 
+STRIDE = LANES + 8
+"""Distance of two fields: not a power of two, so that fields do not lie at equal places of 4 KB pages."""
+
 # Parameters of the lane: oscillator, forcing, impact law, bounds.
-HALF = 0 * LANES
-GAMMA = 1 * LANES
-INVERSE = 2 * LANES
-OMEGA = 3 * LANES
-LAM = 4 * LANES
-PASS1 = 5 * LANES
-PASS2 = 6 * LANES
-Q_RE = 7 * LANES
-Q_IM = 8 * LANES
-FORCED5 = 9 * LANES
-WINDOW = 10 * LANES
-NEAR = 11 * LANES
-CORRECTION = 12 * LANES
-PERIOD = 13 * LANES
+HALF = 0 * STRIDE
+GAMMA = 1 * STRIDE
+INVERSE = 2 * STRIDE
+OMEGA = 3 * STRIDE
+LAM = 4 * STRIDE
+PASS1 = 5 * STRIDE
+PASS2 = 6 * STRIDE
+Q_RE = 7 * STRIDE
+Q_IM = 8 * STRIDE
+GROW5 = 9 * STRIDE
+FORCED5 = 10 * STRIDE
+WINDOW = 11 * STRIDE
+LIMIT = 12 * STRIDE
+NEAR = 13 * STRIDE
+CORRECTION = 14 * STRIDE
+HEIGHT = 15 * STRIDE
+PERIOD = 16 * STRIDE
 
 # State: homogeneous part of the oscillator, unit phasor of the forcing, ball, time left.
-X_FREE = 14 * LANES
-V_FREE = 15 * LANES
-COS = 16 * LANES
-SIN = 17 * LANES
-BALL = 18 * LANES
-SPEED = 19 * LANES
-LEFT = 20 * LANES
+X_FREE = 17 * STRIDE
+V_FREE = 18 * STRIDE
+COS = 19 * STRIDE
+SIN = 20 * STRIDE
+BALL = 21 * STRIDE
+SPEED = 22 * STRIDE
+LEFT = 23 * STRIDE
 
-# Bookkeeping of the search: next move, bound of the free part, polishing steps so far, the wall aimed at, what is
-# left of its bracket and how far the move has gone in it.
-MOVE = 21 * LANES
-FREE5 = 22 * LANES
-POLISH = 23 * LANES
-SIDE = 24 * LANES
-REACH = 25 * LANES
-GONE = 26 * LANES
+# Bookkeeping of the search: next move; the fifth derivative at the start of the flight and a bound for all its time;
+# polishing ticks so far, the wall aimed at, what is left of its bracket and how far the lane has gone in it.
+MOVE = 24 * STRIDE
+FREE5 = 25 * STRIDE
+MOST5 = 26 * STRIDE
+POLISH = 27 * STRIDE
+SIDE = 28 * STRIDE
+REACH = 29 * STRIDE
+GONE = 30 * STRIDE
 
 # Since the last event: time, the wall it was on, whether it was a release, impacts in a row on that wall.
-TAU = 27 * LANES
-WALL = 28 * LANES
-RELEASED = 29 * LANES
-CHAIN = 30 * LANES
+TAU = 31 * STRIDE
+WALL = 32 * STRIDE
+RELEASED = 33 * STRIDE
+CHAIN = 34 * STRIDE
 
 # Events of the running period and when it began; impacts in all; the lane waits for the scalar kernel.
-BUSY = 31 * LANES
-BEGAN = 32 * LANES
-IMPACTS = 33 * LANES
-WAITS = 34 * LANES
+BUSY = 35 * STRIDE
+BEGAN = 36 * STRIDE
+IMPACTS = 37 * STRIDE
+WAITS = 38 * STRIDE
+
+# Within a tick: the way to the root, whether it is certain, whether it is so near that Taylor's polynomial is exact.
+ROOT = 39 * STRIDE
+AIMED = 40 * STRIDE
+CLOSE = 41 * STRIDE
 
 # The impact of this tick, if there was one: its flag, the length of the flight before it, velocities just before.
-HIT = 35 * LANES
-FLIGHT = 36 * LANES
-BEFORE1 = 37 * LANES
-BEFORE2 = 38 * LANES
+HIT = 42 * STRIDE
+FLIGHT = 43 * STRIDE
+BEFORE1 = 44 * STRIDE
+BEFORE2 = 45 * STRIDE
 
-SIZE = 39 * LANES
+SIZE = 46 * STRIDE

@@ -39,6 +39,14 @@ def _constants_of(parameters):
 
 
 @njit
+def _room():
+    """Return room for the lanes that begins where a line of the cache begins."""
+    room = np.zeros(f.SIZE + 8)
+    skip = (-(room.ctypes.data // 8)) % 8
+    return room[skip : skip + f.SIZE]
+
+
+@njit
 def run_block(
     parameters,
     starts,
@@ -89,7 +97,7 @@ def run_block(
         Impacts filled.
     """
     n = parameters.shape[0]
-    L = np.zeros(f.SIZE)
+    L = _room()
     L[f.WAITS : f.WAITS + LANES] = 1.0
     state = np.zeros(col.STATE)
     row = np.zeros((1, col.ROW))

@@ -6,19 +6,15 @@ import math
 
 from vines.dynamics import _advance as col
 from vines.dynamics import _lane_fields as f
-from vines.dynamics._contact import first_step
-from vines.dynamics._flight import advance_phase, phasors, turn
+from vines.dynamics._contact import first_step, modulus
+from vines.dynamics._flight import advance_phase, fifth, phasors, turn
 from vines.dynamics._jit import njit
+from vines.dynamics._lane_motion import MOST_DECAY, MOST_TURN
+from vines.dynamics._lanes import HEIGHT_OF_BOUND, LOOSER
 from vines.dynamics._sincos import sincos
-from vines.dynamics._sticking import merges
+from vines.dynamics._sticking import UNRESOLVED, merges
 
 __all__ = ["fill_lane", "may_fly", "row_of", "take_lane"]
-
-LANE_WINDOW = 1.4
-"""Longest step of a lane, in units of the shortest time scale; half an angle stays below pi/4."""
-
-LANE_NEAR = 1e-3
-"""Longest last step to a contact; the Taylor polynomial of sixth order is exact to rounding over it."""
 
 LANE_LARGE = 256.0
 """Steady amplitude above which the scalar kernel takes every flight: lanes keep free and forced motion apart."""
@@ -30,7 +26,7 @@ def fill_lane(c, state, L, i, length):
     wall = state[col.S_WALL]
     released = state[col.S_RELEASED] != 0.0
     x, v, phase = state[col.S_X1], state[col.S_V1], state[col.S_PHASE]
-    forced = math.sqrt(c.free.qr**2 + c.free.qi**2)
+    forced = modulus(c.free.qr, c.free.qi)
     if not forced <= LANE_LARGE:
         return False
     ur, ui, gr, gi = phasors(c.free, c.Omega, x, v, phase)
@@ -39,10 +35,12 @@ def fill_lane(c, state, L, i, length):
         step = first_step(c, ur, ui, gr, gi, state[col.S_V2], int(wall), released)
         if step < 1e-8:
             return False
-    fastest = max(1.0, c.Omega)
+    limit = MOST_TURN / max(1.0, c.Omega)
+    if c.free.half * limit > MOST_DECAY:
+        limit = MOST_DECAY / c.free.half
     elapsed = state[col.S_T] + state[col.S_T_LOW]
     left = length - elapsed
-    step = min(step, LANE_WINDOW / fastest)
+    step = min(step, limit)
     if left <= step + 1e-9:
         return False
     L[f.HALF + i] = c.free.half
@@ -54,10 +52,15 @@ def fill_lane(c, state, L, i, length):
     L[f.PASS2 + i] = c.pass2
     L[f.Q_RE + i] = c.free.qr
     L[f.Q_IM + i] = c.free.qi
+    force = modulus(gr, gi)
+    L[f.GROW5 + i] = force * c.Omega5
     L[f.FORCED5 + i] = forced * c.Omega5
-    L[f.WINDOW + i] = LANE_WINDOW / fastest
-    L[f.NEAR + i] = LANE_NEAR / fastest
+    L[f.WINDOW + i] = c.window
+    L[f.LIMIT + i] = limit
+    L[f.NEAR + i] = c.near
     L[f.CORRECTION + i] = c.correction
+    # `merges` takes sizes of u, G, x2, at most 2.42 (|z| + |q|) + 1.42 |G| + 1; and |z| <= MOST5 - FORCED5.
+    L[f.HEIGHT + i] = LOOSER * UNRESOLVED * (2.0 + 2.42 * forced + 1.42 * force) - HEIGHT_OF_BOUND * forced * c.Omega5
     L[f.PERIOD + i] = c.period
     sine, cosine = sincos(phase)
     xh = x - (c.free.qr * cosine - c.free.qi * sine)
@@ -71,7 +74,8 @@ def fill_lane(c, state, L, i, length):
     L[f.SPEED + i] = state[col.S_V2]
     L[f.LEFT + i] = left
     L[f.MOVE + i] = step
-    L[f.FREE5 + i] = math.sqrt(xh * xh + rest * rest)
+    L[f.FREE5 + i] = modulus(*fifth(c.free, ur, ui, gr, gi))
+    L[f.MOST5 + i] = modulus(xh, rest) + forced * c.Omega5
     L[f.POLISH + i] = 0.0
     L[f.TAU + i] = 0.0
     L[f.WALL + i] = wall
