@@ -185,7 +185,8 @@ def ensemble(
         raise StateError("lyapunov is not defined for runs with scatter; leave one of them out")
     if scatter is not None:
         scatter.check(table)
-    what = {"final": lanes.FINAL, "measures": lanes.WITH_MEASURES, "impacts": lanes.WITH_IMPACTS}[record]
+    both = lanes.WITH_MEASURES + lanes.WITH_IMPACTS
+    what = {"final": lanes.FINAL, "measures": lanes.WITH_MEASURES, "impacts": both}[record]
     what += lanes.WITH_EXPONENTS if lyapunov else 0
     work = _Work(table, begin, periods, settle, max_impacts_per_period, what, scatter)
     cores = threads_allowed() if threads is None else max(1, threads)

@@ -15,7 +15,14 @@ from vines.dynamics._flight import derivatives, fifth, phasors, slow_growth, tur
 from vines.dynamics._jit import fused_njit, loop_njit, njit
 from vines.dynamics._steps import only_root, step_ahead, step_back, taylor_root
 
-__all__ = ["energies_between", "largest_displacement", "peak_between", "segment_integrals"]
+__all__ = [
+    "base_per_force",
+    "energies_between",
+    "largest_displacement",
+    "peak_between",
+    "quadratic_forms",
+    "segment_integrals",
+]
 
 FORCED_STEP = 1e-7
 """Smallest step past a zero of v1; a second zero within it would change |x1| by less than 1e-20."""
@@ -89,26 +96,51 @@ def energies_between(c, o, stuck, start, end, v2, length):
         ug, uu = _away_from_resonance(o, u0, g0, u1, g1, length)
     else:
         ug, uu = _near_resonance(o, c.Omega, u0, g0, length)
-    gg = (g0.real * g0.real + g0.imag * g0.imag) * length
-    s = complex(-o.half, o.gamma)
-    s2 = complex(o.s2r, o.s2i)
     c2 = complex(o.c2r, o.c2i)
-    # Integrals of G^2, u G and u^2: their exponents are never small.
-    g_g = (g1 * g1 - g0 * g0) * complex(0.0, -0.5 / c.Omega)
-    u_g = (u1 * g1 - u0 * g0 - g_g) * (c2.conjugate() / (c2.real * c2.real + c2.imag * c2.imag))
-    u_u = (u1 * u1 - u0 * u0 - 2.0 * u_g) * (s.conjugate() / (2.0 * o.stiffness))
-    # e' = Re[base G].
-    base = c.Omega / o.stiffness * complex(o.half, o.sum) / complex(c.lam * c.Omega, -1.0)
-    x_square = 0.5 * (u_u.real + uu)
-    v_square = 0.5 * ((s2 * u_u + 2.0 * s * u_g + g_g).real + o.stiffness * uu + 2.0 * (s * ug).real + gg)
-    work = 0.5 * (base * (s2 * u_g + c2 * g_g) + base.conjugate() * (s2 * ug + c2 * gg)).real
-    other = 1.0 - base
-    square = (s2 * u_u + 2.0 * s * other * u_g + other * other * g_g).real
-    size = other.real * other.real + other.imag * other.imag
-    loss = 0.5 * c.lam * (square + o.stiffness * uu + 2.0 * (s * other.conjugate() * ug).real + size * gg)
+    sum2 = 1.0 / (c2.real * c2.real + c2.imag * c2.imag)
+    base = base_per_force(o, c.Omega, c.lam)
+    x_square, v_square, work, loss = quadratic_forms(
+        o.half, o.gamma, o.stiffness, c.Omega, c.lam, sum2, base, u0, g0, u1, g1, ug, uu, length
+    )
     if stuck:
         return x_square, v_square, v_square, (1.0 + c.mu) * work, loss
     return x_square, v_square, v2 * v2 * length, work, loss
+
+
+@fused_njit
+def base_per_force(o, Omega, lam):
+    """Return the complex factor with which G gives the base's velocity, e' = Re[base G]."""
+    return Omega / o.stiffness * complex(o.half, o.sum) / complex(lam * Omega, -1.0)
+
+
+@fused_njit
+def quadratic_forms(half, gamma, stiffness, Omega, lam, sum2, base, u0, g0, u1, g1, ug, uu, length):
+    """Return the integrals of x1^2 and v1^2, work in flight and damper loss from those of u conj(G) and |u|^2.
+
+    Without branches and divisions, so that lanes can share it; `sum2` is 1/|s + i Omega|^2.
+    """
+    gg = (g0.real * g0.real + g0.imag * g0.imag) * length
+    s = complex(-half, gamma)
+    s2 = s * s
+    twice = complex(-2.0 * half, 2.0 * gamma)
+    c2 = complex(-half, gamma + Omega)
+    # Integrals of G^2, u G and u^2: their exponents are never small.
+    rise = g1 * g1 - g0 * g0
+    share = 0.5 / Omega
+    g_g = complex(share * rise.imag, -share * rise.real)
+    u_g = (u1 * g1 - u0 * g0 - g_g) * complex(sum2 * c2.real, -sum2 * c2.imag)
+    share = 0.5 / stiffness
+    u_u = (u1 * u1 - u0 * u0 - (u_g + u_g)) * complex(share * s.real, -share * s.imag)
+    x_square = 0.5 * (u_u.real + uu)
+    v_square = 0.5 * ((s2 * u_u + twice * u_g + g_g).real + stiffness * uu + (twice * ug).real + gg)
+    work = (
+        0.5 * (base * (s2 * u_g + c2 * g_g) + base.conjugate() * (s2 * ug + complex(c2.real * gg, c2.imag * gg))).real
+    )
+    other = complex(1.0 - base.real, -base.imag)
+    square = (s2 * u_u + twice * other * u_g + other * other * g_g).real
+    size = other.real * other.real + other.imag * other.imag
+    loss = 0.5 * lam * (square + stiffness * uu + (twice * other.conjugate() * ug).real + size * gg)
+    return x_square, v_square, work, loss
 
 
 @loop_njit

@@ -75,4 +75,33 @@ FLIGHT = 43 * STRIDE
 BEFORE1 = 44 * STRIDE
 BEFORE2 = 45 * STRIDE
 
-SIZE = 46 * STRIDE
+# Constants of the measures (see `fill_measures`): force and 1/(i Omega - s) at phase 0, the base's velocity in units of
+# the force, 1/|s + i Omega|^2, loss of an impact in units of w'^2, the time recorded.
+G_RE = 46 * STRIDE
+G_IM = 47 * STRIDE
+E_RE = 48 * STRIDE
+E_IM = 49 * STRIDE
+B_RE = 50 * STRIDE
+B_IM = 51 * STRIDE
+SUM2 = 52 * STRIDE
+LOSS = 53 * STRIDE
+LENGTH = 54 * STRIDE
+
+# The segment whose measures are taken at the next impact: oscillator, phasor, time since the last event at its start.
+FROM_X = 55 * STRIDE
+FROM_V = 56 * STRIDE
+FROM_COS = 57 * STRIDE
+FROM_SIN = 58 * STRIDE
+FROM_TAU = 59 * STRIDE
+
+# Is the lane's time recorded; time left at the end of the running part; does the scalar kernel have to take the whole
+# segment (1) or look for its largest displacement (2); may the segment hold a new largest displacement.
+RECORDED = 60 * STRIDE
+PART_ENDS = 61 * STRIDE
+MEND = 62 * STRIDE
+SEEK = 63 * STRIDE
+
+# Totals of the running part, in the order of `vines.dynamics._totals`.
+PART = 64 * STRIDE
+
+SIZE = (64 + 15) * STRIDE

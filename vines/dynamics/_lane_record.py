@@ -11,7 +11,13 @@ import math
 import numpy as np
 
 from vines.dynamics import _advance as col
+from vines.dynamics import _lane_fields as f
+from vines.dynamics._flight import advance_phase
+from vines.dynamics._integrals import largest_displacement
 from vines.dynamics._jit import fused_njit, njit
+from vines.dynamics._lane_measures import MEND_PEAK, open_measures
+from vines.dynamics._lane_state import row_of
+from vines.dynamics._sincos import sincos
 from vines.dynamics._tangent import flow_basis, jump_basis, orthonormalise
 from vines.dynamics._totals import (
     DURATION,
@@ -28,7 +34,18 @@ from vines.dynamics._totals import (
     state_energy,
 )
 
-__all__ = ["BATCHES", "DEPTH", "arrange", "close_record", "digest", "keep_row", "new_record", "open_record"]
+__all__ = [
+    "BATCHES",
+    "DEPTH",
+    "arrange",
+    "close_record",
+    "digest",
+    "end_segment",
+    "keep_row",
+    "mend",
+    "new_record",
+    "open_record",
+]
 
 BATCHES = 8
 """Equal parts of the recorded time for standard errors, as many as `vines.attractors` takes."""
@@ -41,48 +58,62 @@ DEAD = 1e-150
 
 
 @njit
-def new_record(lanes, what_totals, what_growth):
-    """Return empty arrays for the records of so many lanes, of length 0 for what is not asked for.
+def new_record(lanes, what_rows, what_totals, what_growth):
+    """Return room for the records of all lanes, as a tuple of arrays.
 
-    They are: rows that wait and how many, totals, those of the running batch, measures by batch, disturbances, their
-    growth by batch, and the number of the running batch.
+    Rows and how many wait; totals, measures by batch, number of the running batch, mode and ball of the running
+    segment; disturbances and their growth by batch.
     """
+    k = lanes if what_rows else 0
     n = lanes if what_totals else 0
     m = lanes if what_growth else 0
     return (
-        np.zeros((lanes, DEPTH + 1, col.ROW)),
+        np.zeros((k, DEPTH + 1, col.ROW)),
         np.zeros(lanes, dtype=np.int64),
-        np.zeros((n, TOTALS)),
         np.zeros((n, TOTALS)),
         np.zeros((n, BATCHES, 3)),
+        np.zeros(lanes, dtype=np.int64),
+        np.zeros((lanes, 2)),
         np.zeros((m, 4, 4)),
         np.zeros((m, BATCHES, 5)),
-        np.zeros(lanes, dtype=np.int64),
     )
 
 
 @njit
-def open_record(c, record, i, mode, x1, v1, x2, v2, phase):
-    """Begin the part of a run that is kept."""
-    rows, count, total, part, values, basis, growth, batch = record
-    row = rows[i, 0]
-    row[:] = 0.0
-    row[col.KIND] = col.START
-    row[col.PHASE] = phase
-    row[col.X1], row[col.V1], row[col.A_V1] = x1, v1, v1
-    row[col.X2], row[col.V2], row[col.A_V2] = x2, v2, v2
-    row[col.MODE] = mode
-    count[i] = 1
+def open_record(c, L, record, i, length, since, mode, x1, v1, x2, v2, phase):
+    """Begin the part of a run that is kept, `since` after the last event."""
+    rows, count, total, values, batch, segment, basis, growth = record
+    if rows.shape[0]:
+        row = rows[i, 0]
+        row[:] = 0.0
+        row[col.KIND] = col.START
+        row[col.PHASE] = phase
+        row[col.X1], row[col.V1], row[col.A_V1] = x1, v1, v1
+        row[col.X2], row[col.V2], row[col.A_V2] = x2, v2, v2
+        row[col.MODE] = mode
+        count[i] = 1
     batch[i] = 0
     if total.shape[0]:
         total[i, :] = 0.0
-        part[i, :] = 0.0
-        part[i, MAX_ABS_X1] = abs(x1)
         total[i, ENERGY_CHANGE] = -state_energy(c, x1, v1, v2, phase)
         values[i, :, :] = 0.0
+        open_measures(c, L, i, length, x1)
+        _begin_segment(c, L, segment, i, 0, length, since, mode, x1, v1, v2, phase)
     if basis.shape[0]:
         basis[i, :, :] = np.eye(4)
         growth[i, :, :] = 0.0
+
+
+@njit
+def _begin_segment(c, L, segment, i, batch, length, since, mode, x1, v1, v2, phase):
+    """Begin a segment in a lane whose last event was at `since` before it."""
+    sine, cosine = sincos(phase)
+    L[f.FROM_X + i], L[f.FROM_V + i], L[f.FROM_COS + i], L[f.FROM_SIN + i] = x1, v1, cosine, sine
+    L[f.FROM_TAU + i] = since
+    segment[i, 0], segment[i, 1] = mode, v2
+    ends = length * (1.0 - (batch + 1.0) / BATCHES) if batch < BATCHES - 1 else -1.0
+    # Near resonance the integrals of the lanes would lose digits: no flight of theirs ends in time.
+    L[f.PART_ENDS + i] = ends if c.free.reach == 0.0 else math.inf
 
 
 @fused_njit
@@ -111,26 +142,74 @@ def _close_batch(mu, part, total, values):
 
 
 @njit
-def _digest_energies(c, rows, n, part, total, values, batch, width):
-    """Add the segments between n rows, cut where a batch ends, and the losses at their events; return the batch."""
-    for j in range(1, n):
-        row = rows[j]
-        last = rows[j - 1]
-        begins, length = last[col.TIME], row[col.TAU]
-        x1, v1, v2, phase = last[col.X1], last[col.A_V1], last[col.A_V2], last[col.PHASE]
-        gone = 0.0
-        while batch < BATCHES - 1 and begins + length > (batch + 1) * width:
-            cut = min(max((batch + 1) * width - begins, gone), length)
-            add_segment(c, part, last[col.MODE], begins + gone, x1, v1, v2, phase, cut - gone)
-            _close_batch(c.mu, part, total, values[batch])
-            batch += 1
-            x1, v1, _, v2, phase = segment_state(c, last, cut)
-            gone = cut
-            part[MAX_ABS_X1], part[T_MAX_ABS_X1] = abs(x1), begins + gone
-        add_segment(c, part, last[col.MODE], begins + gone, x1, v1, v2, phase, length - gone)
-        if row[col.KIND] == col.IMPACT or row[col.KIND] == col.STICK:
-            count_event(c, part, row)
-    return batch
+def _part_of(L, i):
+    """Return the totals of the running part."""
+    part = np.empty(TOTALS)
+    for k in range(TOTALS):
+        part[k] = L[f.PART + k * f.STRIDE + i]
+    return part
+
+
+@njit
+def end_segment(c, L, record, i, length, row):
+    """Add the segment that a row ends, cut where a part ends, and what its event costs; begin the next segment."""
+    _, _, total, values, batch, segment, _, _ = record
+    part = _part_of(L, i)
+    start = np.zeros(col.ROW)
+    mode, v2 = segment[i]
+    x1, v1 = L[f.FROM_X + i], L[f.FROM_V + i]
+    phase = advance_phase(math.atan2(L[f.FROM_SIN + i], L[f.FROM_COS + i]), 0.0)
+    start[col.MODE], start[col.X1], start[col.A_V1], start[col.A_V2] = mode, x1, v1, v2
+    start[col.PHASE] = phase
+    lasts = row[col.TAU] - L[f.FROM_TAU + i]
+    begins = row[col.TIME] - lasts
+    width = length / BATCHES
+    gone = 0.0
+    while batch[i] < BATCHES - 1 and begins + lasts > (batch[i] + 1) * width:
+        cut = min(max((batch[i] + 1) * width - begins, gone), lasts)
+        add_segment(c, part, mode, begins + gone, x1, v1, v2, phase, cut - gone)
+        _close_batch(c.mu, part, total[i], values[i, batch[i]])
+        batch[i] += 1
+        x1, v1, _, v2, phase = segment_state(c, start, cut)
+        gone = cut
+        part[MAX_ABS_X1], part[T_MAX_ABS_X1] = abs(x1), begins + gone
+    add_segment(c, part, mode, begins + gone, x1, v1, v2, phase, lasts - gone)
+    if row[col.KIND] == col.IMPACT or row[col.KIND] == col.STICK:
+        count_event(c, part, row)
+    for k in range(TOTALS):
+        L[f.PART + k * f.STRIDE + i] = part[k]
+    _begin_segment(
+        c,
+        L,
+        segment,
+        i,
+        batch[i],
+        length,
+        0.0,
+        row[col.MODE],
+        row[col.X1],
+        row[col.A_V1],
+        row[col.A_V2],
+        row[col.PHASE],
+    )
+
+
+@njit
+def mend(c, L, record, i, length, phase0):
+    """Do for the impact of a lane what `measure` has left to do."""
+    if L[f.MEND + i] != MEND_PEAK:
+        row = np.zeros(col.ROW)
+        row_of(L, i, row, length, phase0)
+        record[5][i, 0], record[5][i, 1] = 0.0, L[f.BEFORE2 + i]
+        end_segment(c, L, record, i, length, row)
+        return
+    lasts = L[f.FLIGHT + i] - L[f.FROM_TAU + i]
+    phase = advance_phase(math.atan2(L[f.FROM_SIN + i], L[f.FROM_COS + i]), 0.0)
+    largest = f.PART + MAX_ABS_X1 * f.STRIDE + i
+    x1, v1 = L[f.FROM_X + i], L[f.FROM_V + i]
+    L[largest], when = largest_displacement(c, 0.0, x1, v1, phase, 0.0, lasts, L[largest])
+    if when >= 0.0:
+        L[f.PART + T_MAX_ABS_X1 * f.STRIDE + i] = length - L[f.LEFT + i] - lasts + when
 
 
 @njit
@@ -164,16 +243,13 @@ def _log_growth(product, growth):
 
 
 @njit
-def digest(c, record, i, length, what_totals, what_growth, what_impacts, events, filled, who):
+def digest(c, record, i, length, what_growth, what_impacts, events, filled, who):
     """Digest the rows that wait in a lane; return how much of `events` is filled, -1 if it is full."""
-    rows, count, total, part, values, basis, growth, batch = record
+    rows, count, _, _, _, _, basis, growth = record
     n = count[i]
     if n > 1:
-        width = length / BATCHES
-        if what_totals:
-            batch[i] = _digest_energies(c, rows[i], n, part[i], total[i], values[i], batch[i], width)
         if what_growth:
-            _digest_growth(c, rows[i], n, basis[i], growth[i], width)
+            _digest_growth(c, rows[i], n, basis[i], growth[i], length / BATCHES)
         if what_impacts:
             for j in range(1, n):
                 if rows[i, j, col.KIND] != col.IMPACT:
@@ -203,12 +279,14 @@ def _scatter(values, errors):
 
 
 @njit
-def close_record(c, record, i, energy, who, totals, errors, growths, growth_errors):
+def close_record(c, L, record, i, energy, who, totals, errors, growths, growth_errors):
     """Write what a record has gathered to row `who`; standard errors are nan if the run ended before its time."""
-    _, _, total, part, values, _, growth, batch = record
+    _, _, total, values, batch, _, _, growth = record
+    L[f.RECORDED + i] = 0.0
     if total.shape[0]:
-        whole = batch[i] == BATCHES - 1 and part[i, DURATION] > 0.0
-        _close_batch(c.mu, part[i], total[i], values[i, batch[i]])
+        part = _part_of(L, i)
+        whole = batch[i] == BATCHES - 1 and part[DURATION] > 0.0
+        _close_batch(c.mu, part, total[i], values[i, batch[i]])
         total[i, ENERGY_CHANGE] += energy
         totals[who] = total[i]
         errors[who, :] = math.nan

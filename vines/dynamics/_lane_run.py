@@ -13,7 +13,8 @@ from vines.dynamics import _lane_fields as f
 from vines.dynamics._advance import advance, set_state, state_now
 from vines.dynamics._constants import constants_kernel
 from vines.dynamics._jit import njit
-from vines.dynamics._lane_record import close_record, digest, keep_row, new_record, open_record
+from vines.dynamics._lane_measures import measure, renew
+from vines.dynamics._lane_record import close_record, digest, end_segment, keep_row, mend, new_record, open_record
 from vines.dynamics._lane_state import fill_lane, may_fly, row_of, take_lane
 from vines.dynamics._lanes import tick
 from vines.dynamics._totals import state_energy
@@ -101,11 +102,13 @@ def run_block(
     L[f.WAITS : f.WAITS + LANES] = 1.0
     state = np.zeros(col.STATE)
     row = np.zeros((1, col.ROW))
+    last = np.zeros(col.ROW)
     energies = what & WITH_MEASURES != 0
     rates = what & WITH_EXPONENTS != 0
     impacts = what & WITH_IMPACTS != 0
-    record = new_record(LANES, energies, rates)
-    rows, waiting = record[0], record[1]
+    keeps = impacts or rates
+    record = new_record(LANES, keeps, energies, rates)
+    rows, waiting, segment = record[0], record[1], record[5]
     run = np.full((LANES, 3), -1.0)
     # The constants of the trajectory in each lane.
     held = [_constants_of(parameters[0]) for _ in range(LANES)]
@@ -113,14 +116,14 @@ def run_block(
     next_one = 0
     active = 0
     filled = 0
-    looks = 1 if what else UNHURRIED
+    looks = 1 if keeps else UNHURRIED
     while True:
         for i in range(LANES):
-            if what and L[f.HIT + i] > 0.0 and run[i, STAGE] == 1.0:
+            if keeps and L[f.HIT + i] > 0.0 and run[i, STAGE] == 1.0:
                 who = int(run[i, WHO])
                 row_of(L, i, rows[i, waiting[i]], lengths[who], run[i, PHASE0])
                 if keep_row(rows, waiting, i):
-                    filled = digest(held[i], record, i, lengths[who], energies, rates, impacts, events, filled, who)
+                    filled = digest(held[i], record, i, lengths[who], rates, impacts, events, filled, who)
                     if filled < 0:
                         status[who] = OVERFLOW
                         return events.shape[0]
@@ -146,7 +149,7 @@ def run_block(
                     L[f.IMPACTS + i] = 0.0
                     length = lengths[who] if run[i, STAGE] == 1.0 else first[who]
                     if run[i, STAGE] == 1.0:
-                        open_record(c, record, i, 0.0, s[0], s[1], s[2], s[3], s[4])
+                        open_record(c, L, record, i, length, 0.0, 0.0, s[0], s[1], s[2], s[3], s[4])
                     if may_fly(c, state) and fill_lane(c, state, L, i, length):
                         break
                 else:
@@ -154,6 +157,7 @@ def run_block(
                     c = held[i]
                     length = lengths[who] if run[i, STAGE] == 1.0 else first[who]
                     take_lane(c, L, i, state, length, run[i, PHASE0])
+                    segment[i, 0], segment[i, 1] = 0.0, L[f.SPEED + i]
                 flies = False
                 while True:
                     length = lengths[who] if run[i, STAGE] == 1.0 else first[who]
@@ -163,12 +167,13 @@ def run_block(
                         L[f.IMPACTS + i] += 1.0
                     if code == col.COMPLETE and run[i, STAGE] == 0.0:
                         # On with the part that is kept: the same flight, its time counted from here.
-                        x1, v1, x2, v2, phase, _ = state_now(c, state, length)
+                        x1, v1, x2, v2, phase, since = state_now(c, state, length)
                         state[col.S_T] -= length
                         state[col.S_PERIOD_START] -= length
                         run[i, STAGE] = 1.0
                         run[i, PHASE0] = phase
-                        open_record(c, record, i, state[col.S_MODE], x1, v1, x2, v2, phase)
+                        kept = lengths[who]
+                        open_record(c, L, record, i, kept, since, state[col.S_MODE], x1, v1, x2, v2, phase)
                         if may_fly(c, state) and fill_lane(c, state, L, i, lengths[who]):
                             flies = True
                             break
@@ -176,27 +181,31 @@ def run_block(
                     ended = code != col.BUFFER_FULL
                     end = length if code == col.COMPLETE else state[col.S_T] + state[col.S_T_LOW]
                     if ended:
-                        x1, v1, x2, v2, phase, _ = state_now(c, state, end)
+                        x1, v1, x2, v2, phase, since = state_now(c, state, end)
                     if what and run[i, STAGE] == 1.0:
+                        if happened and energies:
+                            end_segment(c, L, record, i, length, row[0])
                         full = False
-                        if happened:
+                        if happened and keeps:
                             rows[i, waiting[i]] = row[0]
                             full = keep_row(rows, waiting, i)
-                        if full or ended:
-                            filled = digest(c, record, i, length, energies, rates, impacts, events, filled, who)
+                        if code == col.COMPLETE:
+                            last[:] = 0.0
+                            last[col.KIND], last[col.TIME], last[col.TAU] = col.END, length, since
+                            last[col.PHASE], last[col.X1], last[col.X2] = phase, x1, x2
+                            last[col.V1], last[col.V2], last[col.A_V1], last[col.A_V2] = v1, v2, v1, v2
+                            last[col.MODE] = state[col.S_MODE]
+                            if energies:
+                                end_segment(c, L, record, i, length, last)
+                        if keeps and (full or ended):
+                            filled = digest(c, record, i, length, rates, impacts, events, filled, who)
+                        if filled >= 0 and code == col.COMPLETE and rates:
+                            rows[i, waiting[i]] = last
+                            keep_row(rows, waiting, i)
+                            filled = digest(c, record, i, length, rates, impacts, events, filled, who)
                         if filled >= 0 and ended:
-                            if code == col.COMPLETE:
-                                last = rows[i, waiting[i]]
-                                since = length - rows[i, waiting[i] - 1, col.TIME]
-                                last[:] = 0.0
-                                last[col.KIND], last[col.TIME], last[col.TAU] = col.END, length, since
-                                last[col.PHASE], last[col.X1], last[col.X2] = phase, x1, x2
-                                last[col.V1], last[col.V2], last[col.A_V1], last[col.A_V2] = v1, v2, v1, v2
-                                last[col.MODE] = state[col.S_MODE]
-                                waiting[i] += 1
-                                filled = digest(c, record, i, length, energies, rates, impacts, events, filled, who)
                             energy = state_energy(c, x1, v1, v2, phase)
-                            close_record(c, record, i, energy, who, totals, errors, growths, growth_errors)
+                            close_record(c, L, record, i, energy, who, totals, errors, growths, growth_errors)
                         if filled < 0:
                             status[who] = OVERFLOW
                             return events.shape[0]
@@ -219,3 +228,10 @@ def run_block(
             return filled
         for _ in range(looks):
             tick(L, cap)
+            if energies:
+                measure(L)
+                for i in range(LANES):
+                    if L[f.MEND + i] > 0.0:
+                        mend(held[i], L, record, i, lengths[int(run[i, WHO])], run[i, PHASE0])
+                        L[f.MEND + i] = 0.0
+                renew(L)
