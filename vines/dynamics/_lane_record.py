@@ -12,43 +12,13 @@ import numpy as np
 
 from vines.dynamics import _advance as col
 from vines.dynamics import _lane_fields as f
-from vines.dynamics._flight import advance_phase
-from vines.dynamics._integrals import largest_displacement
 from vines.dynamics._jit import fused_njit, njit
-from vines.dynamics._lane_measures import MEND_PEAK, open_measures
-from vines.dynamics._lane_state import row_of
-from vines.dynamics._sincos import sincos
+from vines.dynamics._lane_measures import open_measures
+from vines.dynamics._lane_segments import BATCHES, begin_segment, close_part, part_of
 from vines.dynamics._tangent import flow_basis, jump_basis, orthonormalise
-from vines.dynamics._totals import (
-    DURATION,
-    ENERGY_CHANGE,
-    MAX_ABS_X1,
-    T_MAX_ABS_X1,
-    TOTALS,
-    V1_SQUARE,
-    V2_SQUARE,
-    X1_SQUARE,
-    add_segment,
-    count_event,
-    segment_state,
-    state_energy,
-)
+from vines.dynamics._totals import DURATION, ENERGY_CHANGE, TOTALS, state_energy
 
-__all__ = [
-    "BATCHES",
-    "DEPTH",
-    "arrange",
-    "close_record",
-    "digest",
-    "end_segment",
-    "keep_row",
-    "mend",
-    "new_record",
-    "open_record",
-]
-
-BATCHES = 8
-"""Equal parts of the recorded time for standard errors, as many as `vines.attractors` takes."""
+__all__ = ["DEPTH", "arrange", "close_record", "digest", "keep_row", "new_record", "open_record"]
 
 DEPTH = 16
 """Rows of a lane that wait until they are digested; those of all lanes stay in the second cache."""
@@ -98,22 +68,10 @@ def open_record(c, L, record, i, length, since, mode, x1, v1, x2, v2, phase):
         total[i, ENERGY_CHANGE] = -state_energy(c, x1, v1, v2, phase)
         values[i, :, :] = 0.0
         open_measures(c, L, i, length, x1)
-        _begin_segment(c, L, segment, i, 0, length, since, mode, x1, v1, v2, phase)
+        begin_segment(c, L, segment, i, 0, length, since, mode, x1, v1, v2, phase)
     if basis.shape[0]:
         basis[i, :, :] = np.eye(4)
         growth[i, :, :] = 0.0
-
-
-@njit
-def _begin_segment(c, L, segment, i, batch, length, since, mode, x1, v1, v2, phase):
-    """Begin a segment in a lane whose last event was at `since` before it."""
-    sine, cosine = sincos(phase)
-    L[f.FROM_X + i], L[f.FROM_V + i], L[f.FROM_COS + i], L[f.FROM_SIN + i] = x1, v1, cosine, sine
-    L[f.FROM_TAU + i] = since
-    segment[i, 0], segment[i, 1] = mode, v2
-    ends = length * (1.0 - (batch + 1.0) / BATCHES) if batch < BATCHES - 1 else -1.0
-    # Near resonance the integrals of the lanes would lose digits: no flight of theirs ends in time.
-    L[f.PART_ENDS + i] = ends if c.free.reach == 0.0 else math.inf
 
 
 @fused_njit
@@ -125,91 +83,6 @@ def keep_row(rows, count, i):
         rows[i, k, col.TAU] = rows[i, k, col.TIME] - rows[i, k - 1, col.TIME]
     count[i] = k + 1
     return k == DEPTH
-
-
-@njit
-def _close_batch(mu, part, total, values):
-    """Add a part to the totals and keep its measures."""
-    for k in range(TOTALS):
-        if k not in (MAX_ABS_X1, T_MAX_ABS_X1, ENERGY_CHANGE):
-            total[k] += part[k]
-    if part[MAX_ABS_X1] > total[MAX_ABS_X1]:
-        total[MAX_ABS_X1], total[T_MAX_ABS_X1] = part[MAX_ABS_X1], part[T_MAX_ABS_X1]
-    values[0] = mu * part[V2_SQUARE] / part[V1_SQUARE]
-    values[1] = part[MAX_ABS_X1]
-    values[2] = math.sqrt(max(part[X1_SQUARE], 0.0) / part[DURATION])
-    part[:] = 0.0
-
-
-@njit
-def _part_of(L, i):
-    """Return the totals of the running part."""
-    part = np.empty(TOTALS)
-    for k in range(TOTALS):
-        part[k] = L[f.PART + k * f.STRIDE + i]
-    return part
-
-
-@njit
-def end_segment(c, L, record, i, length, row):
-    """Add the segment that a row ends, cut where a part ends, and what its event costs; begin the next segment."""
-    _, _, total, values, batch, segment, _, _ = record
-    part = _part_of(L, i)
-    start = np.zeros(col.ROW)
-    mode, v2 = segment[i]
-    x1, v1 = L[f.FROM_X + i], L[f.FROM_V + i]
-    phase = advance_phase(math.atan2(L[f.FROM_SIN + i], L[f.FROM_COS + i]), 0.0)
-    start[col.MODE], start[col.X1], start[col.A_V1], start[col.A_V2] = mode, x1, v1, v2
-    start[col.PHASE] = phase
-    lasts = row[col.TAU] - L[f.FROM_TAU + i]
-    begins = row[col.TIME] - lasts
-    width = length / BATCHES
-    gone = 0.0
-    while batch[i] < BATCHES - 1 and begins + lasts > (batch[i] + 1) * width:
-        cut = min(max((batch[i] + 1) * width - begins, gone), lasts)
-        add_segment(c, part, mode, begins + gone, x1, v1, v2, phase, cut - gone)
-        _close_batch(c.mu, part, total[i], values[i, batch[i]])
-        batch[i] += 1
-        x1, v1, _, v2, phase = segment_state(c, start, cut)
-        gone = cut
-        part[MAX_ABS_X1], part[T_MAX_ABS_X1] = abs(x1), begins + gone
-    add_segment(c, part, mode, begins + gone, x1, v1, v2, phase, lasts - gone)
-    if row[col.KIND] == col.IMPACT or row[col.KIND] == col.STICK:
-        count_event(c, part, row)
-    for k in range(TOTALS):
-        L[f.PART + k * f.STRIDE + i] = part[k]
-    _begin_segment(
-        c,
-        L,
-        segment,
-        i,
-        batch[i],
-        length,
-        0.0,
-        row[col.MODE],
-        row[col.X1],
-        row[col.A_V1],
-        row[col.A_V2],
-        row[col.PHASE],
-    )
-
-
-@njit
-def mend(c, L, record, i, length, phase0):
-    """Do for the impact of a lane what `measure` has left to do."""
-    if L[f.MEND + i] != MEND_PEAK:
-        row = np.zeros(col.ROW)
-        row_of(L, i, row, length, phase0)
-        record[5][i, 0], record[5][i, 1] = 0.0, L[f.BEFORE2 + i]
-        end_segment(c, L, record, i, length, row)
-        return
-    lasts = L[f.FLIGHT + i] - L[f.FROM_TAU + i]
-    phase = advance_phase(math.atan2(L[f.FROM_SIN + i], L[f.FROM_COS + i]), 0.0)
-    largest = f.PART + MAX_ABS_X1 * f.STRIDE + i
-    x1, v1 = L[f.FROM_X + i], L[f.FROM_V + i]
-    L[largest], when = largest_displacement(c, 0.0, x1, v1, phase, 0.0, lasts, L[largest])
-    if when >= 0.0:
-        L[f.PART + T_MAX_ABS_X1 * f.STRIDE + i] = length - L[f.LEFT + i] - lasts + when
 
 
 @njit
@@ -284,9 +157,9 @@ def close_record(c, L, record, i, energy, who, totals, errors, growths, growth_e
     _, _, total, values, batch, _, _, growth = record
     L[f.RECORDED + i] = 0.0
     if total.shape[0]:
-        part = _part_of(L, i)
+        part = part_of(L, i)
         whole = batch[i] == BATCHES - 1 and part[DURATION] > 0.0
-        _close_batch(c.mu, part, total[i], values[i, batch[i]])
+        close_part(c.mu, L, record, i, part)
         total[i, ENERGY_CHANGE] += energy
         totals[who] = total[i]
         errors[who, :] = math.nan

@@ -14,7 +14,8 @@ from vines.dynamics._advance import advance, set_state, state_now
 from vines.dynamics._constants import constants_kernel
 from vines.dynamics._jit import njit
 from vines.dynamics._lane_measures import measure, renew
-from vines.dynamics._lane_record import close_record, digest, end_segment, keep_row, mend, new_record, open_record
+from vines.dynamics._lane_record import close_record, digest, keep_row, new_record, open_record
+from vines.dynamics._lane_segments import end_segment, mend
 from vines.dynamics._lane_state import fill_lane, may_fly, row_of, take_lane
 from vines.dynamics._lanes import tick
 from vines.dynamics._totals import state_energy
@@ -233,5 +234,4 @@ def run_block(
                 for i in range(LANES):
                     if L[f.MEND + i] > 0.0:
                         mend(held[i], L, record, i, lengths[int(run[i, WHO])], run[i, PHASE0])
-                        L[f.MEND + i] = 0.0
                 renew(L)
