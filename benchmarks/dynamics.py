@@ -12,62 +12,16 @@ import shutil
 import statistics
 import subprocess
 import sys
-import time
-from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
 from scipy.integrate import solve_ivp
 
+from benchmarks.lanes import MIXED, ORBIT, PUBLISHED_FLOOR, REPEATS, floor, median, ways_to_run
 from benchmarks.rk4 import rk4_run
-from vines.dynamics import _lane_fields as f
 from vines.dynamics import ensemble, lyapunov_spectrum, simulate
-from vines.dynamics._jit import loop_njit
-from vines.dynamics._lane_motion import half_turn, small_expm1
 from vines.model import Params
 from vines.orbits import find_orbit
-
-ORBIT = Params(mu=0.01, A=0.015)
-MIXED = Params(mu=0.01, A=0.03)
-REPEATS = 5
-PUBLISHED_FLOOR = 11.0
-"""ns for four sincos-exponential evaluations on the machine of facts/mathematics.md."""
-
-
-def median(work: Callable[[], object]) -> float:
-    """Return the median processor time of five calls after a first one."""
-    work()
-    times = []
-    for _ in range(REPEATS):
-        begin = time.process_time()
-        work()
-        times.append(time.process_time() - begin)
-    return statistics.median(times)
-
-
-@loop_njit
-def _floor(L, n):
-    """Four sine-cosine pairs and four exponentials in each lane, n times: what an impact cannot do without."""
-    for _ in range(n):
-        for i in range(f.LANES):
-            x = L[f.MOVE + i]
-            total = 0.0
-            s, c = half_turn(x)
-            total += s * c + small_expm1(-x)
-            s, c = half_turn(x * 0.9)
-            total += s * c + small_expm1(-x * 0.9)
-            s, c = half_turn(x * 0.8)
-            total += s * c + small_expm1(-x * 0.8)
-            s, c = half_turn(x * 0.7)
-            total += s * c + small_expm1(-x * 0.7)
-            L[f.MOVE + i] = 0.5 + 0.1 * total
-
-
-def floor() -> float:
-    """Return the floor in ns an impact."""
-    L, n = np.full(f.SIZE, 0.5), 20_000
-    return median(lambda: _floor(L, n)) / n / f.LANES * 1e9
-
 
 MILLION = """
 import json, resource, time
@@ -102,18 +56,7 @@ def start_on(p: Params) -> tuple[dict[str, float], float]:
 
 def ours(p: Params) -> list[tuple[str, float]]:
     """Return (what, ns an impact) for the ways to run."""
-    n = 2048
-    v2 = np.linspace(0.09, 0.11, n)
-    rows = []
-    for name, options in (
-        ("lanes, final states", {"periods": 200}),
-        ("lanes, measures", {"periods": 40, "record": "measures"}),
-        ("lanes, impacts kept", {"periods": 40, "record": "impacts"}),
-        ("lanes, Lyapunov spectrum", {"periods": 40, "lyapunov": True}),
-    ):
-        hits = int(ensemble(p, {"v2": v2}, threads=1, **options).counts.sum())
-        seconds = median(lambda options=options: ensemble(p, {"v2": v2}, threads=1, **options))
-        rows.append((name, seconds / hits * 1e9))
+    rows = ways_to_run(p)
     run = simulate(p, periods=5000)
     hits = len(run.impacts)
     rows.append(("scalar, every event kept", median(lambda: simulate(p, periods=5000)) / hits * 1e9))

@@ -85,6 +85,31 @@ def test_final_states_and_measures_are_those_of_simulate() -> None:
                 assert many.measures[name][k] == pytest.approx(getattr(m, name), rel=1e-7, abs=1e-9)
 
 
+def test_measures_in_lanes_are_those_of_simulate_over_the_range_of_parameters() -> None:
+    # Integrals in lanes come from free motion and steady response: near resonance they lose up to five digits.
+    rng, compared = np.random.default_rng(8), 0
+    for _ in range(24):
+        Omega = float(rng.choice([1.0, rng.uniform(0.2, 4.0)]))
+        p = Params(
+            mu=10 ** rng.uniform(-3, 0), A=10 ** rng.uniform(-2, 0.5), Omega=Omega, lam=10 ** rng.uniform(-3, -0.1)
+        )
+        v2 = rng.uniform(0.05, 1.0, 4)
+        many = ensemble(p, {"v2": v2}, periods=2.7, record="measures", max_impacts_per_period=300)
+        assert many.measures is not None
+        for k in range(4):
+            run = simulate(p, v2=float(v2[k]), periods=2.7, max_impacts_per_period=300)
+            same = many.counts[k] == len(run.impacts) and abs(many.final["x1"][k] - run.final["x1"]) < 1e-9
+            if run.status != "complete" or not same:
+                continue
+            compared += 1
+            m = run.measures()
+            for name in many.measures.dtype.names or ():
+                if not name.endswith("_error"):
+                    size = 1e-10 * (m.max_abs_x1**2 + m.duration) if name in ("base_work", "energy_change") else 1e-12
+                    assert many.measures[name][k] == pytest.approx(getattr(m, name), rel=1e-8, abs=size), (name, p)
+    assert compared > 60
+
+
 def test_a_chatter_merges_at_the_same_impact_in_lanes() -> None:
     merges = 0
     for mu, A in ((0.0084, 0.015), (0.05, 0.015), (0.3, 0.05)):

@@ -60,6 +60,32 @@ def test_restitution_has_the_mean_and_spread_asked_for() -> None:
     assert left_over.std() == pytest.approx(0.03, rel=0.05)
 
 
+def test_standard_errors_with_scatter_are_those_between_runs() -> None:
+    chaos = Params(mu=0.01, A=0.03)
+    scatter = Scatter(sigma_r=0.05, noise=0.05, seed=3)
+    m = ensemble(chaos, {"v2": np.linspace(0.05, 0.2, 64)}, settle=20, periods=160, record="measures", scatter=scatter)
+    assert m.measures is not None
+    for name in ("kinetic_ratio", "rms_x1"):
+        typical = np.sqrt(np.mean(m.measures[f"{name}_error"] ** 2))
+        assert 0.6 < np.std(m.measures[name], ddof=1) / typical < 1.6
+    assert np.isfinite(m.measures["max_abs_x1_error"]).all()
+    cut = ensemble(chaos, periods=20, record="measures", scatter=scatter, max_impacts_per_period=1)
+    assert cut.measures is not None
+    assert cut.status[0] == "impact_cap"
+    assert np.isnan(cut.measures["kinetic_ratio_error"][0])
+
+
+def test_impacts_come_with_measures() -> None:
+    for scatter in (None, Scatter(sigma_r=0.02, seed=2)):
+        many = ensemble(P, {"v2": V2[:4]}, settle=2.3, periods=9, record="impacts", scatter=scatter)
+        alone = ensemble(P, {"v2": V2[:4]}, settle=2.3, periods=9, record="measures", scatter=scatter)
+        assert many.impacts is not None
+        assert many.measures is not None
+        assert np.array_equal(many.measures, alone.measures)
+        hits = many.measures["impacts_left"] + many.measures["impacts_right"]
+        assert np.array_equal(np.bincount(many.impacts["run"], minlength=4), hits)
+
+
 def test_bad_scatter_is_refused() -> None:
     for options, message in (
         ({"sigma_r": -1.0}, "sigma_r is -1"),

@@ -58,8 +58,8 @@ MEASURES = np.dtype(
 """As `Measures`, one row a trajectory, times counted from the start of the recording.
 
 The standard errors are those of batch means: the scatter of a measure over eight equal parts of the recorded time,
-divided by the root of eight; nan where the run ended before its time, and with scatter. They hold if a part is longer
-than the memory of the motion; for a periodic orbit they are 0 only if a part holds whole periods of it.
+divided by the root of eight; nan where the run ended before its time. They hold if a part is longer than the memory of
+the motion; for a periodic orbit they are 0 only if a part holds whole periods of it.
 """
 
 RUN_IMPACT = np.dtype([("run", "i8"), *((name, IMPACT[name]) for name in IMPACT.names or ())])
@@ -248,11 +248,11 @@ class _Work:
         room = int(n * (4 * self.periods + 64)) if self.what & lanes.WITH_IMPACTS else 0
         while True:
             events = np.empty((room, col.ROW + 1))
-            common = (self.cap, self.what, self.finals[block], totals)
+            common = (self.cap, self.what, self.finals[block], totals, errors)
             rest = (self.counts[block], self.codes[block], events)
             runs = (self.table[block], self.begin[block], self.first[block], self.lengths[block])
             if self.scatter is None:
-                filled = lanes.run_block(*runs, *common, errors, growths, growth_errors, *rest)
+                filled = lanes.run_block(*runs, *common, growths, growth_errors, *rest)
             else:
                 filled = scatter_block(*runs, *common, *rest, self.scatter.numbers(), block.start)
             if not np.any(self.codes[block] == lanes.OVERFLOW):

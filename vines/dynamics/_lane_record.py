@@ -12,9 +12,10 @@ import numpy as np
 
 from vines.dynamics import _advance as col
 from vines.dynamics import _lane_fields as f
+from vines.dynamics._batches import BATCHES, standard_errors
 from vines.dynamics._jit import fused_njit, njit
 from vines.dynamics._lane_measures import open_measures
-from vines.dynamics._lane_segments import BATCHES, begin_segment, close_part, part_of
+from vines.dynamics._lane_segments import begin_segment, close_part, part_of
 from vines.dynamics._tangent import flow_basis, jump_basis, orthonormalise
 from vines.dynamics._totals import DURATION, ENERGY_CHANGE, TOTALS, state_energy
 
@@ -138,20 +139,6 @@ def digest(c, record, i, length, what_growth, what_impacts, events, filled, who)
 
 
 @njit
-def _scatter(values, errors):
-    """Put the standard errors of the means of columns of `values`, one row a batch, into `errors`."""
-    n = values.shape[0]
-    for k in range(errors.shape[0]):
-        mean = 0.0
-        for b in range(n):
-            mean += values[b, k] / n
-        square = 0.0
-        for b in range(n):
-            square += (values[b, k] - mean) ** 2
-        errors[k] = math.sqrt(square / (n * (n - 1.0)))
-
-
-@njit
 def close_record(c, L, record, i, energy, who, totals, errors, growths, growth_errors):
     """Write what a record has gathered to row `who`; standard errors are nan if the run ended before its time."""
     _, _, total, values, batch, _, _, growth = record
@@ -164,14 +151,14 @@ def close_record(c, L, record, i, energy, who, totals, errors, growths, growth_e
         totals[who] = total[i]
         errors[who, :] = math.nan
         if whole:
-            _scatter(values[i], errors[who])
+            standard_errors(values[i], errors[who])
     if growth.shape[0]:
         rates = np.empty((BATCHES, 4))
         growths[who, :] = 0.0
         for b in range(BATCHES):
             growths[who] += growth[i, b]
             rates[b] = growth[i, b, :4] / growth[i, b, 4]
-        _scatter(rates, growth_errors[who])
+        standard_errors(rates, growth_errors[who])
         for k in range(4):
             if growths[who, k] == -math.inf:
                 growth_errors[who, k] = 0.0

@@ -113,7 +113,7 @@ def run_block(
     run = np.full((LANES, 3), -1.0)
     # The constants of the trajectory in each lane.
     held = [_constants_of(parameters[0]) for _ in range(LANES)]
-    x1 = v1 = x2 = v2 = phase = 0.0
+    x1 = v1 = x2 = v2 = phase = since = 0.0
     next_one = 0
     active = 0
     filled = 0

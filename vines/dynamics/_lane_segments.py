@@ -12,6 +12,7 @@ import numpy as np
 
 from vines.dynamics import _advance as col
 from vines.dynamics import _lane_fields as f
+from vines.dynamics._batches import BATCHES, close_batch
 from vines.dynamics._flight import advance_phase
 from vines.dynamics._integrals import largest_displacement
 from vines.dynamics._jit import njit
@@ -20,23 +21,15 @@ from vines.dynamics._lane_motion import flow, forced_motion
 from vines.dynamics._lane_state import row_of
 from vines.dynamics._sincos import sincos
 from vines.dynamics._totals import (
-    DURATION,
-    ENERGY_CHANGE,
     MAX_ABS_X1,
     T_MAX_ABS_X1,
     TOTALS,
-    V1_SQUARE,
-    V2_SQUARE,
-    X1_SQUARE,
     add_segment,
     count_event,
     segment_state,
 )
 
-__all__ = ["BATCHES", "begin_segment", "close_part", "end_segment", "mend", "part_of"]
-
-BATCHES = 8
-"""Equal parts of the recorded time for standard errors, as many as `vines.attractors` takes."""
+__all__ = ["begin_segment", "close_part", "end_segment", "mend", "part_of"]
 
 FINE = 2.0**14
 """Largest square of the steady amplitude over |i Omega - s| with which the lanes' integrals keep eleven digits."""
@@ -75,20 +68,6 @@ def begin_segment(c, L, segment, i, batch, length, since, mode, x1, v1, v2, phas
 
 
 @njit
-def _close(mu, part, total, values):
-    """Add a part to the totals and keep its measures."""
-    for k in range(TOTALS):
-        if k not in (MAX_ABS_X1, T_MAX_ABS_X1, ENERGY_CHANGE):
-            total[k] += part[k]
-    if part[MAX_ABS_X1] > total[MAX_ABS_X1]:
-        total[MAX_ABS_X1], total[T_MAX_ABS_X1] = part[MAX_ABS_X1], part[T_MAX_ABS_X1]
-    values[0] = mu * part[V2_SQUARE] / part[V1_SQUARE]
-    values[1] = part[MAX_ABS_X1]
-    values[2] = math.sqrt(max(part[X1_SQUARE], 0.0) / part[DURATION])
-    part[:] = 0.0
-
-
-@njit
 def part_of(L, i):
     """Return the totals of the running part."""
     part = np.empty(TOTALS)
@@ -115,7 +94,7 @@ def end_segment(c, L, record, i, length, row):
     while batch[i] < BATCHES - 1 and begins + lasts > (batch[i] + 1) * width:
         cut = min(max((batch[i] + 1) * width - begins, gone), lasts)
         add_segment(c, part, mode, begins + gone, x1, v1, v2, phase, cut - gone)
-        _close(c.mu, part, total[i], values[i, batch[i]])
+        close_batch(c.mu, part, total[i], values[i, batch[i]])
         batch[i] += 1
         x1, v1, _, v2, phase = segment_state(c, start, cut)
         gone = cut
@@ -144,7 +123,7 @@ def end_segment(c, L, record, i, length, row):
 @njit
 def close_part(mu, L, record, i, part):
     """Add the running part of a lane to its totals."""
-    _close(mu, part, record[2][i], record[3][i, record[4][i]])
+    close_batch(mu, part, record[2][i], record[3][i, record[4][i]])
 
 
 @njit

@@ -14,6 +14,7 @@ import numpy.typing as npt
 
 from vines.dynamics import _advance as col
 from vines.dynamics import _totals as entry
+from vines.dynamics._batches import BATCHES, close_batch, standard_errors
 from vines.dynamics._flight import advance_phase
 from vines.dynamics._jit import njit
 from vines.dynamics._random import normal
@@ -288,7 +289,9 @@ def _write(events, filled, who, kind, side, t, tau, s, v1, v2):
 
 
 @njit
-def scatter_block(parameters, starts, first, lengths, cap, what, finals, totals, counts, status, events, numbers, base):
+def scatter_block(
+    parameters, starts, first, lengths, cap, what, finals, totals, errors, counts, status, events, numbers, base
+):
     """Run a block of trajectories with scatter; arguments as for `run_block`, `base` the number of the first one.
 
     Returns
@@ -298,7 +301,7 @@ def scatter_block(parameters, starts, first, lengths, cap, what, finals, totals,
     """
     filled = 0
     free, stuck = np.zeros(7), np.zeros(7)
-    none = np.zeros(entry.TOTALS)
+    none, total, values = np.zeros(entry.TOTALS), np.zeros(entry.TOTALS), np.zeros((BATCHES, 3))
     s, d = np.zeros(8), np.zeros(6)
     key = int(numbers[6])
     for who in range(parameters.shape[0]):
@@ -324,16 +327,23 @@ def scatter_block(parameters, starts, first, lengths, cap, what, finals, totals,
         next_draw = t
         counts[who] = 0
         status[who] = 0
-        total = totals[who] if what & 1 else none
+        # Measures are gathered for one of the equal parts of the recorded time after the other.
+        width, batch = stop / BATCHES, 0
+        whole = totals[who] if what & 1 else none
+        whole[:] = 0.0
         total[:] = 0.0
         opened = False
         while True:
             if not opened and t >= 0.0:
                 opened = True
                 total[entry.MAX_ABS_X1] = abs(s[X])
-                total[entry.ENERGY_CHANGE] = -_energy(p, numbers, s)
+                whole[entry.ENERGY_CHANGE] = -_energy(p, numbers, s)
             if t >= stop:
                 break
+            if batch < BATCHES - 1 and t >= (batch + 1) * width:
+                close_batch(mu, total, whole, values[batch])
+                batch += 1
+                total[entry.MAX_ABS_X1], total[entry.T_MAX_ABS_X1] = abs(s[X]), t
             if t >= next_draw - 1e-12:
                 # A new held force; position and velocity go on as they were.
                 s[HELD] = numbers[2] * A * normal(key, base + who, 2 * held + 1) if numbers[2] > 0.0 else 0.0
@@ -344,6 +354,8 @@ def scatter_block(parameters, starts, first, lengths, cap, what, finals, totals,
             until = min(next_draw, stop)
             if t < 0.0:
                 until = min(until, 0.0)
+            elif batch < BATCHES - 1:
+                until = min(until, (batch + 1) * width)
             room = until - t
             steps += 1
             if steps > MAX_STEPS:
@@ -439,7 +451,13 @@ def scatter_block(parameters, starts, first, lengths, cap, what, finals, totals,
             if busy > cap:
                 status[who] = 1
                 break
-        total[entry.ENERGY_CHANGE] += _energy(p, numbers, s)
+        complete = batch == BATCHES - 1 and t >= stop
+        close_batch(mu, total, whole, values[batch])
+        whole[entry.ENERGY_CHANGE] += _energy(p, numbers, s)
+        if what & 1:
+            errors[who, :] = math.nan
+            if complete:
+                standard_errors(values, errors[who])
         finals[who, :5] = s[:5]
         finals[who, 5] = s[MODE]
     return filled

@@ -1,0 +1,50 @@
+"""Standard errors by batch means: measures over equal parts of the recorded time, and their scatter."""
+
+from __future__ import annotations
+
+import math
+
+from vines.dynamics._jit import njit
+from vines.dynamics._totals import (
+    DURATION,
+    ENERGY_CHANGE,
+    MAX_ABS_X1,
+    T_MAX_ABS_X1,
+    TOTALS,
+    V1_SQUARE,
+    V2_SQUARE,
+    X1_SQUARE,
+)
+
+__all__ = ["BATCHES", "close_batch", "standard_errors"]
+
+BATCHES = 8
+"""Equal parts of the recorded time for standard errors, as many as `vines.attractors` takes."""
+
+
+@njit
+def close_batch(mu, part, total, values):
+    """Add a part to the totals, keep its kinetic ratio, largest |x1| and rms of x1, and empty it."""
+    for k in range(TOTALS):
+        if k not in (MAX_ABS_X1, T_MAX_ABS_X1, ENERGY_CHANGE):
+            total[k] += part[k]
+    if part[MAX_ABS_X1] > total[MAX_ABS_X1]:
+        total[MAX_ABS_X1], total[T_MAX_ABS_X1] = part[MAX_ABS_X1], part[T_MAX_ABS_X1]
+    values[0] = mu * part[V2_SQUARE] / part[V1_SQUARE]
+    values[1] = part[MAX_ABS_X1]
+    values[2] = math.sqrt(max(part[X1_SQUARE], 0.0) / part[DURATION])
+    part[:] = 0.0
+
+
+@njit
+def standard_errors(values, errors):
+    """Put the standard errors of the means of columns of `values`, one row a batch, into `errors`."""
+    n = values.shape[0]
+    for k in range(errors.shape[0]):
+        mean = 0.0
+        for b in range(n):
+            mean += values[b, k] / n
+        square = 0.0
+        for b in range(n):
+            square += (values[b, k] - mean) ** 2
+        errors[k] = math.sqrt(square / (n * (n - 1.0)))
