@@ -16,8 +16,8 @@ from vines.dynamics import ensemble
 from vines.dynamics._jit import WIDE, loop_njit
 from vines.dynamics._lane_measures import measure, renew
 from vines.dynamics._lane_motion import go_to_root, half_turn, small_expm1, step_on
-from vines.dynamics._lane_strike import look, strike
-from vines.dynamics._lanes import choose
+from vines.dynamics._lane_strike import look, polish, strike
+from vines.dynamics._lanes import certify, choose
 from vines.model import Params
 
 ORBIT = Params(mu=0.01, A=0.015)
@@ -95,12 +95,14 @@ def _looks(L, n):
 @loop_njit
 def _strikes(L, n):
     for _ in range(n):
+        polish(L)
         strike(L)
 
 
 @loop_njit
 def _choices(L, n):
     for _ in range(n):
+        certify(L)
         choose(L, 1e9)
 
 
@@ -117,8 +119,8 @@ def parts_of_a_tick() -> list[tuple[str, float]]:
     for name, work in (
         ("two moves", _steps),
         ("look", _looks),
-        ("strike", _strikes),
-        ("choose", _choices),
+        ("polish, strike", _strikes),
+        ("certify, choose", _choices),
         ("measures", _measures),
     ):
         L = _room()

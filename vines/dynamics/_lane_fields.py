@@ -104,4 +104,10 @@ SEEK = 63 * STRIDE
 # Totals of the running part, in the order of `vines.dynamics._totals`.
 PART = 64 * STRIDE
 
-SIZE = (64 + 15) * STRIDE
+# The number 1 (see `vines.dynamics._lane_motion.kept`).
+UNIT = (64 + 15) * STRIDE
+
+# Within a tick: may the ball that has struck be about to stick.
+MERGES = (64 + 16) * STRIDE
+
+SIZE = (64 + 17) * STRIDE

@@ -11,7 +11,7 @@ from vines.dynamics import _lane_fields as f
 from vines.dynamics import _totals as entry
 from vines.dynamics._integrals import base_per_force, quadratic_forms
 from vines.dynamics._jit import fused_njit, loop_njit, njit
-from vines.dynamics._lane_motion import MOST_DECAY, MOST_TURN, flow, forced_motion, free_derivatives
+from vines.dynamics._lane_motion import MOST_DECAY, MOST_TURN, flow, forced_motion, free_derivatives, kept
 from vines.dynamics._steps import taylor_root
 
 __all__ = ["MEND_PEAK", "lane_energies", "lane_peak", "measure", "open_measures", "renew", "too_damped"]
@@ -132,8 +132,8 @@ def lane_energies(L, i):
     L[f.PART + entry.IMPACTS_RIGHT * STRIDE + i] += 1.0 if on_right else 0.0
 
     # The end itself; then a bound of all in between: |u| leaves the chord of u exp(-i Omega t) only so far.
-    best = L[f.PART + entry.MAX_ABS_X1 * STRIDE + i]
-    when = L[f.PART + entry.T_MAX_ABS_X1 * STRIDE + i]
+    best = kept(L[f.PART + entry.MAX_ABS_X1 * STRIDE + i], L[f.UNIT + i])
+    when = kept(L[f.PART + entry.T_MAX_ABS_X1 * STRIDE + i], L[f.UNIT + i])
     higher = plain & (abs(x1) > best)
     best = abs(x1) if higher else best
     L[f.PART + entry.MAX_ABS_X1 * STRIDE + i] = best
@@ -222,9 +222,9 @@ def lane_peak(L, i):
     since = since + length if late else since
     found = one & near & (since > -1e-9) & (since < length + 1e-9)
     seek = L[f.SEEK + i] > 0.0
-    best = L[f.PART + entry.MAX_ABS_X1 * STRIDE + i]
-    when = L[f.PART + entry.T_MAX_ABS_X1 * STRIDE + i]
-    mend = L[f.MEND + i]
+    best = kept(L[f.PART + entry.MAX_ABS_X1 * STRIDE + i], L[f.UNIT + i])
+    when = kept(L[f.PART + entry.T_MAX_ABS_X1 * STRIDE + i], L[f.UNIT + i])
+    mend = kept(L[f.MEND + i], L[f.UNIT + i])
     higher = seek & found & (abs(x) > best)
     L[f.PART + entry.MAX_ABS_X1 * STRIDE + i] = abs(x) if higher else best
     L[f.PART + entry.T_MAX_ABS_X1 * STRIDE + i] = L[f.LENGTH + i] - left - length + since if higher else when
@@ -254,6 +254,7 @@ def measure(L):
 def renew(L):
     """Begin the next segment where a flight has ended in this tick."""
     for i in range(LANES):
+        unit = L[f.UNIT + i]
         ended = (L[f.HIT + i] > 0.0) & (L[f.RECORDED + i] > 0.0)
         omega = L[f.OMEGA + i]
         cosine = L[f.COS + i]
@@ -261,11 +262,11 @@ def renew(L):
         xq, _, vq = forced_motion(L[f.Q_RE + i], L[f.Q_IM + i], omega, cosine, sine)
         x = L[f.X_FREE + i] + xq
         v = L[f.V_FREE + i] + vq
-        from_x = L[f.FROM_X + i]
-        from_v = L[f.FROM_V + i]
-        from_cos = L[f.FROM_COS + i]
-        from_sin = L[f.FROM_SIN + i]
-        from_tau = L[f.FROM_TAU + i]
+        from_x = kept(L[f.FROM_X + i], unit)
+        from_v = kept(L[f.FROM_V + i], unit)
+        from_cos = kept(L[f.FROM_COS + i], unit)
+        from_sin = kept(L[f.FROM_SIN + i], unit)
+        from_tau = kept(L[f.FROM_TAU + i], unit)
         L[f.FROM_X + i] = x if ended else from_x
         L[f.FROM_V + i] = v if ended else from_v
         L[f.FROM_COS + i] = cosine if ended else from_cos

@@ -83,6 +83,7 @@ def fill_lane(c, state, L, i, length):
     L[f.CHAIN + i] = 0.0 if released or state[col.S_RUN_SIDE] != wall else state[col.S_RUN]
     L[f.BUSY + i] = state[col.S_PERIOD_EVENTS]
     L[f.BEGAN + i] = left + (elapsed - state[col.S_PERIOD_START])
+    L[f.UNIT + i] = 1.0
     L[f.WAITS + i] = 0.0
     L[f.HIT + i] = 0.0
     return True

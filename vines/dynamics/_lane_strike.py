@@ -1,6 +1,6 @@
-"""The middle of a tick: is the next contact certain, and the impact itself.
+"""The middle of a tick: is the next contact certain, how far is it, and the impact itself.
 
-Both are loops of their own because a short loop lets the processor work at several vectors at once.
+They are loops of their own because short loops let the processor work at several vectors at once.
 """
 
 from __future__ import annotations
@@ -8,10 +8,10 @@ from __future__ import annotations
 from vines.dynamics import _lane_fields as f
 from vines.dynamics._contact import BEYOND
 from vines.dynamics._jit import loop_njit
-from vines.dynamics._lane_motion import forced_motion, free_derivatives
+from vines.dynamics._lane_motion import forced_motion, free_derivatives, kept
 from vines.dynamics._steps import only_root, taylor_root
 
-__all__ = ["look", "strike"]
+__all__ = ["look", "polish", "strike"]
 
 LANES = f.LANES
 
@@ -37,7 +37,7 @@ def look(L):
         closing = (vh + vq) - v2
         polishing = L[f.POLISH + i] > 0.0
         side = 1.0 if closing > 0.0 else -1.0
-        aim = L[f.SIDE + i]
+        aim = kept(L[f.SIDE + i], L[f.UNIT + i])
         side = aim if polishing else side
         gap = 1.0 - side * ((xh + xq) - L[f.BALL + i])
         d1 = side * closing
@@ -48,7 +48,7 @@ def look(L):
         fifth = min(L[f.FREE5 + i] + L[f.GROW5 + i] * (L[f.TAU + i] + window), L[f.MOST5 + i])
         reach = BEYOND * h
         unique = only_root(gap, d1, d2, d3, d4, fifth, reach) & (reach <= window)
-        bracket = L[f.REACH + i]
+        bracket = kept(L[f.REACH + i], L[f.UNIT + i])
         reach = bracket if polishing else reach
         begun = L[f.GONE + i] + L[f.MOVE + i]
         gone = (begun if polishing else 0.0) + h
@@ -62,31 +62,22 @@ def look(L):
 
 
 @loop_njit
-def strike(L):
-    """Polish the root where the lane now is; where it is near, go the last bit of the way by Taylor, and strike."""
+def polish(L):
+    """Find the way to the contact from where the lane now is, and whether it is struck in this tick."""
     for i in range(LANES):
         omega = L[f.OMEGA + i]
-        lam = L[f.LAM + i]
-        q_re = L[f.Q_RE + i]
-        q_im = L[f.Q_IM + i]
-        v2 = L[f.SPEED + i]
         xh = L[f.X_FREE + i]
         vh = L[f.V_FREE + i]
-        cosine = L[f.COS + i]
-        sine = L[f.SIN + i]
-        ball = L[f.BALL + i]
-        tau = L[f.TAU + i]
-        left = L[f.LEFT + i]
         side = L[f.SIDE + i]
-        xq, _, vq = forced_motion(q_re, q_im, omega, cosine, sine)
-        ah, jh, kh, lh, mh = free_derivatives(lam, xh, vh)
+        xq, _, vq = forced_motion(L[f.Q_RE + i], L[f.Q_IM + i], omega, L[f.COS + i], L[f.SIN + i])
+        ah, jh, kh, lh, mh = free_derivatives(L[f.LAM + i], xh, vh)
         omega2 = omega * omega
         aq = -omega2 * xq
         jq = -omega2 * vq
         kq = -omega2 * aq
         h, correction = taylor_root(
-            1.0 - side * ((xh + xq) - ball),
-            side * ((vh + vq) - v2),
+            1.0 - side * ((xh + xq) - L[f.BALL + i]),
+            side * ((vh + vq) - L[f.SPEED + i]),
             side * (ah + aq),
             side * (jh + jq),
             side * (kh + kq),
@@ -96,12 +87,29 @@ def strike(L):
         # Halley's steps triple the digits, but only from near by: where the last was not small, look again from there.
         near = (abs(h) <= L[f.NEAR + i]) & (abs(correction) <= 1e-4 * abs(h) + 1e-12)
         close = near & (L[f.AIMED + i] > 0.0)
-        hit = close & (left > h) & (tau + h > 0.0)
+        hit = close & (L[f.LEFT + i] > h) & (L[f.TAU + i] + h > 0.0)
         L[f.ROOT + i] = h
         L[f.CLOSE + i] = 1.0 if close else 0.0
         L[f.HIT + i] = 1.0 if hit else 0.0
 
-        h = h if hit else 0.0
+
+@loop_njit
+def strike(L):
+    """Where a lane strikes, go the last bit of the way by Taylor's polynomial, and apply the impact law."""
+    for i in range(LANES):
+        omega = L[f.OMEGA + i]
+        q_re = L[f.Q_RE + i]
+        q_im = L[f.Q_IM + i]
+        v2 = L[f.SPEED + i]
+        xh = L[f.X_FREE + i]
+        vh = L[f.V_FREE + i]
+        cosine = L[f.COS + i]
+        sine = L[f.SIN + i]
+        ball = L[f.BALL + i]
+        hit = L[f.HIT + i] > 0.0
+        root = L[f.ROOT + i]
+        h = root if hit else 0.0
+        ah, jh, kh, lh, mh = free_derivatives(L[f.LAM + i], xh, vh)
         xh += h * (vh + h * (0.5 * ah + h * (jh * (1 / 6) + h * (kh * (1 / 24) + h * lh * (1 / 120)))))
         vh += h * (ah + h * (0.5 * jh + h * (kh * (1 / 6) + h * (lh * (1 / 24) + h * mh * (1 / 120)))))
         angle = omega * h
@@ -117,7 +125,7 @@ def strike(L):
         xq, _, vq = forced_motion(q_re, q_im, omega, cosine, sine)
         v1 = vh + vq
         closing = v1 - v2
-        tau += h
+        tau = L[f.TAU + i] + h
         L[f.FLIGHT + i] = tau
         L[f.BEFORE1 + i] = v1
         L[f.BEFORE2 + i] = v2
@@ -127,7 +135,7 @@ def strike(L):
         L[f.V_FREE + i] = vh - (given if hit else 0.0)
         L[f.COS + i] = cosine
         L[f.SIN + i] = sine
-        L[f.BALL + i] = (xh + xq) - side if hit else ball
+        L[f.BALL + i] = (xh + xq) - L[f.SIDE + i] if hit else kept(ball, L[f.UNIT + i])
         L[f.SPEED + i] = v2 + (taken if hit else 0.0)
-        L[f.LEFT + i] = left - h
+        L[f.LEFT + i] -= h
         L[f.TAU + i] = 0.0 if hit else tau

@@ -9,12 +9,12 @@ from __future__ import annotations
 
 from vines.dynamics import _lane_fields as f
 from vines.dynamics._jit import fused_njit, loop_njit
-from vines.dynamics._lane_motion import forced_motion, free_derivatives, go_to_root, step_on
-from vines.dynamics._lane_strike import look, strike
+from vines.dynamics._lane_motion import forced_motion, free_derivatives, go_to_root, kept, step_on
+from vines.dynamics._lane_strike import look, polish, strike
 from vines.dynamics._steps import step_ahead, step_back
 from vines.dynamics._sticking import OMITTED, UNRESOLVED
 
-__all__ = ["HEIGHT_OF_BOUND", "LOOSER", "choose", "tick"]
+__all__ = ["HEIGHT_OF_BOUND", "LOOSER", "certify", "choose", "tick"]
 
 LANES = f.LANES
 
@@ -37,31 +37,17 @@ def _size(a, b):
 
 
 @loop_njit
-def choose(L, cap):
-    """Choose the next step of every lane; `cap` is that of events in a period."""
+def certify(L):
+    """Find the certified step of every lane, and whether a ball that has just struck may be about to stick."""
     for i in range(LANES):
+        unit = L[f.UNIT + i]
         inverse = L[f.INVERSE + i]
         half = L[f.HALF + i]
         omega = L[f.OMEGA + i]
         limit = L[f.LIMIT + i]
-        v2 = L[f.SPEED + i]
         xh = L[f.X_FREE + i]
         vh = L[f.V_FREE + i]
-        tau = L[f.TAU + i]
-        left = L[f.LEFT + i]
-        side = L[f.SIDE + i]
-        h = L[f.ROOT + i]
-        polish = L[f.POLISH + i]
-        aimed = L[f.AIMED + i] > 0.0
-        close = L[f.CLOSE + i] > 0.0
         hit = L[f.HIT + i] > 0.0
-        jump = aimed & (not close)
-        lost = ((polish > 0.0) & (not aimed)) | (jump & (not (abs(h) <= limit)))
-        wall = L[f.WALL + i]
-        chain = L[f.CHAIN + i]
-        again = chain + 1.0 if wall == side else 1.0
-        L[f.CHAIN + i] = again if hit else chain
-        L[f.WALL + i] = side if hit else wall
 
         # The fifth derivative of u at the start of a flight, and a bound of it that does not grow with time.
         xq, _, vq = forced_motion(L[f.Q_RE + i], L[f.Q_IM + i], omega, L[f.COS + i], L[f.SIN + i])
@@ -69,20 +55,20 @@ def choose(L, cap):
         omega2 = omega * omega
         omega4 = omega2 * omega2
         quadrature = omega4 * omega * xq - (mh + half * lh) * inverse
-        free5 = L[f.FREE5 + i]
-        most5 = L[f.MOST5 + i]
+        free5 = kept(L[f.FREE5 + i], unit)
+        most5 = kept(L[f.MOST5 + i], unit)
         now5 = _size(lh + omega4 * vq, quadrature)
         ever5 = _size(xh, (vh + half * xh) * inverse) + L[f.FORCED5 + i]
         free5 = now5 if hit else free5
         most5 = ever5 if hit else most5
         L[f.FREE5 + i] = free5
         L[f.MOST5 + i] = most5
-        fifth = min(free5 + L[f.GROW5 + i] * (tau + limit), most5)
+        fifth = min(free5 + L[f.GROW5 + i] * (L[f.TAU + i] + limit), most5)
 
-        # The certified step, towards the wall ahead and back to the one behind; just left, its gap is 0 exactly.
-        closing = (vh + vq) - v2
+        # Towards the wall ahead and back to the one behind; just left, its gap is 0 exactly.
+        closing = (vh + vq) - L[f.SPEED + i]
         ahead = 1.0 if closing > 0.0 else -1.0
-        ahead = -side if hit else ahead
+        ahead = -L[f.SIDE + i] if hit else ahead
         pace = abs(closing)
         w = ahead * ((xh + xq) - L[f.BALL + i])
         d2 = ahead * (ah - omega2 * xq)
@@ -90,30 +76,54 @@ def choose(L, cap):
         d4 = ahead * (kh + omega4 * xq)
         forth = step_ahead(max(1.0 - w, 0.0), pace, d2, d3, d4, fifth, limit)
         back = step_back(0.0 if hit else max(1.0 + w, 0.0), pace, -d2, -d3, -d4, fifth, limit)
-        step = min(forth, back)
-        step = h if jump else step
+        L[f.MOVE + i] = min(forth, back)
 
-        # What the scalar kernel has to see: a chatter about to end, tiny steps, a lost bracket, the end of the run.
         push = -d2
         height = L[f.HEIGHT + i] + HEIGHT_OF_BOUND * most5
         cube = pace * pace * pace
-        merging = (push > 0.0) & (
+        merges = (push > 0.0) & (
             (L[f.CORRECTION + i] * cube < LOOSER * OMITTED * push * push)
             | (pace * pace < height * push)
             | (2.0 * cube < height * height * max(-d3, 0.0))
         )
+        L[f.MERGES + i] = 1.0 if hit & merges else 0.0
+
+
+@loop_njit
+def choose(L, cap):
+    """Choose the next step of every lane; `cap` is that of events in a period."""
+    for i in range(LANES):
+        unit = L[f.UNIT + i]
+        left = L[f.LEFT + i]
+        side = L[f.SIDE + i]
+        h = L[f.ROOT + i]
+        step = L[f.MOVE + i]
+        tries = L[f.POLISH + i]
+        aimed = L[f.AIMED + i] > 0.0
+        close = L[f.CLOSE + i] > 0.0
+        hit = L[f.HIT + i] > 0.0
+        jump = aimed & (not close)
+        step = h if jump else step
+
+        # What the scalar kernel has to see: a chatter about to end, tiny steps, a lost bracket, the end of the run.
+        lost = ((tries > 0.0) & (not aimed)) | (jump & (not (abs(h) <= L[f.LIMIT + i])))
         slow = (not jump) & (not (step >= SLOW))
         ending = not (left > step + 1e-9)
-        began = L[f.BEGAN + i]
+        began = kept(L[f.BEGAN + i], unit)
         busy = L[f.BUSY + i]
         fresh = began - left >= L[f.PERIOD + i]
         busy = (0.0 if fresh else busy) + (1.0 if hit else 0.0)
-        polish = polish + 1.0 if jump else 0.0
-        idle = L[f.WAITS + i] > 0.0
-        waits = (hit & merging) | slow | lost | ending | (close & (not hit)) | (polish > 8.0) | (busy > cap) | idle
-        released = L[f.RELEASED + i]
-        L[f.POLISH + i] = polish
+        tries = tries + 1.0 if jump else 0.0
+        odd = (L[f.MERGES + i] > 0.0) | (L[f.WAITS + i] > 0.0) | (close & (not hit)) | (tries > 8.0) | (busy > cap)
+        waits = slow | lost | ending | odd
+        wall = kept(L[f.WALL + i], unit)
+        chain = kept(L[f.CHAIN + i], unit)
+        released = kept(L[f.RELEASED + i], unit)
+        again = chain + 1.0 if wall == side else 1.0
+        L[f.CHAIN + i] = again if hit else chain
+        L[f.WALL + i] = side if hit else wall
         L[f.RELEASED + i] = 0.0 if hit else released
+        L[f.POLISH + i] = tries
         L[f.BUSY + i] = busy
         L[f.BEGAN + i] = left if fresh else began
         L[f.IMPACTS + i] += 1.0 if hit else 0.0
@@ -127,5 +137,7 @@ def tick(L, cap):
     step_on(L)
     look(L)
     go_to_root(L)
+    polish(L)
     strike(L)
+    certify(L)
     choose(L, cap)
