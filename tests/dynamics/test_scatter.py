@@ -63,7 +63,7 @@ def test_restitution_has_the_mean_and_spread_asked_for() -> None:
 def test_standard_errors_with_scatter_are_those_between_runs() -> None:
     chaos = Params(mu=0.01, A=0.03)
     scatter = Scatter(sigma_r=0.05, noise=0.05, seed=3)
-    m = ensemble(chaos, {"v2": np.linspace(0.05, 0.2, 64)}, settle=20, periods=160, record="measures", scatter=scatter)
+    m = ensemble(chaos, {"v2": np.linspace(0.05, 0.2, 64)}, settle=150, periods=160, record="measures", scatter=scatter)
     assert m.measures is not None
     for name in ("kinetic_ratio", "rms_x1"):
         typical = np.sqrt(np.mean(m.measures[f"{name}_error"] ** 2))

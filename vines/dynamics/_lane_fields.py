@@ -110,4 +110,7 @@ UNIT = (64 + 15) * STRIDE
 # Within a tick: may the ball that has struck be about to stick.
 MERGES = (64 + 16) * STRIDE
 
-SIZE = (64 + 17) * STRIDE
+# Square of the steady amplitude over |i Omega - s|: its rounding is that of the integral of |u|^2.
+LARGE = (64 + 17) * STRIDE
+
+SIZE = (64 + 18) * STRIDE

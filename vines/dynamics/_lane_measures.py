@@ -7,6 +7,8 @@ u' turns one way all along the flight, so that signs of v1 at its ends tell how 
 
 from __future__ import annotations
 
+import math
+
 from vines.dynamics import _lane_fields as f
 from vines.dynamics import _totals as entry
 from vines.dynamics._integrals import base_per_force, quadratic_forms
@@ -14,7 +16,7 @@ from vines.dynamics._jit import fused_njit, loop_njit, njit
 from vines.dynamics._lane_motion import MOST_DECAY, MOST_TURN, flow, forced_motion, free_derivatives, kept
 from vines.dynamics._steps import taylor_root
 
-__all__ = ["MEND_PEAK", "lane_energies", "lane_peak", "measure", "open_measures", "renew", "too_damped"]
+__all__ = ["MEND_PEAK", "lane_energies", "lane_peak", "measure", "open_measures", "renew"]
 
 LANES = f.LANES
 STRIDE = f.STRIDE
@@ -24,6 +26,11 @@ MEND_PEAK = 2.0
 
 NEAR_PEAK = 0.02
 """Longest last step to a zero of v1: over it the seventh derivative changes x1 by less than a rounding."""
+
+FINE = 45_000.0
+"""Largest ratio of LARGE to the integral of |u|^2, which in lanes is then right to 5e-12 of itself; beyond, near
+resonance, the scalar kernel integrates in the turning frame.
+"""
 
 STEADY = 0.5
 """Largest share of the forcing in the turning of u' with which the search does without the scalar kernel."""
@@ -53,12 +60,6 @@ def _turned(a, b):
     return 0.5 * PI - arc
 
 
-@fused_njit
-def too_damped(lam, length):
-    """Say whether a flight decays too much for the polynomials of the lanes."""
-    return lam * length > 2.0 * MOST_DECAY
-
-
 @njit
 def open_measures(c, L, i, length, x1):
     """Put what the measures of a run need into a lane: constants, and a part that begins at displacement x1."""
@@ -69,6 +70,7 @@ def open_measures(c, L, i, length, x1):
     L[f.B_RE + i], L[f.B_IM + i] = base.real, base.imag
     L[f.SUM2 + i] = 1.0 / (o.c2r * o.c2r + o.c2i * o.c2i)
     L[f.LOSS + i] = 0.5 * c.mu / (1.0 + c.mu) * (1.0 - c.r * c.r)
+    L[f.LARGE + i] = (o.qr * o.qr + o.qi * o.qi) / math.hypot(o.dr, o.di)
     L[f.LENGTH + i] = length
     for k in range(entry.TOTALS):
         L[f.PART + k * STRIDE + i] = 0.0
@@ -117,7 +119,7 @@ def lane_energies(L, i):
     closing = v1 - v2
     lost = L[f.LOSS + i] * closing * closing
     ended = (L[f.HIT + i] > 0.0) & (L[f.RECORDED + i] > 0.0)
-    plain = ended & (left >= L[f.PART_ENDS + i]) & (not too_damped(lam, length))
+    plain = ended & (left >= L[f.PART_ENDS + i]) & (lam * length <= 2.0 * MOST_DECAY) & (L[f.LARGE + i] <= FINE * uu)
     on_left = plain & (L[f.WALL + i] > 0.0)
     on_right = plain & (L[f.WALL + i] < 0.0)
     L[f.PART + entry.DURATION * STRIDE + i] += length if plain else 0.0

@@ -69,7 +69,7 @@ def open_record(c, L, record, i, length, since, mode, x1, v1, x2, v2, phase):
         total[i, ENERGY_CHANGE] = -state_energy(c, x1, v1, v2, phase)
         values[i, :, :] = 0.0
         open_measures(c, L, i, length, x1)
-        begin_segment(c, L, segment, i, 0, length, since, mode, x1, v1, v2, phase)
+        begin_segment(L, segment, i, 0, length, since, mode, x1, v1, v2, phase)
     if basis.shape[0]:
         basis[i, :, :] = np.eye(4)
         growth[i, :, :] = 0.0

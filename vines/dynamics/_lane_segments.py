@@ -16,11 +16,14 @@ from vines.dynamics._batches import BATCHES, close_batch
 from vines.dynamics._flight import advance_phase
 from vines.dynamics._integrals import largest_displacement
 from vines.dynamics._jit import njit
-from vines.dynamics._lane_measures import MEND_PEAK, lane_energies, lane_peak, too_damped
+from vines.dynamics._lane_measures import MEND_PEAK, lane_energies, lane_peak
 from vines.dynamics._lane_motion import flow, forced_motion
-from vines.dynamics._lane_state import row_of
 from vines.dynamics._sincos import sincos
 from vines.dynamics._totals import (
+    IMPACTS_LEFT,
+    IMPACTS_RIGHT,
+    LOSS_LEFT,
+    LOSS_RIGHT,
     MAX_ABS_X1,
     T_MAX_ABS_X1,
     TOTALS,
@@ -30,9 +33,6 @@ from vines.dynamics._totals import (
 )
 
 __all__ = ["begin_segment", "close_part", "end_segment", "mend", "part_of"]
-
-FINE = 2.0**14
-"""Largest square of the steady amplitude over |i Omega - s| with which the lanes' integrals keep eleven digits."""
 
 LARGEST = f.PART + MAX_ABS_X1 * f.STRIDE
 WHEN_LARGEST = f.PART + T_MAX_ABS_X1 * f.STRIDE
@@ -55,16 +55,13 @@ def _part_ends(batch, length):
 
 
 @njit
-def begin_segment(c, L, segment, i, batch, length, since, mode, x1, v1, v2, phase):
+def begin_segment(L, segment, i, batch, length, since, mode, x1, v1, v2, phase):
     """Begin a segment in a lane whose last event was at `since` before it."""
     sine, cosine = sincos(phase)
     L[f.FROM_X + i], L[f.FROM_V + i], L[f.FROM_COS + i], L[f.FROM_SIN + i] = x1, v1, cosine, sine
     L[f.FROM_TAU + i] = since
     segment[i, 0], segment[i, 1] = mode, v2
-    # Near resonance the integrals of the lanes would lose digits: there no flight of theirs ends in time.
-    square = c.free.qr * c.free.qr + c.free.qi * c.free.qi
-    fine = square <= FINE * math.hypot(c.free.dr, c.free.di)
-    L[f.PART_ENDS + i] = _part_ends(batch, length) if fine else math.inf
+    L[f.PART_ENDS + i] = _part_ends(batch, length)
 
 
 @njit
@@ -105,7 +102,6 @@ def end_segment(c, L, record, i, length, row):
     for k in range(TOTALS):
         L[f.PART + k * f.STRIDE + i] = part[k]
     begin_segment(
-        c,
         L,
         segment,
         i,
@@ -211,8 +207,28 @@ def _mend_peak(c, L, i):
 
 
 @njit
+def _one_by_scalar(c, L, i):
+    """Take the measures of a flight by the scalar functions."""
+    part = part_of(L, i)
+    lasts = L[f.FLIGHT + i] - L[f.FROM_TAU + i]
+    phase = advance_phase(math.atan2(L[f.FROM_SIN + i], L[f.FROM_COS + i]), 0.0)
+    begins = L[f.LENGTH + i] - L[f.LEFT + i] - lasts
+    add_segment(c, part, 0.0, begins, L[f.FROM_X + i], L[f.FROM_V + i], L[f.BEFORE2 + i], phase, lasts)
+    wall, closing = L[f.WALL + i], L[f.BEFORE1 + i] - L[f.BEFORE2 + i]
+    if wall != 0.0:
+        part[LOSS_LEFT if wall > 0.0 else LOSS_RIGHT] += L[f.LOSS + i] * closing * closing
+        part[IMPACTS_LEFT if wall > 0.0 else IMPACTS_RIGHT] += 1.0
+    for k in range(TOTALS):
+        L[f.PART + k * f.STRIDE + i] = part[k]
+    L[f.MEND + i] = 0.0
+
+
+@njit
 def _measure_one(c, L, i):
     _one_energies(L, i)
+    if L[f.MEND + i] != 0.0:
+        _one_by_scalar(c, L, i)
+        return
     _one_peak(L, i)
     if L[f.MEND + i] == MEND_PEAK:
         _mend_peak(c, L, i)
@@ -239,15 +255,10 @@ def _cut(c, L, record, i, length):
 
 
 @njit
-def mend(c, L, record, i, length, phase0):
+def mend(c, L, record, i, length):
     """Do for the impact of a lane what `measure` has left to do."""
     if L[f.MEND + i] == MEND_PEAK:
         _mend_peak(c, L, i)
-    elif L[f.PART_ENDS + i] < math.inf and not too_damped(L[f.LAM + i], L[f.FLIGHT + i]):
-        _cut(c, L, record, i, length)
     else:
-        row = np.zeros(col.ROW)
-        row_of(L, i, row, length, phase0)
-        record[5][i, 0], record[5][i, 1] = 0.0, L[f.BEFORE2 + i]
-        end_segment(c, L, record, i, length, row)
+        _cut(c, L, record, i, length)
     L[f.MEND + i] = 0.0
