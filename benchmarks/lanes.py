@@ -70,6 +70,12 @@ def _room() -> np.ndarray:
     room = np.zeros(f.SIZE + 8)
     L = room[(-room.ctypes.data // 8) % 8 :][: f.SIZE]
     L[:] = np.random.default_rng(1).uniform(0.1, 0.9, f.SIZE)
+    # Undamped, so that nothing decays to numbers with which processors are slow.
+    for field, value in ((f.HALF, 0.0), (f.LAM, 0.0), (f.GAMMA, 1.0), (f.INVERSE, 1.0), (f.OMEGA, 1.0), (f.UNIT, 1.0)):
+        L[field : field + f.LANES] = value
+    for field in (f.WAITS, f.SPEED, f.SIN):
+        L[field : field + f.LANES] = 0.0
+    L[f.COS : f.COS + f.LANES] = 1.0
     return L
 
 
