@@ -82,7 +82,8 @@ class Study:
         mark = "import os; from vines.stages._running import _compiled as f"
         mark += "; os.makedirs(f().parent, exist_ok=True); f().touch()"
         path = os.pathsep.join(filter(None, [str(self.sources), os.environ.get("PYTHONPATH")]))
-        subprocess.run([sys.executable, "-c", mark], env={**os.environ, "PYTHONPATH": path}, check=True)
+        environment = {**os.environ, "PYTHONPATH": path}
+        subprocess.run([sys.executable, "-c", mark], cwd=self.folder, env=environment, check=True)
 
     def change_restitution(self, by):
         """Change r in all declarations, and in the claims where they pick rows by it."""
