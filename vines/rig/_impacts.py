@@ -147,20 +147,18 @@ def find_pulses(
         size = np.abs(left)
         peak = np.zeros(len(left), bool)
         peak[1:-1] = (size[1:-1] >= size[:-2]) & (size[1:-1] > size[2:]) & (size[1:-1] > threshold)
+        found = np.flatnonzero(peak)
         if len(times):
             # What a known jump leaves beside itself is its misfit, not another impact.
-            place = np.clip(np.searchsorted(times, pulses.t), 1, len(times)) if len(times) > 1 else None
-            if place is None:
-                near = np.abs(pulses.t - times[0])
-                height = np.full(len(left), abs(dv[0]))
-            else:
-                right = np.minimum(place, len(times) - 1)
-                a, b = np.abs(pulses.t - times[place - 1]), np.abs(pulses.t - times[right])
-                near, height = np.minimum(a, b), np.abs(np.where(a < b, dv[place - 1], dv[right]))
-            beside = near < 4 * pulses.smooth
-            peak &= ~beside | (size > np.maximum(threshold, 0.2 * height / (pulses.smooth * 2.5)))
-            peak &= near > 1.5 * pulses.smooth
-        found = np.flatnonzero(peak)
+            t = pulses.start + pulses.step * found
+            right = np.searchsorted(times, t)
+            left_of, right_of = np.maximum(right - 1, 0), np.minimum(right, len(times) - 1)
+            a, b = np.abs(t - times[left_of]), np.abs(t - times[right_of])
+            near, height = np.minimum(a, b), np.abs(np.where(a < b, dv[left_of], dv[right_of]))
+            far = (near >= 4 * pulses.smooth) | (
+                size[found] > np.maximum(threshold, 0.2 * height / (pulses.smooth * 2.5))
+            )
+            found = found[far & (near > 1.5 * pulses.smooth)]
         if not len(found):
             break
         # Of peaks nearer than two widths the highest comes first; the others may follow in the next round.

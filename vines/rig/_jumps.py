@@ -260,6 +260,7 @@ class _Problem:
         self.forced[-1] = 1.0
         self.fair = np.ones(flights, bool)
         self.steps = np.zeros(flights)
+        self._sum_flights()
         self._gather()
 
     @property
@@ -272,6 +273,7 @@ class _Problem:
         if self.order == 0:
             self.steps = steps
             self.y = self.y - steps[self.flight]
+            self._sum_signal()
             self._gather()
 
     def distrust(self, left: Floats, noise: float) -> None:
@@ -287,25 +289,42 @@ class _Problem:
             self.fair = fair
             self._gather()
 
-    def _gather(self) -> None:
+    def _total(self, values: Floats) -> Floats:
+        """Return the sum over each flight; flights without samples have none."""
+        total = np.zeros(len(self.starts))
+        total[self.seen] = np.add.reduceat(values, self.first)
+        return total
+
+    def _sum_flights(self) -> None:
+        """Sum products of the columns over each flight, once: a weight is the same for all samples of a flight."""
+        self.seen, self.first = np.unique(self.flight, return_index=True)
         flights = len(self.starts)
-        weight = np.where(self.trusted, 1.0, _DISTRUST)
-
-        def total(values: Floats) -> Floats:
-            return np.asarray(np.bincount(self.flight, weight * values, flights), dtype=np.float64)
-
         one, two = self.free
-        band = np.zeros((4, 2 * flights))
-        band[0, 0::2], band[0, 1::2], band[1, 0::2] = total(one * one), total(two * two), total(one * two)
-        self.band = band
-        self.right = np.empty(2 * flights)
-        self.right[0::2], self.right[1::2] = total(one * self.y), total(two * self.y)
-        self.cross = np.empty((2 * flights, len(self.forced)))
+        self.squares = np.stack([self._total(one * one), self._total(two * two), self._total(one * two)])
+        self.crossed = np.empty((2 * flights, len(self.forced)))
         for k, column in enumerate(self.forced):
-            self.cross[0::2, k], self.cross[1::2, k] = total(one * column), total(two * column)
-        weighted = self.forced * weight
-        self.corner = weighted @ self.forced.T
-        self.below = weighted @ self.y
+            self.crossed[0::2, k], self.crossed[1::2, k] = self._total(one * column), self._total(two * column)
+        self.forced_square = self.forced @ self.forced.T
+        self._sum_signal()
+
+    def _sum_signal(self) -> None:
+        one, two = self.free
+        self.seen_right = np.empty(2 * len(self.starts))
+        self.seen_right[0::2], self.seen_right[1::2] = self._total(one * self.y), self._total(two * self.y)
+        self.forced_signal = self.forced @ self.y
+
+    def _gather(self) -> None:
+        weight = np.where(self.fair, 1.0, _DISTRUST)
+        twice = np.repeat(weight, 2)
+        band = np.zeros((4, 2 * len(weight)))
+        band[0, 0::2], band[0, 1::2], band[1, 0::2] = weight * self.squares
+        self.band, self.right, self.cross = band, twice * self.seen_right, twice[:, None] * self.crossed
+        self.corner, self.below = self.forced_square, self.forced_signal
+        if not self.fair.all():
+            off = ~self.trusted
+            part = self.forced[:, off]
+            self.corner = self.corner - (1 - _DISTRUST) * part @ part.T
+            self.below = self.below - (1 - _DISTRUST) * part @ self.y[off]
 
     def solve(
         self, scale: float, u_gap: Floats, expected: tuple[Floats, Floats] | None
@@ -342,7 +361,11 @@ class _Problem:
     def left(self, z: Floats, linear: Floats) -> Floats:
         """Return what a solution leaves of the signal."""
         one, two = self.free
-        return self.y - one * z[0::2][self.flight] - two * z[1::2][self.flight] - linear @ self.forced
+        count = np.diff(self.first, append=len(self.y))
+        own = self.y - linear @ self.forced
+        own -= one * np.repeat(z[0::2][self.seen], count)
+        own -= two * np.repeat(z[1::2][self.seen], count)
+        return own
 
     def motion(self, z: Floats, linear: Floats) -> Motion:
         """Return x1 in closed form."""

@@ -172,7 +172,7 @@ def _kinetic_ratio(track: Track, mu: float) -> float:
     """Return K2/K1 between the first impact and the last; the ball flies straight from one to the next."""
     time = np.diff(track.t)
     v2 = float(np.sum(np.diff(track.x2) ** 2 / time)) / float(track.t[-1] - track.t[0])
-    return mu * v2 / track.motion.mean_square_velocity(float(track.t[0]), float(track.t[-1]))
+    return mu * v2 / float(track.motion.mean_square_velocity(track.t[[0, -1]])[0])
 
 
 def _show(track: Track, p: Params, run: Reconstruction) -> _Shown:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -44,30 +45,40 @@ class Motion:
 
     def at(self, t: Floats, derivative: int = 0) -> Floats:
         """Return x1 [m], or a time derivative of it, at times in seconds; at an impact, just after it."""
+        return self.combination(t, {derivative: 1.0})
+
+    def combination(self, t: Floats, weights: Mapping[int, float]) -> Floats:
+        """Return the sum of weights times derivatives of x1, given by their order, at times in seconds."""
         flight = np.maximum(np.searchsorted(self.starts, t, side="right") - 1, 0)
-        return self._on(flight, t, derivative)
+        return self._on(flight, t, weights)
 
     def before(self, derivative: int = 0) -> Floats:
         """Return x1 or a derivative just before each impact, shape (K,)."""
-        return self._on(np.arange(len(self.starts) - 1), self.starts[1:], derivative)
+        return self._on(np.arange(len(self.starts) - 1), self.starts[1:], {derivative: 1.0})
 
     def after(self, derivative: int = 0) -> Floats:
         """Return x1 or a derivative just after each impact, shape (K,)."""
-        return self._on(np.arange(1, len(self.starts)), self.starts[1:], derivative)
+        return self._on(np.arange(1, len(self.starts)), self.starts[1:], {derivative: 1.0})
 
     def forced(self, t: Floats, derivative: int = 0) -> Floats:
         """Return the forced response or a derivative of it."""
-        total = np.zeros(len(t))
-        turn = np.exp(1j * self.omega * t)
-        power = np.ones_like(turn)
-        for n, value in enumerate(self.c, start=1):
-            power = power * turn
-            total += (value * (1j * n * self.omega) ** derivative * power).real
-        return total
+        return self._forced(t, {derivative: 1.0})
 
-    def _on(self, flight: npt.NDArray[np.intp], t: Floats, derivative: int) -> Floats:
-        free = self.z[flight] * self.s**derivative * np.exp(self.s * (t - self.starts[flight]))
-        return self.forced(t, derivative) + free.real
+    def _forced(self, t: Floats, weights: Mapping[int, float]) -> Floats:
+        at = 1j * self.omega * np.arange(1, len(self.c) + 1)
+        c = self.c * sum(w * at**d for d, w in weights.items())
+        turn = np.exp(1j * self.omega * t)
+        # Horner's rule in the first harmonic.
+        total = np.zeros(len(t), complex)
+        for value in c[::-1]:
+            total += value
+            total *= turn
+        return total.real
+
+    def _on(self, flight: npt.NDArray[np.intp], t: Floats, weights: Mapping[int, float]) -> Floats:
+        z = self.z * sum(w * self.s**d for d, w in weights.items())
+        free = z[flight] * np.exp(self.s * (t - self.starts[flight]))
+        return self._forced(t, weights) + free.real
 
     def peaks(self) -> tuple[Floats, Floats]:
         """Return times and values of |x1| at every root of v1 and at every impact where |x1| has a corner.
@@ -79,27 +90,30 @@ class Motion:
         cuts = np.unique(np.concatenate([nodes, self.starts]))
         left, right = cuts[:-1], cuts[1:]
         flight = np.searchsorted(self.starts, left, side="right") - 1
-        first, last = self._on(flight, left, 1), self._on(flight, right, 1)
+        first, last = self._on(flight, left, {1: 1.0}), self._on(flight, right, {1: 1.0})
         turning = first * last < 0
         flight, left, right = flight[turning], left[turning], right[turning]
         share = first[turning] / (first[turning] - last[turning])
         t = left + share * (right - left)
         for _ in range(4):
-            t = np.clip(t - self._on(flight, t, 1) / self._on(flight, t, 2), left, right)
+            t = np.clip(t - self._on(flight, t, {1: 1.0}) / self._on(flight, t, {2: 1.0}), left, right)
         corners = self.starts[1:]
         times = np.concatenate([t, corners])
-        values = np.abs(np.concatenate([self._on(flight, t, 0), self.after()]))
+        values = np.abs(np.concatenate([self._on(flight, t, {0: 1.0}), self.after()]))
         order = np.argsort(times, kind="stable")
         return times[order], values[order]
 
-    def mean_square_velocity(self, start: float, stop: float) -> float:
-        """Return <v1^2> over a stretch of time [m^2/s^2], by Gauss–Legendre, ten points a tenth of a period."""
-        grid = np.arange(start, stop, 2 * np.pi / self.omega / 10)
-        inside = self.starts[(self.starts > start) & (self.starts < stop)]
-        cuts = np.unique(np.concatenate([grid, inside, [stop]]))
+    def mean_square_velocity(self, edges: Floats) -> Floats:
+        """Return <v1^2> between neighbouring edges [m^2/s^2], shape (len(edges) - 1,).
+
+        By Gauss–Legendre, ten points on every part that is no longer than a tenth of a period and holds no impact.
+        """
+        grid = np.arange(edges[0], edges[-1], 2 * np.pi / self.omega / 10)
+        inside = self.starts[(self.starts > edges[0]) & (self.starts < edges[-1])]
+        cuts = np.unique(np.concatenate([grid, inside, edges]))
         left, half = cuts[:-1], 0.5 * np.diff(cuts)
         flight = np.maximum(np.searchsorted(self.starts, left, side="right") - 1, 0)
-        total = 0.0
+        total = np.zeros(len(left))
         for node, weight in zip(_NODES, _WEIGHTS, strict=True):
-            total += weight * float(np.sum(half * self._on(flight, left + half * (1 + node), 1) ** 2))
-        return total / (stop - start)
+            total += weight * half * self._on(flight, left + half * (1 + node), {1: 1.0}) ** 2
+        return np.add.reduceat(total, np.searchsorted(cuts, edges[:-1])) / np.diff(edges)

@@ -114,10 +114,11 @@ def measure_response(
     pulses = pulses_of(sensor, 2 if accelerometer is not None else 0)
     if gain is not None:
         pulses = replace(pulses, values=pulses.values / (abs(gain) * np.sign(gain.real)))
+    bends = pulses_of(channel, 0) if order == 0 and both else pulses
     times, dv = _first_look(pulses, bins, s, omega, order)
     u = np.full(len(times), U_PULSE if accelerometer is not None else _LOOSE)
     if both:
-        times, dv, u = _crosschecked(times, dv, u, pulses_of(channel, 0), bins, s, omega)
+        times, dv, u = _crosschecked(times, dv, u, bends, bins, s, omega)
     delay = 0.0
     fitter = _Fitter(bins, s, omega, order, forced)
     times, dv, u = _inside(bins, times, dv, u)
@@ -132,7 +133,7 @@ def measure_response(
     times, dv, u = _with_soft_ones(left, times, dv, u, U_PULSE if accelerometer is not None else _LOOSE)
     times, dv, u = _inside(bins, times, dv, u)
     if order == 0:
-        times, dv, u = _with_unheard(channel, fitter, times, dv, u, delay)
+        times, dv, u = _with_unheard(bends, fitter, times, dv, u, delay)
     fit = fitter.fit(times + delay, u, dv)
     heard = u <= U_PULSE
     scale = _slope(dv[heard], fit.jumps.dv[heard]) if accelerometer is not None else 1.0
@@ -195,8 +196,9 @@ def _crosschecked(
     times: Floats, dv: Floats, u: Floats, pulses: Pulses, bins: Bins, s: complex, omega: float
 ) -> tuple[Floats, Floats, Floats]:
     """Add impacts that only the displacement shows, and drop knocks, whose jump it should show and does not."""
-    seen, jumps = _first_look(pulses, bins, s, omega, 0)
-    least = 3 * _threshold(_bare(pulses, bins, s, omega)) * pulses.smooth * 2.5
+    sparse = _bare(pulses, bins, s, omega)
+    seen, jumps = find_pulses(sparse, _threshold(sparse))
+    least = 3 * _threshold(sparse) * pulses.smooth * 2.5
     reach = 1.5 * pulses.smooth
     gap = np.abs(times[:, None] - seen[None, :]) if len(seen) else np.full((len(times), 1), np.inf)
     sign = np.sign(dv)[:, None] == np.sign(jumps)[None, :] if len(seen) else np.zeros((len(times), 1), bool)
@@ -222,14 +224,13 @@ def _with_soft_ones(left: Pulses, times: Floats, dv: Floats, u: Floats, u_new: f
 
 
 def _with_unheard(
-    channel: Sampled, fitter: _Fitter, times: Floats, dv: Floats, u: Floats, delay: float
+    pulses: Pulses, fitter: _Fitter, times: Floats, dv: Floats, u: Floats, delay: float
 ) -> tuple[Floats, Floats, Floats]:
     """Add impacts that still show as corners in what the fit leaves of the displacement."""
-    pulses = pulses_of(channel, 0)
     t = pulses.t
     for _ in range(2):
         fit = fitter.fit(times + delay, u, dv)
-        smooth = fit.motion.at(t, 2) + 0.5 * pulses.smooth**2 * fit.motion.at(t, 4)
+        smooth = fit.motion.combination(t, {2: 1.0, 4: 0.5 * pulses.smooth**2})
         left = replace(pulses, values=pulses.values - smooth - pulses.shape(fit.jumps.t, fit.jumps.dv))
         found, jumps = find_pulses(left, 1.5 * _threshold(left))
         away = np.array([np.min(np.abs(times + delay - one), initial=np.inf) for one in found])
@@ -274,7 +275,10 @@ def _bare(pulses: Pulses, bins: Bins, s: complex, omega: float) -> Pulses:
     values = pulses.values + abs(s) ** 2 * np.interp(t, bins.t, bins.mean)
     span = slice(None, None, 8)
     turn = np.exp(1j * omega * t)
-    columns = np.stack([np.ones(len(t)), *(f(turn**n) for n in (1, 2, 3) for f in (np.real, np.imag))])
+    second = turn * turn
+    columns = np.stack(
+        [np.ones(len(t)), *(f(power) for power in (turn, second, second * turn) for f in (np.real, np.imag))]
+    )
     some, part = values[span], columns[:, span]
     near = np.ones(len(some), bool)
     linear = np.zeros(7)
@@ -289,12 +293,11 @@ def _bare(pulses: Pulses, bins: Bins, s: complex, omega: float) -> Pulses:
 def _smooth(fit: JumpFit, pulses: Pulses, gain: complex | None, omega: float, delay: float) -> Floats:
     """Return the fitted acceleration on the grid of the pulses, as the accelerometer would show it, smoothed alike."""
     t = pulses.t + delay
-    values = fit.motion.at(t, 2)
-    values += 0.5 * pulses.smooth**2 * fit.motion.at(t, 4)
+    weights = {2: 1.0, 4: 0.5 * pulses.smooth**2}
     if gain is not None:
         turn = gain / (abs(gain) * np.sign(gain.real))
-        values = turn.real * values + turn.imag / omega * fit.motion.at(t, 3)
-    return values
+        weights = {2: turn.real, 4: turn.real * weights[4], 3: turn.imag / omega}
+    return fit.motion.combination(t, weights)
 
 
 def _inside(bins: Bins, times: Floats, dv: Floats, u: Floats) -> tuple[Floats, Floats, Floats]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import itertools
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
@@ -351,7 +350,7 @@ def _energies(response: Response, ball: _Ball, b: Uncertain, begin: Floats, weig
     np.maximum.at(top, period[inside], values[inside])
     seen = top > 0
     largest = mean_over_periods(top[seen], np.flatnonzero(seen), weights)
-    v1 = motion.mean_square_velocity(float(jumps.t[0]), float(jumps.t[-1]))
+    v1 = float(motion.mean_square_velocity(jumps.t[[0, -1]])[0])
     time = np.diff(jumps.t)
     mean_v2 = np.diff(ball.motion.x2) / time
     # Constant deceleration adds its own variance, (a dt)^2/12.
@@ -361,7 +360,7 @@ def _energies(response: Response, ball: _Ball, b: Uncertain, begin: Floats, weig
     sums, lengths = np.bincount(flight, square * time, count), np.bincount(flight, time, count)
     draws = (weights @ sums) / (weights @ lengths)
     u_v2 = float(np.std(draws))
-    of_v1 = np.array([motion.mean_square_velocity(float(a), float(c)) for a, c in itertools.pairwise(begin)])
+    of_v1 = motion.mean_square_velocity(begin)
     u_v1 = float(np.std(weights @ of_v1 / len(of_v1)))
     ratio = ball.weighed.value * v2 / v1
     gain = response.channel.u_gain
