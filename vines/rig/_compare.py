@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import partial
 from typing import Any
 
@@ -12,7 +12,7 @@ import numpy as np
 from vines.errors import OrbitNotFound, ParameterError
 from vines.model import Params
 from vines.rig._match import candidates, word_of
-from vines.rig._model import measured_params, predict
+from vines.rig._model import measured_params, parameter_spread, predict
 from vines.rig._reconstruction import Reconstruction
 from vines.rig._verdict import Comparison, decide, likeness, order
 
@@ -32,6 +32,8 @@ class Calibration:
         Factors.
     r : float
         Added.
+    u : mapping of str to float
+        Standard uncertainties of the corrections.
     runs : tuple of str
         The runs they come from.
     """
@@ -39,11 +41,17 @@ class Calibration:
     Omega: float = 1.0
     A: float = 1.0
     r: float = 0.0
+    u: Mapping[str, float] = field(default_factory=lambda: dict(_FREE))
     runs: tuple[str, ...] = ()
 
     def on(self, p: Params) -> Params:
         """Return corrected parameters."""
         return p.replace(Omega=p.Omega * self.Omega, A=p.A * self.A, r=min(max(p.r + self.r, 0.0), 1.0))
+
+    def spread(self, measured: Mapping[str, float], p: Params) -> dict[str, float]:
+        """Return standard uncertainties of corrected parameters: an error that all runs share is taken out of them."""
+        own = {"Omega": p.Omega * self.u["Omega"], "A": p.A * self.u["A"], "r": self.u["r"]}
+        return {name: min(u, own.get(name, u)) for name, u in measured.items()}
 
 
 def compare(
@@ -75,8 +83,11 @@ def compare(
     if not run.accepted or not run.pattern.holds:
         verdict, reason = decide(run, ())
         return Comparison(run, p, basis, (), verdict, reason)
-    found = candidates(p, [word_of(run.pattern.word)], catalogue)
-    branches = order([likeness(run, predict(run, p, one, seed=seed)) for one in found])
+    spread = parameter_spread(run)
+    if calibration is not None:
+        spread = calibration.spread(spread, p)
+    found = candidates(p, word_of(run.pattern.word), catalogue, spread)
+    branches = order([likeness(run, predict(run, p, one, spread, seed=seed)) for one in found])
     verdict, reason = decide(run, branches)
     return Comparison(run, p, basis, branches, verdict, reason)
 
@@ -128,7 +139,10 @@ def calibrate(measured: Sequence[Comparison]) -> Calibration:
     free = np.array([_FREE["Omega"], _FREE["A"], _FREE["r"]])
     matrix = np.vstack([np.array(rows), np.diag(1 / free)])
     step = np.linalg.lstsq(matrix, np.concatenate([left, np.zeros(3)]), rcond=None)[0]
-    return Calibration(1 + float(step[0]), 1 + float(step[1]), float(step[2]), tuple(names))
+    u = np.sqrt(np.diag(np.linalg.inv(matrix.T @ matrix)))
+    return Calibration(
+        1 + float(step[0]), 1 + float(step[1]), float(step[2]), dict(zip(_FREE, u.tolist(), strict=True)), tuple(names)
+    )
 
 
 def compare_all(

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -12,20 +12,25 @@ from vines.model import Params
 from vines.rig._cycle import Slots, Track, matching, mean_cycle, slots
 from vines.rig._match import Candidate
 from vines.rig._motion import Motion
-from vines.rig._pattern import Pattern, Periods, cut_into_periods
+from vines.rig._pattern import Pattern, Periods, cut_into_periods, find_pattern
 from vines.rig._reconstruction import Reconstruction
 from vines.rig._recording import Uncertain
 
 if TYPE_CHECKING:
     from vines.dynamics import Scatter
 
-__all__ = ["Predicted", "measured_params", "parameter_draws", "predict"]
+__all__ = ["Predicted", "measured_params", "parameter_spread", "predict", "reshaped"]
 
 Floats = npt.NDArray[np.float64]
 
-DRAWS = 48
-SETTLE, RECORD = 240, 128
-_LEAST = 0.02
+DRAWS = 32
+"""Draws of the parameters; each runs twice, with other restitutions, which tells scatter from uncertainty."""
+
+SETTLE, RECORD = 200, 256
+"""Forcing periods."""
+
+_CYCLES = 64
+_SHOWS = 0.5
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -36,10 +41,12 @@ class Predicted:
     ----------
     candidate : Candidate
     fraction : Uncertain
-        Fraction of periods with the measured pattern (mirrored, where the candidate is the mirror image): mean and
-        standard deviation over the draws.
+        Fraction of periods with the measured counts of impacts: mean and standard deviation over the ensemble.
     holding : float
-        Share of the draws in which it holds in 95 % of the periods.
+        Share of the ensemble that shows the measured pattern, by the rule by which the run does.
+    periodic : float
+        Share of the draws of the parameters at which the model without scatter is periodic from there; nan where the
+        pattern does not show.
     phases : tuple of Uncertain
         Impact phase in each place of the pattern [rad].
     max_abs_x1, kinetic_ratio : Uncertain
@@ -47,77 +54,91 @@ class Predicted:
     cycle : tuple of ndarray
         Mean w and w' over the repetitions, dimensionless.
     gaps : ndarray
-        Times between impacts in forcing periods, of all draws.
+        Times between impacts in forcing periods, of the whole ensemble.
     """
 
     candidate: Candidate
     fraction: Uncertain
     holding: float
+    periodic: float
     phases: tuple[Uncertain, ...]
     max_abs_x1: Uncertain
     kinetic_ratio: Uncertain
-    cycle: tuple[Floats, Floats]
-    gaps: Floats
+    cycle: tuple[Floats, Floats] = field(repr=False)
+    gaps: Floats = field(repr=False)
 
 
 def measured_params(run: Reconstruction) -> Params:
-    """Return the measured parameters; r is that at the mean speed of impact."""
+    """Return the measured parameters; r is that between the mean velocities of flights, at the mean speed of impact."""
     q = run.quantities
-    return Params(
-        mu=q["mu"].value, A=q["A"].value, Omega=q["Omega"].value, r=min(max(q["r"].value, 0.0), 1.0), lam=q["lam"].value
-    )
+    r = min(max(q["r_effective"].value, 0.0), 1.0)
+    return Params(mu=q["mu"].value, A=q["A"].value, Omega=q["Omega"].value, r=r, lam=q["lam"].value)
 
 
-def parameter_draws(run: Reconstruction, p: Params, draws: int = DRAWS, seed: int = 0) -> dict[str, Floats]:
-    """Return draws of the parameters about `p` with the measured uncertainties; the first is `p` itself."""
+def parameter_spread(run: Reconstruction) -> dict[str, float]:
+    """Return the standard uncertainties of the parameters."""
+    names = {"mu": "mu", "A": "A", "Omega": "Omega", "r": "r_effective", "lam": "lam"}
+    return {name: run.quantities[quantity].u for name, quantity in names.items()}
+
+
+def parameter_draws(p: Params, spread: dict[str, float], draws: int = DRAWS, seed: int = 0) -> dict[str, Floats]:
+    """Return draws of the parameters about `p`; the first is `p` itself."""
     rng = np.random.default_rng([seed, 5])
     found = {}
-    for name in ("mu", "A", "Omega", "r", "lam"):
-        values = getattr(p, name) + run.quantities[name].u * rng.normal(size=draws)
+    for name, u in spread.items():
+        values = getattr(p, name) + u * rng.normal(size=draws)
         values[0] = getattr(p, name)
         found[name] = np.clip(values, 1e-9, 1.0) if name == "r" else np.maximum(values, 1e-9)
     return found
 
 
-def predict(run: Reconstruction, p: Params, candidate: Candidate, *, seed: int = 0) -> Predicted:
+def predict(
+    run: Reconstruction, p: Params, candidate: Candidate, spread: dict[str, float] | None = None, *, seed: int = 0
+) -> Predicted:
     """Run the model with scatter from the candidate's state and look at it as at the measured run.
 
     Parameters
     ----------
     run : Reconstruction
-        Gives scatter, uncertainties, the harmonics of the base, the pattern and where its periods are cut.
+        Gives scatter, the harmonics of the base, the pattern and where its periods are cut.
     p : Params
         Parameters, measured or calibrated.
     candidate : Candidate
+    spread : dict, optional
+        Standard uncertainties of the parameters; the measured ones if left out.
     seed : int
         Of the draws.
     """
+    from vines.attractors import classify_many
     from vines.dynamics import ensemble
 
-    table = parameter_draws(run, p, seed=seed)
+    table = parameter_draws(p, parameter_spread(run) if spread is None else spread, seed=seed)
     scatter, r0 = _scatter(run, p, seed)
-    table["r"] = np.clip(table["r"] + r0, 1e-9, 1.0)
-    start = {name: np.full(DRAWS, value) for name, value in candidate.start.items()}
-    many = ensemble(table, start, settle=SETTLE, periods=RECORD, record="impacts", scatter=scatter, threads=1)
+    twice = {name: np.tile(values, 2) for name, values in table.items()}
+    twice["r"] = np.clip(twice["r"] + r0, 1e-9, 1.0)
+    start = {name: np.full(1, value) for name, value in candidate.start.items()}
+    many = ensemble(twice, start, settle=SETTLE, periods=RECORD, record="impacts", scatter=scatter, threads=1)
     impacts = many.impacts
     assert impacts is not None
     shown: list[_Shown] = []
-    for k, own in enumerate(np.split(impacts, np.searchsorted(impacts["run"], np.arange(1, DRAWS)))):
-        if len(own) > 8:
-            values = Params(*(float(value) for value in many.parameters[k]))
-            shown.append(_show(_track(own, values, scatter), values, run))
-    if not shown:
-        none = Uncertain(float("nan"), float("nan"))
-        return Predicted(candidate, Uncertain(0.0, 0.0), 0.0, (), none, none, _nothing(), np.zeros(0))
+    for k, own in enumerate(np.split(impacts, np.searchsorted(impacts["run"], np.arange(1, 2 * DRAWS)))):
+        values = Params(*(float(value) for value in many.parameters[k]))
+        shown.append(_show(_track(own, values, scatter), values, run) if len(own) > 8 else _NOTHING)
     fractions = np.array([one.fraction for one in shown])
-    with_it = [one for one in shown if one.phases is not None and one.fraction > 0.5]
+    holding = float(np.mean([one.name == run.pattern.name for one in shown]))
+    periodic = float("nan")
+    if holding > 0:
+        found = classify_many(table, start, threads=1)
+        periodic = float(np.mean(found.regime == "periodic"))
+    with_it = [one for one in shown if one.phases is not None and one.fraction > _SHOWS]
     return Predicted(
         candidate,
         Uncertain(float(fractions.mean()), float(fractions.std())),
-        float(np.mean(fractions >= 0.95)),
-        _angles([one.phases for one in with_it if one.phases is not None]),
-        _spread([one.largest for one in shown]),
-        _spread([one.ratio for one in shown]),
+        holding,
+        periodic,
+        _phases(shown) if with_it else (),
+        _spread(np.array([one.largest for one in shown])),
+        _spread(np.array([one.ratio for one in shown])),
         _mean_of([one.cycle for one in with_it]),
         np.concatenate([one.gaps for one in shown]),
     )
@@ -141,12 +162,18 @@ def _scatter(run: Reconstruction, p: Params, seed: int) -> tuple[Scatter, float]
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Shown:
+    """One run of the ensemble, looked at as the measured one."""
+
+    name: str
     fraction: float
     phases: Floats | None
     largest: float
     ratio: float
     cycle: tuple[Floats, Floats]
     gaps: Floats
+
+
+_NOTHING = _Shown("none", 0.0, None, np.nan, np.nan, (np.zeros(0), np.zeros(0)), np.zeros(0))
 
 
 def _track(impacts: npt.NDArray[np.void], p: Params, scatter: Scatter) -> Track:
@@ -181,24 +208,33 @@ def _show(track: Track, p: Params, run: Reconstruction) -> _Shown:
     periods = cut_into_periods(track.phase, track.side, span, cut=run.periods.cut)
     usual = run.pattern
     length = usual.p
-    counts = [(w.count("L"), w.count("R")) for w in usual.word]
-    seen = [(w.count("L"), w.count("R")) for w in periods.words]
-    fraction = max(
-        (np.mean([c == counts[(k + turn) % length] for k, c in enumerate(seen)]) for turn in range(length)), default=0.0
-    ) if seen else 0.0  # fmt: skip
     found = slots(periods, usual, track.phase, track.side)
-    phases = reshaped(usual, found) if found is not None else None
-    begin = track.periods_begin(periods, matching(periods, usual.word)) if found is not None else np.zeros(0)
-    cycle = mean_cycle(track, begin, 2 * np.pi * length / omega)
+    begin = track.periods_begin(periods, matching(periods, usual.word)[:_CYCLES]) if found is not None else np.zeros(0)
     return _Shown(
-        float(fraction), phases, period_maximum(track.motion, track, periods), _kinetic_ratio(track, p.mu), cycle,
+        find_pattern(periods, track.phase).name,
+        _share(periods, usual),
+        reshaped(usual, found) if found is not None else None,
+        period_maximum(track, periods),
+        _kinetic_ratio(track, p.mu),
+        mean_cycle(track, begin, 2 * np.pi * length / omega),
         np.diff(track.t) * omega / (2 * np.pi),
-    )  # fmt: skip
+    )
 
 
-def period_maximum(motion: Motion, track: Track, periods: Periods) -> float:
+def _share(periods: Periods, usual: Pattern) -> float:
+    """Return the fraction of periods with the counts of a pattern, wherever it begins."""
+    wanted = [(w.count("L"), w.count("R")) for w in usual.word]
+    seen = [(w.count("L"), w.count("R")) for w in periods.words]
+    if not seen:
+        return 0.0
+    return max(
+        float(np.mean([c == wanted[(k + turn) % usual.p] for k, c in enumerate(seen)])) for turn in range(usual.p)
+    )
+
+
+def period_maximum(track: Track, periods: Periods) -> float:
     """Return the mean over complete periods of the largest |x1|."""
-    times, values = motion.peaks()
+    times, values = track.motion.peaks()
     edges = track.periods_begin(periods, np.arange(len(periods.words) + 1))
     number = np.searchsorted(edges, times, side="right") - 1
     inside = (number >= 0) & (number < len(periods.words))
@@ -207,30 +243,40 @@ def period_maximum(motion: Motion, track: Track, periods: Periods) -> float:
     return float(top[top > 0].mean()) if (top > 0).any() else float("nan")
 
 
-def _angles(phases: list[Floats]) -> tuple[Uncertain, ...]:
-    if not phases:
-        return ()
-    turns = np.array(phases)
-    middle = np.angle(np.mean(np.exp(1j * turns), axis=0))
+def _phases(shown: list[_Shown]) -> tuple[Uncertain, ...]:
+    """Return mean and uncertainty in each place of the pattern; runs without it count for nothing."""
+    turns = np.array([
+        one.phases if one.phases is not None and one.fraction > _SHOWS else np.full(size, np.nan)
+        for size in [max(len(one.phases) for one in shown if one.phases is not None)]
+        for one in shown
+    ])  # fmt: skip
+    middle = np.angle(np.nanmean(np.exp(1j * turns), axis=0))
     away = np.angle(np.exp(1j * (turns - middle)))
-    return tuple(Uncertain(float(m % (2 * np.pi)), float(u)) for m, u in zip(middle, away.std(axis=0), strict=True))
+    parts = [_spread(column) for column in away.T]
+    return tuple(Uncertain(float((m + one.value) % (2 * np.pi)), one.u) for m, one in zip(middle, parts, strict=True))
 
 
-def _spread(values: list[float]) -> Uncertain:
-    return Uncertain(float(np.mean(values)), float(np.std(values)))
+def _spread(values: Floats) -> Uncertain:
+    """Return mean and standard uncertainty by the parameters: both runs of a draw share them, not their scatter."""
+    pairs = values.reshape(2, -1)
+    fair = np.isfinite(pairs).all(axis=0)
+    if np.count_nonzero(fair) < 3:
+        whole = values[np.isfinite(values)]
+        return Uncertain(float(whole.mean()), float(whole.std())) if len(whole) else Uncertain(np.nan, np.nan)
+    one, other = pairs[:, fair]
+    scatter = float(np.mean((one - other) ** 2)) / 2
+    middle = 0.5 * (one + other)
+    between = max(float(np.var(middle, ddof=1)) - scatter / 2, 0.0)
+    return Uncertain(float(middle.mean()), float(np.sqrt(between + scatter / (2 * len(middle)))))
 
 
 def _mean_of(cycles: list[tuple[Floats, Floats]]) -> tuple[Floats, Floats]:
     whole = [one for one in cycles if np.isfinite(one[0]).all()]
     if not whole:
-        return _nothing()
+        return np.zeros(0), np.zeros(0)
     return np.mean([one[0] for one in whole], axis=0), np.mean([one[1] for one in whole], axis=0)
 
 
-def _nothing() -> tuple[Floats, Floats]:
-    return np.zeros(0), np.zeros(0)
-
-
 def reshaped(pattern: Pattern, found: Slots) -> Floats:
-    """Return the mean phase in each place of a measured pattern [rad]."""
+    """Return the mean phase in each place of a pattern [rad]."""
     return np.angle(np.mean(np.exp(1j * found.phase / pattern.p), axis=0)) % (2 * np.pi) * pattern.p

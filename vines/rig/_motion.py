@@ -73,7 +73,7 @@ class Motion:
         for value in c[::-1]:
             total += value
             total *= turn
-        return total.real
+        return np.real(total)
 
     def _on(self, flight: npt.NDArray[np.intp], t: Floats, weights: Mapping[int, float]) -> Floats:
         z = self.z * sum(w * self.s**d for d, w in weights.items())

@@ -241,7 +241,11 @@ def _assembled(
         return mean_over_periods(values[which], inner[which], weights)
 
     joint = ball.joint
-    r = combined(ball.restitution.r, mean(ball.motion.r, use).u, *_type_b(fit.jumps, side, ball, response))
+    left_open = _type_b(fit.jumps, side, ball, response)
+    r = combined(ball.restitution.r, mean(ball.motion.r, use).u, *left_open.values())
+    frictionless = ball_motion(fit.jumps, side, replace(joint.cavity, friction=0.0)).r
+    del left_open["friction"]
+    r_effective = combined(float(frictionless[ball.usable].mean()), mean(frictionless, use).u, *left_open.values())
     # The contact's part of b is a mean over soft and hard impacts.
     b = combined(joint.b.value, joint.b.u, _CENTROID.u * ball.restitution.speed)
     gain = response.channel.u_gain
@@ -264,6 +268,7 @@ def _assembled(
         "friction": joint.friction,
         "tilt": joint.tilt,
         "r": r,
+        "r_effective": r_effective,
         "r_exponent": Uncertain(ball.restitution.exponent, ball.restitution.u_exponent),
         "sigma_r": Uncertain(ball.restitution.sigma_r, ball.restitution.u_sigma_r),
         "impacts_per_period": mean_over_periods(
@@ -312,8 +317,8 @@ def _assembled(
     )
 
 
-def _type_b(jumps: Jumps, side: Floats, ball: _Ball, response: Response) -> list[float]:
-    """Return what calibrations and the cavity leave for the mean restitution: one part each."""
+def _type_b(jumps: Jumps, side: Floats, ball: _Ball, response: Response) -> dict[str, float]:
+    """Return what calibrations and the cavity leave open of the mean restitution, by their cause."""
     cavity, joint = ball.joint.cavity, ball.joint
 
     def mean(moved: Jumps, within: Cavity) -> float:
@@ -330,13 +335,13 @@ def _type_b(jumps: Jumps, side: Floats, ball: _Ball, response: Response) -> list
         v_before=jumps.v_before + turn * late,
         v_after=jumps.v_after + turn * late,
     )
-    return [
-        mean(jumps, replace(cavity, b=cavity.b + joint.b.u)) - here,
-        mean(jumps, replace(cavity, friction=cavity.friction + joint.friction.u)) - here,
-        mean(jumps, replace(cavity, tilt=cavity.tilt + joint.tilt.u)) - here,
-        mean(scaled, cavity) - here,
-        3 * (mean(shifted, cavity) - here),
-    ]
+    return {
+        "b": mean(jumps, replace(cavity, b=cavity.b + joint.b.u)) - here,
+        "friction": mean(jumps, replace(cavity, friction=cavity.friction + joint.friction.u)) - here,
+        "tilt": mean(jumps, replace(cavity, tilt=cavity.tilt + joint.tilt.u)) - here,
+        "gain": mean(scaled, cavity) - here,
+        "delay": 3 * (mean(shifted, cavity) - here),
+    }
 
 
 def _energies(response: Response, ball: _Ball, b: Uncertain, begin: Floats, weights: Floats) -> dict[str, Uncertain]:

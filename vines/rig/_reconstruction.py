@@ -28,6 +28,7 @@ QUANTITIES = {
     "friction": ("m/s^2", "Deceleration of the ball against the cavity"),
     "tilt": ("m/s^2", "Acceleration of the ball along the cavity"),
     "r": ("1", "Mean coefficient of restitution"),
+    "r_effective": ("1", "Mean restitution between mean velocities of flights: of a model whose ball has no friction"),
     "r_exponent": ("1", "Exponent e of r ~ |w'|^e"),
     "sigma_r": ("1", "Standard deviation of the restitution from impact to impact"),
     "impacts_per_period": ("1/T", "Impacts in a forcing period"),

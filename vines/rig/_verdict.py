@@ -9,11 +9,12 @@ import numpy as np
 import numpy.typing as npt
 
 from vines.model import Params
-from vines.rig._cycle import matching, mean_cycle
+from vines.rig._cycle import Slots, matching, mean_cycle
 from vines.rig._model import Predicted, reshaped
+from vines.rig._pattern import HOLDS
 from vines.rig._reconstruction import Reconstruction
 from vines.rig._recording import Uncertain
-from vines.rig._uncertainty import error_ratio
+from vines.rig._uncertainty import error_ratio, mean_over_periods, period_weights
 
 __all__ = ["VERDICTS", "Comparison", "Likeness", "decide", "likeness", "order"]
 
@@ -21,8 +22,9 @@ Floats = npt.NDArray[np.float64]
 
 VERDICTS = ("agree", "pattern_only", "disagree", "undecidable")
 
-_SURE = 0.05
+_SURE = 0.95
 _FAIR = 0.5
+_MEASURES = 3
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -33,7 +35,7 @@ class Likeness:
     ----------
     predicted : Predicted
     matches : bool
-        Whether the branch shows the measured pattern.
+        Whether the branch shows the measured pattern in any of the ensemble.
     errors : mapping of str to float
         E_n of ``phase`` (the worst place of the pattern), ``max_abs_x1`` and ``kinetic_ratio``.
     measured, model : mapping of str to Uncertain
@@ -87,13 +89,9 @@ def likeness(run: Reconstruction, predicted: Predicted) -> Likeness:
     measured = {name: q[name] for name in ("max_abs_x1", "kinetic_ratio")}
     model = {"max_abs_x1": predicted.max_abs_x1, "kinetic_ratio": predicted.kinetic_ratio}
     errors: dict[str, float] = {}
-    matches = predicted.holding > _SURE and bool(predicted.phases)
     if run.slots is not None and predicted.phases:
-        mean = reshaped(run.pattern, run.slots)
-        u = q["impact_phase"].u
-        errors["phase"], k, turned = _phases(mean, u, predicted.phases, run.pattern.p)
-        measured["phase"] = Uncertain(float(mean[k]), u)
-        model["phase"] = turned[k]
+        own = _measured_phases(run, run.slots)
+        errors["phase"], measured["phase"], model["phase"] = _phases(own, predicted.phases, run.pattern.p)
     for name in ("max_abs_x1", "kinetic_ratio"):
         errors[name] = error_ratio(measured[name], model[name])
     cycle = _cycle(run)
@@ -101,7 +99,7 @@ def likeness(run: Reconstruction, predicted: Predicted) -> Likeness:
         float(np.sqrt(np.mean((a - b) ** 2) / np.mean(b**2))) if len(b) == len(a) else float("nan")
         for a, b in zip(cycle, predicted.cycle, strict=True)
     ]
-    return Likeness(predicted, matches, errors, measured, model, rms[0], rms[1], cycle)
+    return Likeness(predicted, predicted.holding > 0, errors, measured, model, rms[0], rms[1], cycle)
 
 
 def decide(run: Reconstruction, branches: tuple[Likeness, ...]) -> tuple[str, str]:
@@ -110,60 +108,75 @@ def decide(run: Reconstruction, branches: tuple[Likeness, ...]) -> tuple[str, st
     Notes
     -----
     ``undecidable`` where the data contradict themselves or are too poor, where no pattern holds in 95 % of the periods
-    (mixed or chaotic), or where the model's own answer is open within the uncertainties; ``disagree`` where a clear
-    pattern is none of the model's; ``pattern_only`` where the pattern is but a number is not; else ``agree``.
+    (mixed or chaotic), or where the model's own answer is open within the uncertainties: the pattern shows in some of
+    the ensemble only, or the model is chaotic at some of the draws. ``disagree`` where a clear pattern is none of the
+    model's; ``pattern_only`` where the pattern is but a number is not; else ``agree``.
     """
     if not run.accepted:
         return "undecidable", run.reasons
+    shown = run.pattern.name
     if not run.pattern.holds:
         shares = ", ".join(f"{k} {v:.0%}" for k, v in list(run.pattern.fractions.items())[:3])
-        return "undecidable", f"no pattern holds in 95 % of the periods ({shares}): mixed or chaotic"
+        return "undecidable", f"no pattern holds in {HOLDS:.0%} of the periods ({shares}): mixed or chaotic"
     with_it = [one for one in branches if one.matches]
-    names = ", ".join(sorted({one.predicted.candidate.name for one in branches})) or "none"
+    open_ones = [one for one in branches if one.predicted.candidate.regime not in ("periodic", "no_impact")]
     if not with_it:
-        wandering = [one for one in branches if one.predicted.candidate.regime in ("chaotic", "quasiperiodic")]
+        if open_ones:
+            return "undecidable", f"the run shows {shown}, the model is {open_ones[0].predicted.candidate.regime} here"
         near = max((one.predicted.fraction.value for one in branches), default=0.0)
-        if wandering:
-            regime = wandering[0].predicted.candidate.regime
-            return "undecidable", f"the model is {regime} at the measured parameters, the run shows {run.pattern.name}"
         if near > _FAIR:
-            return (
-                "undecidable",
-                f"with the measured scatter the model keeps {run.pattern.name} in {near:.0%} of the periods",
-            )
-        return "disagree", f"the run shows {run.pattern.name}, the model has {names} at the measured parameters"
-    best = with_it[0]
-    if best.predicted.holding < _FAIR:
-        return (
-            "undecidable",
-            f"{run.pattern.name} holds in {best.predicted.holding:.0%} of the draws of the measured parameters: a "
-            "bifurcation lies within their uncertainty",
+            return "undecidable", f"with the measured scatter the model keeps {shown} in {near:.0%} of the periods"
+        names = ", ".join(sorted({one.predicted.candidate.name for one in branches})) or "none"
+        return "disagree", f"the run shows {shown}, the model has {names} at these parameters"
+    best = with_it[0].predicted
+    if best.holding < _FAIR:
+        return "undecidable", (
+            f"with the measured scatter and uncertainties {shown} holds in {best.holding:.0%} of the ensemble: a "
+            "bifurcation is too near"
         )
-    worst = max(best.errors, key=lambda name: best.errors[name])
-    listed = ", ".join(f"E_n({name}) = {value:.2f}" for name, value in best.errors.items())
-    if best.errors[worst] <= 1:
-        return "agree", f"{best.predicted.candidate.name}: {listed}"
-    return "pattern_only", f"{best.predicted.candidate.name}: {listed}"
+    if best.periodic < _SURE:
+        return "undecidable", f"the model without scatter is not periodic at {1 - best.periodic:.0%} of the draws"
+    errors = with_it[0].errors
+    listed = f"{best.candidate.name}: " + ", ".join(f"E_n({name}) = {value:.2f}" for name, value in errors.items())
+    if not all(np.isfinite(value) for value in errors.values()) or len(errors) < _MEASURES:
+        return "undecidable", f"{listed}: a quantity is missing"
+    return ("agree" if max(errors.values()) <= 1 else "pattern_only"), listed
 
 
 def order(branches: list[Likeness]) -> tuple[Likeness, ...]:
     """Return branches with the measured pattern first, the nearest before the others."""
-    return tuple(sorted(branches, key=lambda one: (not one.matches, max(one.errors.values(), default=np.inf))))
+    return tuple(
+        sorted(branches, key=lambda one: (not one.matches, one.predicted.holding < _FAIR, max(one.errors.values())))
+    )
 
 
-def _phases(mean: Floats, u: float, model: tuple[Uncertain, ...], p: int) -> tuple[float, int, tuple[Uncertain, ...]]:
-    """Return E_n of the worst place of the pattern, which it is, and the model there; a pattern may begin anywhere."""
-    best: tuple[float, int, tuple[Uncertain, ...]] = (np.inf, 0, model)
-    size = max(len(mean) // p, 1)
+def _measured_phases(run: Reconstruction, found: Slots) -> list[Uncertain]:
+    """Return the impact phase in each place of the pattern, with its uncertainty [rad]."""
+    p = run.pattern.p
+    mean = reshaped(run.pattern, found)
+    away = np.angle(np.exp(1j * (found.phase - mean) / p)) * p
+    weights = period_weights(len(run.periods.words))
+    spread = [mean_over_periods(column, found.period, weights).u for column in away.T]
+    # The alignment of clocks, common to all places, is what the first place's uncertainty has beyond its spread.
+    common = max(run.quantities["impact_phase"].u ** 2 - spread[0] ** 2, 0.0)
+    return [Uncertain(float(m), float(np.hypot(u, np.sqrt(common)))) for m, u in zip(mean, spread, strict=True)]
+
+
+def _phases(own: list[Uncertain], model: tuple[Uncertain, ...], p: int) -> tuple[float, Uncertain, Uncertain]:
+    """Return E_n, measured and model value of the worst place of the pattern; a pattern may begin anywhere."""
+    best: tuple[float, Uncertain, Uncertain] | None = None
+    size = max(len(own) // p, 1)
     for turn in range(p):
         rolled = model[turn * size :] + model[: turn * size]
         apart = [
-            error_ratio(Uncertain(0.0, u), Uncertain(_turn(m - one.value), one.u))
-            for m, one in zip(mean, rolled, strict=True)
+            error_ratio(Uncertain(0.0, a.u), Uncertain(_turn(a.value - b.value), b.u))
+            for a, b in zip(own, rolled, strict=True)
         ]
         k = int(np.argmax(apart))
-        if apart[k] < best[0]:
-            best = (apart[k], k, rolled)
+        if best is None or apart[k] < best[0]:
+            # Both on one turn, so that a picture can show them side by side.
+            best = (apart[k], own[k], Uncertain(own[k].value - _turn(own[k].value - rolled[k].value), rolled[k].u))
+    assert best is not None
     return best
 
 

@@ -23,7 +23,7 @@ from vines.rig.synth._pattern import true_pattern
 from vines.rig.synth._settings import RigSettings
 from vines.rig.synth._write import file_name, write_raw
 
-__all__ = ["RawRun", "make_run", "raw_run", "simulate_rig"]
+__all__ = ["RawRun", "make_run", "raw_run", "read_raw", "simulate_rig"]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -135,11 +135,22 @@ def simulate_rig(settings: RigSettings, seed: int, state: np.ndarray | None = No
         If ingest refuses the run, as it must with planted faults.
     """
     run = raw_run(settings, seed, state)
+    return read_raw(run), run.truth
+
+
+def read_raw(run: RawRun) -> Recording:
+    """Return a raw run as ingest would read it, without any file.
+
+    Raises
+    ------
+    RigError
+        If ingest refuses it.
+    """
     files = {
         name: RawFile(file.form, tuple(_in_volts(each) for each in file.channels), file.started)
         for name, file in run.files.items()
     }
-    return assemble(run.form, run.rows, files, {}).recording, run.truth
+    return assemble(run.form, run.rows, files, {}).recording
 
 
 def _in_volts(channel: RawChannel) -> RawChannel:
