@@ -30,11 +30,18 @@ class Bins:
         Mean of its samples.
     width : float
         Length of a block [s].
+    smooth : float
+        Standard deviation of a Gaussian that the signal was smoothed with before [s].
     """
 
     t: Floats
     mean: Floats
     width: float
+    smooth: float = 0.0
+
+    def response(self, s: complex) -> complex:
+        """Return the mean over a block of exp(s t), smoothed, where its middle is t = 0."""
+        return sinhc(0.5 * s * self.width) * complex(np.exp(0.5 * (s * self.smooth) ** 2))
 
 
 def bins_of(channel: Sampled, rate: float = BIN_RATE) -> Bins:

@@ -15,7 +15,7 @@ import numpy.typing as npt
 from scipy.linalg import cho_solve_banded, cholesky_banded
 
 from vines.errors import RigError
-from vines.rig._bins import Bins, sinhc
+from vines.rig._bins import Bins
 from vines.rig._motion import Motion
 from vines.rig._sine_fit import clumping
 
@@ -25,6 +25,9 @@ Floats = npt.NDArray[np.float64]
 
 _DISTRUST = 1e-4
 """Weight of the samples of a flight that is not one."""
+
+_TAIL = 4.5
+"""How far the pulse of an impact reaches into a smoothed acceleration, in standard deviations of the smoothing."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -99,6 +102,7 @@ def fit_jumps(
     omega: float,
     times: Floats,
     u_times: Floats | float,
+    sizes: Floats,
     *,
     order: int = 0,
     harmonics: int = 5,
@@ -124,6 +128,8 @@ def fit_jumps(
     u_times : ndarray, shape (K,), or float
         Their standard uncertainty [s]. A shift of an impact by dt is, to first order, a jump -dv dt of the position,
         so this allows such jumps; what the signal says of the time is in `JumpFit.shift` (the Gauss–Newton step).
+    sizes : ndarray, shape (K,)
+        About how large the velocity jumps are [m/s]; their signs don't matter.
     order : {0, 2}
         Derivative of x1 that the channel measures.
     harmonics : int
@@ -154,18 +160,16 @@ def fit_jumps(
     u_times = np.broadcast_to(np.asarray(u_times, float), problem.times.shape)
     noise = max(_noise(bins), 1e-15)
     scale = noise
-    size = np.full(len(problem.times), 1e-2)
-    if expected is not None:
-        size = np.abs(expected[0])
-    solved = problem.solve(scale, np.maximum(size, 1e-4) * u_times, expected)
+    # Sizes are given, never those of the fit: a jump fitted too small would tighten its own condition and run away.
+    u_gap = np.maximum(np.abs(sizes), 1e-4) * u_times
+    solved = problem.solve(scale, u_gap, expected)
     clumped = 1.0
     for _ in range(3):
-        dv = np.abs(problem.motion(*solved[:2]).after(1) - problem.motion(*solved[:2]).before(1))
         problem.distrust(problem.left(*solved[:2]), noise)
         left = problem.left(*solved[:2])[problem.trusted]
         clumped = clumping(left)
         scale = max(float(np.sqrt(np.mean(left**2) * clumped)), 1e-15)
-        solved = problem.solve(scale, np.maximum(dv, 1e-5) * u_times, expected)
+        solved = problem.solve(scale, u_gap, expected)
     z, linear, factor, border, schur = solved
     left = problem.left(z, linear)
     motion = problem.motion(z, linear)
@@ -238,7 +242,7 @@ class _Problem:
             raise RigError("impact times must ascend and lie inside the record")
         self.starts = np.concatenate([[start], times])
         self.stop = stop
-        reach = guard + 0.5 * bins.width
+        reach = guard + 0.5 * bins.width + _TAIL * bins.smooth
         keep = np.ones(len(bins.t), bool)
         low, high = np.searchsorted(bins.t, times - reach), np.searchsorted(bins.t, times + reach)
         for k in range(int((high - low).max(initial=0))):
@@ -248,14 +252,14 @@ class _Problem:
         if len(self.t) < 2 * flights + 2 * harmonics + 2:
             raise RigError(f"{len(times)} impacts leave only {len(self.t)} stretches of samples between them")
         self.flight = np.maximum(np.searchsorted(self.starts, self.t, side="right") - 1, 0)
-        free = sinhc(0.5 * s * bins.width) * s**order * np.exp(s * (self.t - self.starts[self.flight]))
+        free = bins.response(s) * s**order * np.exp(s * (self.t - self.starts[self.flight]))
         self.free = np.stack([free.real, -free.imag])
         self.forced = np.empty((2 * harmonics + 1, len(self.t)))
         turn = np.exp(1j * omega * self.t)
         power = np.ones_like(turn)
         for n in range(1, harmonics + 1):
             power = power * turn
-            column = sinhc(0.5j * n * omega * bins.width) * (1j * n * omega) ** order * power
+            column = bins.response(1j * n * omega) * (1j * n * omega) ** order * power
             self.forced[2 * n - 2], self.forced[2 * n - 1] = column.real, -column.imag
         self.forced[-1] = 1.0
         self.fair = np.ones(flights, bool)

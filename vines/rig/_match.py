@@ -47,8 +47,8 @@ class Candidate:
     stable : bool
         False for an orbit that the model leaves: it stands for what lies near it.
     source : str
-        How it was found: ``search``, ``catalogue`` (followed from a stored orbit), ``simulation``, ``nearby`` (it exists
-        within the uncertainty of the parameters only).
+        How it was found: ``search``, ``catalogue`` (followed from a stored orbit), ``simulation``, ``nearby`` (it is
+        stable within the uncertainty of the parameters, not at them).
     branch_id : str
         Of the catalogue's branch that it was followed from; else empty.
     """

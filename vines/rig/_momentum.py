@@ -16,8 +16,11 @@ __all__ = ["MomentumFit", "fit_momentum"]
 
 Floats = npt.NDArray[np.float64]
 
-_NAMES = ("mu", "b", "tilt")
+_NAMES = ("mu", "b", "tilt", "skew")
 _FAR = 5.0
+
+_SKEW = 2e-3
+"""How much the gain of the oscillator's sensor may differ, half of it, from one end of its motion to the other."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -79,10 +82,11 @@ def fit_momentum(
     -----
     Gauss–Newton on the weighted residuals and on the differences from what is known; residuals beyond five times
     their spread are set aside. With sides that only alternate mu and b are nearly degenerate (mu ~ 1/b), so one of
-    them must be known: mu weighed gives b, b gauged gives mu.
+    them must be known: mu weighed gives b, b gauged gives mu. A sensor that is not quite linear has another gain where
+    the ball hits the left end than where it hits the right one; unaccounted for, that would look like a tilt.
     """
-    value = {"mu": 0.01, "b": b.value, "friction": friction.value, "tilt": tilt.value}
-    known = {"b": b, "tilt": tilt}
+    value = {"mu": 0.01, "b": b.value, "friction": friction.value, "tilt": tilt.value, "skew": 0.0}
+    known = {"b": b, "tilt": tilt, "skew": Uncertain(0.0, _SKEW)}
     if mu is not None:
         known["mu"] = mu
     usable = np.ones(len(side) - 2, bool) if usable is None else usable
@@ -94,7 +98,7 @@ def fit_momentum(
         value["mu"] = guess if np.isfinite(guess) and guess != 0 else 0.01
     else:
         value["mu"] = mu.value
-    step = {"mu": 1e-4 * value["mu"], "b": 1e-4 * b.value, "tilt": 1e-3}
+    step = {"mu": 1e-4 * value["mu"], "b": 1e-4 * b.value, "tilt": 1e-3, "skew": 1e-4}
     good = usable.copy()
     covariance = np.eye(len(_NAMES))
     u: Any = 1.0
@@ -123,9 +127,11 @@ def fit_momentum(
             break
     base = _residual(jumps, side, value) / u
     found = {name: Uncertain(value[name], float(np.sqrt(covariance[i, i]))) for i, name in enumerate(_NAMES)}
+    del found["skew"]
     return MomentumFit(**found, friction=friction, misfit=base, good=good)
 
 
 def _residual(jumps: Jumps, side: Floats, value: dict[str, float]) -> Floats:
     motion = ball_motion(jumps, side, Cavity(value["b"], value["friction"], value["tilt"]))
-    return jumps.dv[..., 1:-1] + value["mu"] * (motion.v2_after - motion.v2_before)
+    dv = jumps.dv[..., 1:-1] * (1 + value["skew"] * motion.side)
+    return dv + value["mu"] * (motion.v2_after - motion.v2_before)

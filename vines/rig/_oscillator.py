@@ -29,6 +29,12 @@ _KEEP = 5.0
 _LEAST = 2e-4
 """No smaller jump is believed [m/s]."""
 
+_EVERY = 6.25e-4
+"""Distance of the values of a smoothed acceleration that the fit uses [s]: about the width of the smoothing."""
+
+_MOVES = 3
+_AT_REST = 1e-5
+
 _EDGE = 3e-3
 """Nothing is sought so near to the ends of the record [s]."""
 
@@ -105,7 +111,7 @@ def measure_response(
     if channel is None:
         raise RigError(f"run {recording.run.run_id!r} has no channel on the oscillator (lo_disp or lo_acc)")
     order = 0 if displacement is not None else 2
-    bins = bins_of(channel)
+    bins = bins_of(channel) if order == 0 else _quiet(channel)
     gain = None
     if displacement is not None and accelerometer is not None:
         gain = _gain(bins, accelerometer, omega)
@@ -149,6 +155,7 @@ def measure_response(
         shift, u_delay = _shrunk((delay + seen[0], seen[1]), known)
         times = np.where(u > U_PULSE, again.jumps.t - shift, times)
         delay = shift
+        times = _settled(fitter, times, dv, u, delay)
         ahead = np.argsort(times, kind="stable")
         times, dv, u = _inside(bins, times[ahead], dv[ahead], u[ahead])
     steps = pushed(-np.sign(dv), friction / abs(s) ** 2)
@@ -169,7 +176,7 @@ class _Fitter:
 
     def fit(self, times: Floats, u: Floats, dv: Floats, draws: int = 8, steps: Floats | None = None) -> JumpFit:
         return fit_jumps(
-            self.bins, self.s, self.omega, times, u, order=self.order, draws=draws, forced=self.forced, steps=steps,
+            self.bins, self.s, self.omega, times, u, dv, order=self.order, draws=draws, forced=self.forced, steps=steps,
             expected=_expected(dv) if self.order == 2 else None,
         )  # fmt: skip
 
@@ -250,6 +257,20 @@ def _expected(dv: Floats) -> tuple[Floats, Floats]:
     return dv, 0.03 * np.abs(dv) + 1e-4
 
 
+def _quiet(accelerometer: Sampled) -> Bins:
+    """Return an acceleration as the fit can use it: smoothed, for structural ringing is many times the motion."""
+    pulses = pulses_of(accelerometer)
+    stride = max(1, round(_EVERY / pulses.step))
+    t = pulses.t[::stride]
+    bad = accelerometer.start + np.flatnonzero(~accelerometer.valid) / accelerometer.rate
+    place = np.searchsorted(bad, t)
+    apart = np.full(len(t), np.inf)
+    if len(bad):
+        apart = np.minimum(np.abs(bad[np.maximum(place - 1, 0)] - t), np.abs(bad[np.minimum(place, len(bad) - 1)] - t))
+    fair = apart > 5 * pulses.smooth
+    return Bins(t[fair], pulses.values[::stride][fair], 0.0, pulses.smooth)
+
+
 def _gain(bins: Bins, accelerometer: Sampled, omega: float) -> complex:
     near = omega / (2 * np.pi)
     of_x, of_a = sine_fit(bins, near=near, harmonics=3), sine_fit(bins_of(accelerometer), near=near, harmonics=3)
@@ -306,6 +327,19 @@ def _inside(bins: Bins, times: Floats, dv: Floats, u: Floats) -> tuple[Floats, F
     return times[keep], dv[keep], u[keep]
 
 
+def _settled(fitter: _Fitter, times: Floats, dv: Floats, u: Floats, delay: float) -> Floats:
+    """Move the impacts that only the displacement shows until they come to rest: a far step is not a small one."""
+    unheard = u > U_PULSE
+    for _ in range(_MOVES):
+        if not unheard.any() or np.any(np.diff(times) <= 0):
+            break
+        shift = fitter.fit(times + delay, u, dv).shift
+        times = np.where(unheard, times + shift, times)
+        if np.max(np.abs(shift[unheard])) < _AT_REST:
+            break
+    return times
+
+
 def _mean_shift(fit: JumpFit) -> tuple[float, float, float]:
     """Return the mean shift of the times, its standard uncertainty, and its change over the record in units of that."""
     weight = fit.jumps.dv**2 * (np.abs(fit.jumps.dv) > _KEEP * fit.u_dv)
@@ -343,7 +377,8 @@ def _real(fit: JumpFit, pulse: Floats, heard: npt.NDArray[np.bool_]) -> npt.NDAr
     dv = np.abs(fit.jumps.dv)
     alike = np.abs(fit.jumps.dv - pulse) < 0.5 * dv + _KEEP * fit.u_dv
     seen = (dv > _KEEP * fit.u_dv) & (dv > _LEAST) & (alike | (dv > 30 * fit.u_dv))
-    blind = fit.u_dv > 0.2 * np.abs(pulse)
+    # Beside a large jump a small one may be the misfit of its pulse: where the fit can't say, only a fair size counts.
+    blind = fit.u_dv > 0.2 * np.maximum(np.abs(pulse), 0.25 * np.median(np.abs(pulse)))
     return seen | (blind & heard & (np.abs(fit.jumps.dv - pulse) < _KEEP * fit.u_dv))
 
 

@@ -142,6 +142,7 @@ def _tuned(
             omega,
             fit.motion.starts[1:],
             2e-5,
+            fit.jumps.dv,
             order=response.order,
             draws=0,
             seed=seed,
