@@ -7,7 +7,7 @@ jump, where the onset of an envelope gives only a time, and one that the ringing
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
@@ -40,12 +40,15 @@ class Pulses:
         [m/s^2].
     smooth : float
         Standard deviation of the Gaussian [s].
+    echo : float
+        Distance at which half of each pulse shows with the other sign before and after it [s]; 0 for none.
     """
 
     start: float
     step: float
     values: Floats
     smooth: float
+    echo: float = 0.0
 
     @property
     def t(self) -> Floats:
@@ -54,10 +57,13 @@ class Pulses:
 
     def less(self, other: Floats) -> Pulses:
         """Return the signal without another one on the same grid."""
-        return Pulses(self.start, self.step, self.values - other, self.smooth)
+        return replace(self, values=self.values - other)
 
     def shape(self, times: Floats, dv: Floats) -> Floats:
         """Return what velocity jumps look like on the grid, shape (n,)."""
+        if self.echo:
+            times = np.concatenate([times, times - self.echo, times + self.echo])
+            dv = np.concatenate([dv, -0.5 * dv, -0.5 * dv])
         total = np.zeros(len(self.values))
         reach = int(np.ceil(5 * self.smooth / self.step))
         middle = np.round((times - self.start) / self.step).astype(int)
@@ -68,6 +74,14 @@ class Pulses:
         inside = (index >= 0) & (index < len(total))
         np.add.at(total, index[inside], (height * np.exp(-0.5 * (away / self.smooth) ** 2))[inside])
         return total
+
+    def sparse(self) -> Pulses:
+        """Return the signal less its mean at a distance on both sides: little of slow motion is left, echoes are."""
+        reach = max(1, round(4 * self.smooth / self.step))
+        values = self.values.copy()
+        values[reach:-reach] -= 0.5 * (self.values[2 * reach :] + self.values[: -2 * reach])
+        values[:reach] = values[-reach:] = 0.0
+        return replace(self, values=values, echo=reach * self.step)
 
     @property
     def noise(self) -> float:
@@ -166,7 +180,7 @@ def find_pulses(
             break
         # Of peaks nearer than two widths the highest comes first; the others may follow in the next round.
         order = found[np.argsort(-size[found], kind="stable")]
-        apart = max(1, round(2 * pulses.smooth / pulses.step))
+        apart = max(1, round((2 * pulses.smooth + pulses.echo) / pulses.step))
         blocked = np.zeros(len(left), bool)
         chosen = []
         for k in order:

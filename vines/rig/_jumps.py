@@ -80,6 +80,8 @@ class JumpFit:
         Fraction of flights left out because their motion is not that of one flight: an impact in them is missing.
     left : ndarray, shape (n,)
         What is left, at `left_t` [s].
+    extra : ndarray
+        Sizes of the further signals.
     """
 
     motion: Motion
@@ -94,6 +96,7 @@ class JumpFit:
     distrusted: float
     left: Floats
     left_t: Floats
+    extra: Floats
 
 
 def fit_jumps(
@@ -110,6 +113,7 @@ def fit_jumps(
     expected: tuple[Floats, Floats] | None = None,
     forced: tuple[npt.NDArray[np.complex128], Floats] | None = None,
     steps: Floats | None = None,
+    extra: tuple[Floats, Floats] | None = None,
     draws: int = 32,
     seed: int = 0,
 ) -> JumpFit:
@@ -143,6 +147,9 @@ def fit_jumps(
         a train of equal jumps and a few free harmonics are nearly the same motion.
     steps : ndarray, shape (K + 1,), optional
         Static displacement of each flight [m]: the ball's friction pushes the oscillator one way or the other.
+    extra : tuple of ndarray, optional
+        Further signals that may be in the channel, one a row, at the times of `bins`, and the standard uncertainties of
+        their sizes about 0.
     draws : int
         Draws for the uncertainty.
     seed : int
@@ -153,7 +160,8 @@ def fit_jumps(
     RigError
         If the record holds too few samples for so many impacts.
     """
-    problem = _Problem(bins, s, omega, np.asarray(times, float), order, harmonics, guard)
+    more = (np.zeros((0, len(bins.t))), np.zeros(0)) if extra is None else extra
+    problem = _Problem(bins, s, omega, np.asarray(times, float), order, harmonics, guard, more)
     problem.forced_known = forced
     if steps is not None:
         problem.push(steps)
@@ -198,6 +206,7 @@ def fit_jumps(
         1 - float(np.mean(problem.fair)),
         left,
         problem.t,
+        linear[2 * harmonics + 1 :],
     )
 
 
@@ -232,7 +241,15 @@ class _Problem:
     """The normal equations: unknowns (Re z_j, Im z_j) of each flight, and the forced response with an offset."""
 
     def __init__(
-        self, bins: Bins, s: complex, omega: float, times: Floats, order: int, harmonics: int, guard: float
+        self,
+        bins: Bins,
+        s: complex,
+        omega: float,
+        times: Floats,
+        order: int,
+        harmonics: int,
+        guard: float,
+        extra: tuple[Floats, Floats],
     ) -> None:
         self.s, self.omega, self.order, self.harmonics = s, omega, order, harmonics
         self.forced_known: tuple[npt.NDArray[np.complex128], Floats] | None = None
@@ -254,14 +271,16 @@ class _Problem:
         self.flight = np.maximum(np.searchsorted(self.starts, self.t, side="right") - 1, 0)
         free = bins.response(s) * s**order * np.exp(s * (self.t - self.starts[self.flight]))
         self.free = np.stack([free.real, -free.imag])
-        self.forced = np.empty((2 * harmonics + 1, len(self.t)))
+        columns, self.u_extra = extra
+        self.forced = np.empty((2 * harmonics + 1 + len(columns), len(self.t)))
         turn = np.exp(1j * omega * self.t)
         power = np.ones_like(turn)
         for n in range(1, harmonics + 1):
             power = power * turn
             column = bins.response(1j * n * omega) * (1j * n * omega) ** order * power
             self.forced[2 * n - 2], self.forced[2 * n - 1] = column.real, -column.imag
-        self.forced[-1] = 1.0
+        self.forced[2 * harmonics] = 1.0
+        self.forced[2 * harmonics + 1 :] = columns[:, keep]
         self.fair = np.ones(flights, bool)
         self.steps = np.zeros(flights)
         self._sum_flights()
@@ -342,6 +361,8 @@ class _Problem:
                 for k, part in ((2 * n, value.real), (2 * n + 1, value.imag)):
                     corner[k, k] += 1 / u_n**2
                     below[k] += part / u_n**2
+        more = np.arange(2 * self.harmonics + 1, len(corner))
+        corner[more, more] += 1 / self.u_extra**2
         step: Any = np.exp(self.s * np.diff(self.starts))
         position = np.stack([-step.real, step.imag, np.ones(len(step)), np.zeros(len(step))], axis=1)
         carried = self.s * step
@@ -373,7 +394,8 @@ class _Problem:
 
     def motion(self, z: Floats, linear: Floats) -> Motion:
         """Return x1 in closed form."""
-        c = linear[0:-1:2] + 1j * linear[1:-1:2]
+        known = 2 * self.harmonics
+        c = linear[0:known:2] + 1j * linear[1:known:2]
         return Motion(self.s, self.omega, c, self.starts, z[0::2] + 1j * z[1::2], self.stop)
 
 

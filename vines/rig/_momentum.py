@@ -16,11 +16,11 @@ __all__ = ["MomentumFit", "fit_momentum"]
 
 Floats = npt.NDArray[np.float64]
 
-_NAMES = ("mu", "b", "tilt", "skew")
+_NAMES = ("mu", "b", "tilt", "skew", "bow")
 _FAR = 5.0
 
 _SKEW = 2e-3
-"""How much the gain of the oscillator's sensor may differ, half of it, from one end of its motion to the other."""
+"""How much the gain of the oscillator's sensor may differ along its motion: slope and curvature, of half the range."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -83,10 +83,10 @@ def fit_momentum(
     Gauss–Newton on the weighted residuals and on the differences from what is known; residuals beyond five times
     their spread are set aside. With sides that only alternate mu and b are nearly degenerate (mu ~ 1/b), so one of
     them must be known: mu weighed gives b, b gauged gives mu. A sensor that is not quite linear has another gain where
-    the ball hits the left end than where it hits the right one; unaccounted for, that would look like a tilt.
+    the ball hits one end than where it hits the other; unaccounted for, that would look like a tilt.
     """
-    value = {"mu": 0.01, "b": b.value, "friction": friction.value, "tilt": tilt.value, "skew": 0.0}
-    known = {"b": b, "tilt": tilt, "skew": Uncertain(0.0, _SKEW)}
+    value = {"mu": 0.01, "b": b.value, "friction": friction.value, "tilt": tilt.value, "skew": 0.0, "bow": 0.0}
+    known = {"b": b, "tilt": tilt, "skew": Uncertain(0.0, _SKEW), "bow": Uncertain(0.0, _SKEW)}
     if mu is not None:
         known["mu"] = mu
     usable = np.ones(len(side) - 2, bool) if usable is None else usable
@@ -98,7 +98,7 @@ def fit_momentum(
         value["mu"] = guess if np.isfinite(guess) and guess != 0 else 0.01
     else:
         value["mu"] = mu.value
-    step = {"mu": 1e-4 * value["mu"], "b": 1e-4 * b.value, "tilt": 1e-3, "skew": 1e-4}
+    step = {"mu": 1e-4 * value["mu"], "b": 1e-4 * b.value, "tilt": 1e-3, "skew": 1e-4, "bow": 1e-4}
     good = usable.copy()
     covariance = np.eye(len(_NAMES))
     u: Any = 1.0
@@ -127,11 +127,11 @@ def fit_momentum(
             break
     base = _residual(jumps, side, value) / u
     found = {name: Uncertain(value[name], float(np.sqrt(covariance[i, i]))) for i, name in enumerate(_NAMES)}
-    del found["skew"]
-    return MomentumFit(**found, friction=friction, misfit=base, good=good)
+    return MomentumFit(found["mu"], found["b"], friction, found["tilt"], misfit=base, good=good)
 
 
 def _residual(jumps: Jumps, side: Floats, value: dict[str, float]) -> Floats:
     motion = ball_motion(jumps, side, Cavity(value["b"], value["friction"], value["tilt"]))
-    dv = jumps.dv[..., 1:-1] * (1 + value["skew"] * motion.side)
+    place = jumps.x[..., 1:-1] / np.abs(jumps.x).max()
+    dv = jumps.dv[..., 1:-1] * (1 + value["skew"] * place + value["bow"] * (place**2 - np.mean(place**2)))
     return dv + value["mu"] * (motion.v2_after - motion.v2_before)

@@ -11,6 +11,7 @@ from vines.errors import RigError
 from vines.rig._bins import Bins, bins_of
 from vines.rig._impacts import Pulses, find_pulses, pulses_of
 from vines.rig._jumps import JumpFit, fit_jumps
+from vines.rig._linearity import bends, straightened
 from vines.rig._recording import Recording, Sampled
 from vines.rig._sine_fit import sine_fit
 
@@ -32,8 +33,19 @@ _LEAST = 2e-4
 _EVERY = 6.25e-4
 """Distance of the values of a smoothed acceleration that the fit uses [s]: about the width of the smoothing."""
 
+_TWIN = 8e-3
+"""Impacts nearer than this, with opposite jumps, may be one and a false one beside it [s]."""
+
+_EXPLAINS = 0.99
+
 _MOVES = 3
 _AT_REST = 1e-5
+
+_U_AREA = 0.03
+"""Relative standard uncertainty of a jump by the area of its pulse: for what ringing adds."""
+
+_U_SIDEWAYS = 3e-3
+"""Sway across the axis, relative to the motion: a tenth of it, seen by a cross-axis sensitivity of some per cent."""
 
 _EDGE = 3e-3
 """Nothing is sought so near to the ends of the record [s]."""
@@ -86,6 +98,7 @@ def measure_response(
     forced: tuple[npt.NDArray[np.complex128], Floats] | None = None,
     *,
     friction: float = 0.0,
+    u_natural: tuple[float, float] = (1e-5, 1e-3),
 ) -> Response:
     """Find the impacts and fit the oscillator's motion.
 
@@ -100,6 +113,8 @@ def measure_response(
         As of `fit_jumps`.
     friction : float
         Acceleration of the oscillator by the ball's friction, mu times the ball's deceleration [m/s^2].
+    u_natural : tuple of float
+        Relative standard uncertainties of omega0 and lam.
 
     Raises
     ------
@@ -120,11 +135,11 @@ def measure_response(
     pulses = pulses_of(sensor, 2 if accelerometer is not None else 0)
     if gain is not None:
         pulses = replace(pulses, values=pulses.values / (abs(gain) * np.sign(gain.real)))
-    bends = pulses_of(channel, 0) if order == 0 and both else pulses
+    corners = pulses_of(channel, 0) if order == 0 and both else pulses
     times, dv = _first_look(pulses, bins, s, omega, order)
     u = np.full(len(times), U_PULSE if accelerometer is not None else _LOOSE)
     if both:
-        times, dv, u = _crosschecked(times, dv, u, bends, bins, s, omega)
+        times, dv, u = _crosschecked(times, dv, u, corners, bins, s, omega)
     delay = 0.0
     fitter = _Fitter(bins, s, omega, order, forced)
     times, dv, u = _inside(bins, times, dv, u)
@@ -135,11 +150,14 @@ def measure_response(
         delay = _shrunk(_mean_shift(fit), known)[0]
     elif order == 0:
         times = _ascending(fit.jumps.t)
-    left = replace(pulses, values=pulses.values - _smooth(fit, pulses, gain, omega, delay))
+    left = pulses.less(_smooth(fit, pulses, gain, omega, delay))
+    if order == 2:
+        # Beside a missed impact the fitted motion is off, slowly.
+        left = left.sparse()
     times, dv, u = _with_soft_ones(left, times, dv, u, U_PULSE if accelerometer is not None else _LOOSE)
     times, dv, u = _inside(bins, times, dv, u)
     if order == 0:
-        times, dv, u = _with_unheard(bends, fitter, times, dv, u, delay)
+        times, dv, u = _with_unheard(corners, fitter, times, dv, u, delay)
     fit = fitter.fit(times + delay, u, dv)
     heard = u <= U_PULSE
     scale = _slope(dv[heard], fit.jumps.dv[heard]) if accelerometer is not None else 1.0
@@ -150,6 +168,7 @@ def measure_response(
     drift = u_delay = 0.0
     if both and len(times) > 5:
         again = fitter.fit(times + delay, np.maximum(u, _LOOSE), dv)
+        u = np.where(_misheard(again, dv), 3 * _LOOSE, u)
         seen = _mean_shift(again)
         drift = seen[2]
         shift, u_delay = _shrunk((delay + seen[0], seen[1]), known)
@@ -158,8 +177,12 @@ def measure_response(
         times = _settled(fitter, times, dv, u, delay)
         ahead = np.argsort(times, kind="stable")
         times, dv, u = _inside(bins, times[ahead], dv[ahead], u[ahead])
+    keep = _credible(fitter.fit(times + delay, u, dv), u)
+    times, dv, u = times[keep], dv[keep], u[keep]
     steps = pushed(-np.sign(dv), friction / abs(s) ** 2)
-    fit = fitter.fit(times + delay, u, dv, draws=32, steps=steps)
+    if order == 0:
+        bins = _linear(fitter, times + delay, u, dv, steps, u_natural)
+    fit = replace(fitter, bins=bins).fit(times + delay, u, dv, draws=32, steps=steps)
     late, u_late = _share(delay, u_delay, channel.u_time, sensor.u_time) if both else (0.0, channel.u_time)
     return Response(channel, order, bins, fit, dv, gain, late, u_late, drift, candidates, candidates - len(times))
 
@@ -174,11 +197,29 @@ class _Fitter:
     order: int
     forced: tuple[npt.NDArray[np.complex128], Floats] | None
 
-    def fit(self, times: Floats, u: Floats, dv: Floats, draws: int = 8, steps: Floats | None = None) -> JumpFit:
-        return fit_jumps(
-            self.bins, self.s, self.omega, times, u, dv, order=self.order, draws=draws, forced=self.forced, steps=steps,
-            expected=_expected(dv) if self.order == 2 else None,
-        )  # fmt: skip
+    def fit(
+        self,
+        times: Floats,
+        u: Floats,
+        dv: Floats,
+        draws: int = 8,
+        steps: Floats | None = None,
+        extra: tuple[Floats, Floats] | None = None,
+    ) -> JumpFit:
+        def once(expected: tuple[Floats, Floats] | None, more: tuple[Floats, Floats] | None, draws: int) -> JumpFit:
+            return fit_jumps(
+                self.bins, self.s, self.omega, times, u, dv, order=self.order, draws=draws, forced=self.forced,
+                steps=steps, extra=more, expected=expected,
+            )  # fmt: skip
+
+        if self.order == 0:
+            return once(None, extra, draws)
+        # Alone, an acceleration hardly tells a train of equal jumps from a forced response; the areas of the pulses do.
+        spread = _U_AREA * np.abs(dv) + _LEAST / 2
+        first = once((dv, spread), None, 0)
+        knocks = np.abs(first.jumps.dv - dv) > _KEEP * spread
+        sideways = (self.omega * first.motion.at(self.bins.t, 1)[None, :], np.array([_U_SIDEWAYS]))
+        return once((dv, np.where(knocks, np.abs(dv), spread)), sideways, draws)
 
 
 def pushed(side: Floats, size: float) -> Floats:
@@ -252,11 +293,6 @@ def _with_unheard(
     return times, dv, u
 
 
-def _expected(dv: Floats) -> tuple[Floats, Floats]:
-    """Return jumps by the pulses with their uncertainty: three per cent, for what ringing adds and guards cut."""
-    return dv, 0.03 * np.abs(dv) + 1e-4
-
-
 def _quiet(accelerometer: Sampled) -> Bins:
     """Return an acceleration as the fit can use it: smoothed, for structural ringing is many times the motion."""
     pulses = pulses_of(accelerometer)
@@ -278,15 +314,7 @@ def _gain(bins: Bins, accelerometer: Sampled, omega: float) -> complex:
 
 
 def _first_look(pulses: Pulses, bins: Bins, s: complex, omega: float, order: int) -> tuple[Floats, Floats]:
-    if order == 0:
-        sparse = _bare(pulses, bins, s, omega)
-    else:
-        # Without a displacement: half the second difference over 4 sigma, which leaves little of slow motion.
-        reach = max(1, round(4 * pulses.smooth / pulses.step))
-        values = pulses.values.copy()
-        values[reach:-reach] -= 0.5 * (pulses.values[2 * reach :] + pulses.values[: -2 * reach])
-        values[:reach] = values[-reach:] = 0.0
-        sparse = replace(pulses, values=values)
+    sparse = _bare(pulses, bins, s, omega) if order == 0 else pulses.sparse()
     return find_pulses(sparse, _threshold(sparse))
 
 
@@ -325,6 +353,38 @@ def _inside(bins: Bins, times: Floats, dv: Floats, u: Floats) -> tuple[Floats, F
     keep = (times > bins.t[0] + _EDGE) & (times < bins.t[-1] - _EDGE)
     keep[1:] &= np.diff(times) > 1e-6
     return times[keep], dv[keep], u[keep]
+
+
+def _credible(fit: JumpFit, u: Floats) -> npt.NDArray[np.bool_]:
+    """Say which impacts to keep: of two in one place, with jumps that cancel, not the one that was heard less well."""
+    dv, t = fit.jumps.dv, fit.motion.starts[1:]
+    keep = (np.abs(dv) > _KEEP * fit.u_dv) | (u <= U_PULSE)
+    near = np.flatnonzero((np.diff(t) < _TWIN) & (dv[:-1] * dv[1:] < 0))
+    worse = np.where(u[near] > u[near + 1], near, near + 1)
+    keep[worse[(u[worse] > U_PULSE)]] = False
+    return keep
+
+
+def _linear(
+    fitter: _Fitter, times: Floats, u: Floats, dv: Floats, steps: Floats, u_natural: tuple[float, float]
+) -> Bins:
+    """Return the displacement less what its sensor adds, if that explains a part of what the fit leaves."""
+    fit = fitter.fit(times, u, dv, steps=steps)
+    columns, sizes = bends(fitter.bins, fit.motion, *u_natural)
+    bent = fitter.fit(times, u, dv, steps=steps, extra=(columns, sizes))
+    if bent.residual > _EXPLAINS * fit.residual:
+        return fitter.bins
+    return straightened(fitter.bins, columns, bent.extra)
+
+
+def _misheard(fit: JumpFit, pulse: Floats) -> npt.NDArray[np.bool_]:
+    """Say which pulses are not those of their impacts but of what rings after one that the sensor missed."""
+    middle = float(np.median(fit.shift))
+    u_shift = np.hypot(fit.draws.t.std(axis=0), U_PULSE)
+    late = np.abs(fit.shift - middle) > _KEEP * u_shift
+    dv = np.abs(fit.jumps.dv)
+    other = np.abs(fit.jumps.dv - pulse) > 0.3 * dv + _KEEP * fit.u_dv
+    return (late | other) & (dv > _KEEP * fit.u_dv)
 
 
 def _settled(fitter: _Fitter, times: Floats, dv: Floats, u: Floats, delay: float) -> Floats:

@@ -78,7 +78,10 @@ def reconstruct(recording: Recording, ringdowns: Sequence[RingDown], *, seed: in
     forced = _harmonics(base, recording, root)
     friction = _stated(run.more.get("friction"), _FRICTION)
     mu = run.m.value / run.M.value
-    response = measure_response(recording, root, omega, forced, friction=mu * friction.value)
+    response = measure_response(
+        recording, root, omega, forced,
+        friction=mu * friction.value, u_natural=(omega0.u / omega0.value, lam.u / lam.value),
+    )  # fmt: skip
     if len(response.fit.jumps.t) < 6:
         raise RigError(
             f"run {run.run_id!r} shows {len(response.fit.jumps.t)} impacts, allowed are 6 and more: did the ball move?"
