@@ -39,8 +39,10 @@ def settings_of(seed: int, duration: float = 60.0) -> tuple[str, RigSettings]:
     def even(low: float, high: float) -> float:
         return float(rng.uniform(low, high))
 
-    quiet: dict[str, Any] = {"sigma_r": even(0.005, 0.007), "friction": even(0.001, 0.003), "m": 3.807 * 0.01,
-                             "f": 8.815555, "r": 0.65, "sag": 0.0, "tilt": even(-0.03, 0.03)}  # fmt: skip
+    quiet: dict[str, Any] = {
+        "sigma_r": even(0.005, 0.007), "friction": even(0.001, 0.003), "m": 3.807 * 0.01, "f": 8.815555, "r": 0.65,
+        "r_speed": 1.2, "sag": 0.0, "tilt": even(-0.03, 0.03),
+    }  # fmt: skip
     given: dict[str, Any] = {"duration": duration}
     match kind:
         case "laser only":

@@ -129,8 +129,9 @@ def _u_gain(recording: Recording, role: str) -> float:
 
 
 def _mass(alone: MomentumFit, mu: float, u_gain: float) -> Finding:
-    u = float(np.hypot(alone.mu.u, alone.mu.value * u_gain))
-    far = abs(alone.mu.value - mu) / max(u, 2e-3 * mu)
+    # A jump is a difference of slopes, so that the sensor's linearity counts several times.
+    u = float(np.hypot(alone.mu.u, alone.mu.value * np.hypot(u_gain, 4e-3)))
+    far = abs(alone.mu.value - mu) / u
     return Finding(
         "mass_ratio",
         far <= _FAR,

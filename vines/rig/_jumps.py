@@ -82,6 +82,8 @@ class JumpFit:
         What is left, at `left_t` [s].
     extra : ndarray
         Sizes of the further signals.
+    offset : float
+        Constant part of the signal.
     """
 
     motion: Motion
@@ -97,6 +99,7 @@ class JumpFit:
     left: Floats
     left_t: Floats
     extra: Floats
+    offset: float
 
 
 def fit_jumps(
@@ -207,6 +210,7 @@ def fit_jumps(
         left,
         problem.t,
         linear[2 * harmonics + 1 :],
+        float(linear[2 * harmonics]),
     )
 
 

@@ -51,7 +51,7 @@ def bends(bins: Bins, motion: Motion, u_omega0: float, u_lam: float) -> tuple[Fl
     tau = bins.t - motion.starts[flight]
     free = tau * motion.z[flight] * np.exp(s * tau)
     columns = np.vstack([terms, (free * s).real, (free * by_lam).real])
-    return columns, np.array([_U_BEND] * len(_DEGREES) + [u_omega0, u_lam])
+    return np.asarray(columns, dtype=np.float64), np.array([_U_BEND] * len(_DEGREES) + [u_omega0, u_lam])
 
 
 def straightened(bins: Bins, columns: Floats, sizes: Floats) -> Bins:

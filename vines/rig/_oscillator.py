@@ -14,6 +14,7 @@ from vines.rig._jumps import JumpFit, fit_jumps
 from vines.rig._linearity import bends, straightened
 from vines.rig._recording import Recording, Sampled
 from vines.rig._sine_fit import sine_fit
+from vines.rig._split import split_flights
 
 __all__ = ["Response", "measure_response"]
 
@@ -36,7 +37,11 @@ _EVERY = 6.25e-4
 _TWIN = 8e-3
 """Impacts nearer than this, with opposite jumps, may be one and a false one beside it [s]."""
 
-_EXPLAINS = 0.99
+_EXPLAINS = 0.998
+"""Most that is left of the residual, without noise taken off, where the sensor's linearity is believed."""
+
+_HARMONICS = 1e-5
+"""Standard uncertainty of the forced harmonics by the base's own, relative to the motion."""
 
 _MOVES = 3
 _AT_REST = 1e-5
@@ -165,6 +170,7 @@ def measure_response(
     real = _real(fit, dv, heard)
     candidates = len(times)
     times, dv, u = times[real], dv[real], u[real]
+    times, dv, u = _with_silent(fitter, times, dv, u, delay)
     drift = u_delay = 0.0
     if both and len(times) > 5:
         again = fitter.fit(times + delay, np.maximum(u, _LOOSE), dv)
@@ -174,15 +180,16 @@ def measure_response(
         shift, u_delay = _shrunk((delay + seen[0], seen[1]), known)
         times = np.where(u > U_PULSE, again.jumps.t - shift, times)
         delay = shift
-        times = _settled(fitter, times, dv, u, delay)
-        ahead = np.argsort(times, kind="stable")
-        times, dv, u = _inside(bins, times[ahead], dv[ahead], u[ahead])
+    times = _settled(fitter, times, dv, u, delay)
+    ahead = np.argsort(times, kind="stable")
+    times, dv, u = _inside(bins, times[ahead], dv[ahead], u[ahead])
     keep = _credible(fitter.fit(times + delay, u, dv), u)
     times, dv, u = times[keep], dv[keep], u[keep]
     steps = pushed(-np.sign(dv), friction / abs(s) ** 2)
     if order == 0:
-        bins = _linear(fitter, times + delay, u, dv, steps, u_natural)
-    fit = replace(fitter, bins=bins).fit(times + delay, u, dv, draws=32, steps=steps)
+        fitter = _linear(fitter, times + delay, u, dv, steps, u_natural)
+        bins = fitter.bins
+    fit = fitter.fit(times + delay, u, dv, draws=32, steps=steps)
     late, u_late = _share(delay, u_delay, channel.u_time, sensor.u_time) if both else (0.0, channel.u_time)
     return Response(channel, order, bins, fit, dv, gain, late, u_late, drift, candidates, candidates - len(times))
 
@@ -293,6 +300,16 @@ def _with_unheard(
     return times, dv, u
 
 
+def _with_silent(fitter: _Fitter, times: Floats, dv: Floats, u: Floats, delay: float) -> tuple[Floats, Floats, Floats]:
+    """Add impacts that only the motion shows."""
+    found, jumps = split_flights(fitter.bins, fitter.fit(times + delay, u, dv, draws=0), fitter.order)
+    times = np.concatenate([times, found - delay])
+    dv = np.concatenate([dv, jumps])
+    u = np.concatenate([u, np.full(len(found), 5 * _LOOSE)])
+    ahead = np.argsort(times, kind="stable")
+    return _inside(fitter.bins, times[ahead], dv[ahead], u[ahead])
+
+
 def _quiet(accelerometer: Sampled) -> Bins:
     """Return an acceleration as the fit can use it: smoothed, for structural ringing is many times the motion."""
     pulses = pulses_of(accelerometer)
@@ -367,14 +384,23 @@ def _credible(fit: JumpFit, u: Floats) -> npt.NDArray[np.bool_]:
 
 def _linear(
     fitter: _Fitter, times: Floats, u: Floats, dv: Floats, steps: Floats, u_natural: tuple[float, float]
-) -> Bins:
-    """Return the displacement less what its sensor adds, if that explains a part of what the fit leaves."""
+) -> _Fitter:
+    """Return the fitter with the displacement less what its sensor adds, if that explains a part of what is left.
+
+    Harmonics that the base does not have are the sensor's then: without that, they and jumps that repeat would say the
+    same.
+    """
     fit = fitter.fit(times, u, dv, steps=steps)
     columns, sizes = bends(fitter.bins, fit.motion, *u_natural)
-    bent = fitter.fit(times, u, dv, steps=steps, extra=(columns, sizes))
+    strict = fitter
+    if fitter.forced is not None:
+        c, u_c = fitter.forced
+        known = 0.03 * np.abs(c) + _HARMONICS * float(np.abs(fitter.bins.mean).max())
+        strict = replace(fitter, forced=(c, np.minimum(u_c, known)))
+    bent = strict.fit(times, u, dv, steps=steps, extra=(columns, sizes))
     if bent.residual > _EXPLAINS * fit.residual:
-        return fitter.bins
-    return straightened(fitter.bins, columns, bent.extra)
+        return fitter
+    return replace(strict, bins=straightened(fitter.bins, columns, bent.extra))
 
 
 def _misheard(fit: JumpFit, pulse: Floats) -> npt.NDArray[np.bool_]:

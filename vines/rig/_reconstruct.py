@@ -39,6 +39,9 @@ _CENTROID = Uncertain(5.5e-5, 1.6e-5)
 _LINEARITY = 1.5e-3
 """Relative uncertainty of a velocity by the linearity of a displacement sensor, .1 % of its range."""
 
+_SLOPE = 4e-3
+"""The same of a velocity jump, which is a difference of slopes."""
+
 _SHORT = 2e-3
 """Restitution is not taken from impacts with a shorter flight at one side [s]."""
 
@@ -207,7 +210,7 @@ def _measure_ball(recording: Recording, response: Response, side: Floats) -> _Ba
     usable = fair & (np.abs(motion.r - middle) < 6 * np.hypot(spread, u_r))
     if np.count_nonzero(usable) < 4:
         raise RigError(f"run {run.run_id!r}: no restitution can be taken from its impacts; are they those of the ball?")
-    found = restitution(motion.r[usable], u_r[usable], np.abs(motion.w_before[usable]))
+    found = restitution(motion.r[usable], u_r[usable], np.abs(motion.w_before[usable]), motion.side[usable])
     return _Ball(alone, joint, motion, u_r, usable, found, weighed, gauge)
 
 
@@ -244,7 +247,11 @@ def _assembled(
     def mean(values: Floats, which: npt.NDArray[np.bool_]) -> Uncertain:
         return mean_over_periods(values[which], inner[which], weights)
 
+    def scaled(speed: Uncertain) -> Uncertain:
+        return combined(speed.value, speed.u, speed.value * gain, speed.value * joint.b.u / joint.b.value)
+
     joint = ball.joint
+    gain = response.channel.u_gain
     left_open = _type_b(fit.jumps, side, ball, response)
     r = combined(ball.restitution.r, mean(ball.motion.r, use).u, *left_open.values())
     frictionless = ball_motion(fit.jumps, side, replace(joint.cavity, friction=0.0)).r
@@ -252,7 +259,6 @@ def _assembled(
     r_effective = combined(float(frictionless[ball.usable].mean()), mean(frictionless, use).u, *left_open.values())
     # The contact's part of b is a mean over soft and hard impacts.
     b = combined(joint.b.value, joint.b.u, _CENTROID.u * ball.restitution.speed)
-    gain = response.channel.u_gain
     omega = base.fit.omega
     quantities = {
         "f": base.f,
@@ -267,7 +273,7 @@ def _assembled(
         ),
         "A": combined(tuning.E.value / b.value, tuning.E.u / b.value, tuning.E.value / b.value * b.u / b.value),
         "mu": ball.weighed,
-        "mu_momentum": combined(ball.alone.mu.value, ball.alone.mu.u, ball.alone.mu.value * gain),
+        "mu_momentum": combined(ball.alone.mu.value, ball.alone.mu.u, ball.alone.mu.value * np.hypot(gain, _SLOPE)),
         "b": b,
         "friction": joint.friction,
         "tilt": joint.tilt,
@@ -278,8 +284,8 @@ def _assembled(
         "impacts_per_period": mean_over_periods(
             np.array([float(len(w)) for w in periods.words]), np.arange(complete), weights
         ),
-        "w_before": mean(np.abs(ball.motion.w_before), use),
-        "w_after": mean(np.abs(ball.motion.w_after), use),
+        "w_before": scaled(mean(np.abs(ball.motion.w_before), use)),
+        "w_after": scaled(mean(np.abs(ball.motion.w_after), use)),
     }
     begin = (periods.cut + 2 * np.pi * (periods.first + np.arange(complete + 1)) - phase[0]) / omega + fit.jumps.t[0]
     quantities |= _energies(response, ball, b, begin, weights)

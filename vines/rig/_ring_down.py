@@ -19,7 +19,11 @@ STIFFNESS_DRIFT = -1.5e-4
 U_STIFFNESS_DRIFT = 0.5e-4
 """Standard uncertainty of that."""
 
+_U_DAMPING = 1e-4
+"""Relative standard uncertainty of lam at least: no damper is linear beyond that."""
+
 _ROUNDS = 60
+_DEGREE = 7
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,9 +70,11 @@ def ring_down(recording: Recording) -> RingDown:
 
     Notes
     -----
-    Least squares of Re[z exp(s t)] and an offset, with z and the offset eliminated; s = -lam omega0/2 + i gamma. The
-    mean between omega0 found from the early half and the late half must agree: their difference (a stiffness that
-    depends on the amplitude) is added to the uncertainty.
+    Least squares of Re[z exp(s t)] and an offset, with z and the offset eliminated; s = -lam omega0/2 + i gamma. A
+    displacement may also hold polynomials of degree 2 to 7 of the motion: a sensor that is not quite linear shows a
+    large motion with another gain than a small one, hence a wrong decay, but it shows harmonics, too. omega0 found from
+    the early half and the late half must agree: their difference (a stiffness that depends on the amplitude) is added
+    to the uncertainty.
     """
     run = recording.run
     if run.ball:
@@ -89,10 +95,12 @@ def ring_down(recording: Recording) -> RingDown:
     if last - first < 10:
         raise RigError(f"run {run.run_id!r} shows no free decay of at least ten periods")
     t, y = t[span], y[span]
-    s, covariance, residual, size = _decay(t, y, bins.width, complex(-0.3, 2 * np.pi * f))
+    s, covariance, residual, size, bent = _decay(t, y, bins.width, complex(-0.3, 2 * np.pi * f))
+    if channel.role == "lo_disp":
+        s, covariance, residual, size, bent = _decay(t, y, bins.width, s, size)
     half = len(t) // 2
-    early = _decay(t[:half], y[:half], bins.width, s)[0]
-    late = _decay(t[half:], y[half:], bins.width, s)[0]
+    early = _decay(t[:half], y[:half] - bent[:half], bins.width, s)[0]
+    late = _decay(t[half:], y[half:] - bent[half:], bins.width, s)[0]
     omega0, lam = _natural(s)
     # d omega0 = (alpha d alpha + gamma d gamma)/omega0, lam = -2 alpha/omega0
     u_omega0 = float(np.hypot(np.sqrt(covariance[1, 1]), 0.5 * abs(_natural(early)[0] - _natural(late)[0])))
@@ -152,7 +160,8 @@ def natural(ringdowns: tuple[RingDown, ...], temperature: float) -> tuple[Uncert
     u_mean = float(np.sqrt(1 / np.sum(1 / own**2) + shift**2 + (spread if len(at) > 1 else 0.0) ** 2))
     by = 1 / u_lam**2
     lam_mean = float(np.sum(by * lam) / np.sum(by))
-    u_lam_mean = float(np.sqrt(1 / np.sum(by) + (np.ptp(lam) / 2) ** 2))
+    # What is wrong with the sensor is wrong in every ring-down, so their number makes lam no better.
+    u_lam_mean = float(np.hypot.reduce([np.sum(by * u_lam) / np.sum(by), np.ptp(lam) / 2, _U_DAMPING * lam_mean]))
     return Uncertain(mean, u_mean), Uncertain(lam_mean, u_lam_mean)
 
 
@@ -166,29 +175,40 @@ def _line(t: np.ndarray, y: np.ndarray) -> float:
     return (int(np.argmax(spectrum[2:])) + 2) * (len(t) - 1) / ((t[-1] - t[0]) * len(t))
 
 
-def _decay(t: np.ndarray, y: np.ndarray, width: float, s: complex) -> tuple[complex, np.ndarray, float, float]:
-    """Return s, the covariance of (Re s, Im s), the residual and the amplitude at the start."""
+def _decay(
+    t: np.ndarray, y: np.ndarray, width: float, s: complex, reach: float = 0.0
+) -> tuple[complex, np.ndarray, float, float, np.ndarray]:
+    """Return s, the covariance of (Re s, Im s), the residual, the amplitude at the start, and what the sensor added.
+
+    With a `reach` [m] the signal may hold polynomials of the motion over it.
+    """
     tau = t - t[0]
+    bent = np.zeros_like(y)
+    terms = np.zeros((0, len(y)))
     for _ in range(_ROUNDS):
         e = sinhc(0.5 * s * width) * np.exp(s * tau)
-        columns = np.stack([e.real, -e.imag, np.ones_like(tau)])
+        columns = np.vstack([e.real, -e.imag, np.ones_like(tau), terms])
         linear = np.linalg.solve(columns @ columns.T, columns @ y)
         z = complex(linear[0], linear[1])
         slope = tau * z * e
+        known = len(columns)
+        bent = linear[3:] @ terms
+        if reach:
+            terms = reach * np.polynomial.legendre.legvander((z * e).real / reach, _DEGREE).T[2:]
         columns = np.vstack([columns, slope.real, -slope.imag])
         normal = columns @ columns.T
-        left = y - linear @ columns[:3]
+        left = y - linear @ columns[:known]
         step = np.linalg.solve(normal, columns @ left)
         # The first steps are held back: over a thousand radians the phase may turn once.
-        change = complex(step[3], step[4])
+        change = complex(step[-2], step[-1])
         limit = 1.0 / tau[-1]
         s += change if abs(change) < limit else change * limit / abs(change)
-        if abs(change) < 1e-11 * abs(s):
+        if abs(change) < 1e-11 * abs(s) and (known > 3 or not reach):
             break
     else:
         raise RigError("the ring-down is no decaying sine: its fit does not come to rest")
     if not s.real < 0:
         raise RigError(f"the ring-down grows, by exp({s.real:.3g} t); record the free decay with the base at rest")
     residual = float(np.sqrt(np.mean(left**2)))
-    covariance = np.linalg.inv(normal)[3:, 3:] * residual**2 * clumping(left)
-    return s, covariance, residual, abs(z)
+    covariance = np.linalg.inv(normal)[-2:, -2:] * residual**2 * clumping(left)
+    return s, covariance, residual, abs(z), bent

@@ -81,7 +81,7 @@ def kernel_parameters(s: RigSettings, rng: np.random.Generator) -> dict[str, flo
         "omega": 2 * np.pi * s.f, "phi": phi, "h2": s.h2, "phi2": phi2, "h3": s.h3, "phi3": phi3,
         "left": s.b + s.asymmetry / 2, "right": s.b - s.asymmetry / 2,
         "K": stiffness(s.contact_time, s.r_speed, s.r, reduced),
-        "friction": s.friction * _G, "pull": pull,
+        "friction": s.friction * _G if s.ball else 0.0, "pull": pull,
         "softening": 2 * s.softening,
         "T0": s.temperature[0] - _REFERENCE_TEMPERATURE, "T1": s.temperature[1] - _REFERENCE_TEMPERATURE,
         "span": s.settle + s.duration,
