@@ -59,7 +59,7 @@ def settings_of(seed: int, duration: float = 60.0) -> tuple[str, RigSettings]:
         case "high mu":
             given |= {"m": 3.807 * even(0.03, 0.1), "E": 0.015 * even(0.03, 0.06)}
         case "chaotic":
-            given |= quiet | {"E": 0.015 * even(0.0213, 0.0220)}
+            given |= quiet | {"E": 0.015 * even(0.028, 0.034)}
         case "mixed":
             given |= {**quiet, "E": 0.015 * even(0.023, 0.026), "sigma_r": even(0.025, 0.05)}
         case _:

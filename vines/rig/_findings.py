@@ -12,13 +12,16 @@ from vines.rig._reconstruction import Finding
 from vines.rig._recording import Recording, Uncertain
 from vines.rig._restitution import Restitution
 
-__all__ = ["MOST_RESIDUAL", "MOST_SUSPECT", "judge"]
+__all__ = ["MOST_RESIDUAL", "MOST_SUSPECT", "U_JUMP", "judge"]
 
 MOST_RESIDUAL = 1e-3
 """Most that the fit may leave beyond noise, relative to the rms of the motion: a missed impact leaves more."""
 
 MOST_SUSPECT = 0.05
 """Largest fraction of impacts whose momentum does not add up."""
+
+U_JUMP = 6e-3
+"""Relative standard uncertainty of velocity jumps by the linearity of a displacement sensor: differences of slopes."""
 
 _FAR = 4.5
 """Standard deviations beyond which two measurements of one number contradict each other."""
@@ -129,8 +132,7 @@ def _u_gain(recording: Recording, role: str) -> float:
 
 
 def _mass(alone: MomentumFit, mu: float, u_gain: float) -> Finding:
-    # A jump is a difference of slopes, so that the sensor's linearity counts several times.
-    u = float(np.hypot(alone.mu.u, alone.mu.value * np.hypot(u_gain, 4e-3)))
+    u = float(np.hypot(alone.mu.u, alone.mu.value * np.hypot(u_gain, U_JUMP)))
     far = abs(alone.mu.value - mu) / u
     return Finding(
         "mass_ratio",

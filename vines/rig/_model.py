@@ -15,6 +15,7 @@ from vines.rig._motion import Motion
 from vines.rig._pattern import Pattern, Periods, cut_into_periods, find_pattern
 from vines.rig._reconstruction import Reconstruction
 from vines.rig._recording import Uncertain
+from vines.rig._uncertainty import combined
 
 if TYPE_CHECKING:
     from vines.dynamics import Scatter
@@ -28,6 +29,10 @@ DRAWS = 32
 
 SETTLE, RECORD = 200, 256
 """Forcing periods."""
+
+_RUBBED = 0.005 * 9.80665
+_LEFT_OUT = {"phase": 1.2e-3, "max_abs_x1": 1e-3, "kinetic_ratio": 1.5e-3}
+"""What a friction of .005 g, which the model does not have, changes [rad, relative, relative]."""
 
 _CYCLES = 64
 _SHOWS = 0.5
@@ -131,14 +136,17 @@ def predict(
         found = classify_many(table, start, threads=1)
         periodic = float(np.mean(found.regime == "periodic"))
     with_it = [one for one in shown if one.phases is not None and one.fraction > _SHOWS]
+    rubbed = run.quantities["friction"].value / _RUBBED
+    phases = _phases(shown) if with_it else ()
+    largest, ratio = (_spread(np.array([getattr(one, name) for one in shown])) for name in ("largest", "ratio"))
     return Predicted(
         candidate,
         Uncertain(float(fractions.mean()), float(fractions.std())),
         holding,
         periodic,
-        _phases(shown) if with_it else (),
-        _spread(np.array([one.largest for one in shown])),
-        _spread(np.array([one.ratio for one in shown])),
+        tuple(combined(one.value, one.u, _LEFT_OUT["phase"] * rubbed) for one in phases),
+        combined(largest.value, largest.u, largest.value * _LEFT_OUT["max_abs_x1"] * rubbed),
+        combined(ratio.value, ratio.u, ratio.value * _LEFT_OUT["kinetic_ratio"] * rubbed),
         _mean_of([one.cycle for one in with_it]),
         np.concatenate([one.gaps for one in shown]),
     )

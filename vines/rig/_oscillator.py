@@ -43,6 +43,9 @@ _EXPLAINS = 0.998
 _HARMONICS = 1e-5
 """Standard uncertainty of the forced harmonics by the base's own, relative to the motion."""
 
+_STEADY = 1.5e-6
+"""Standard uncertainty, at least, of a change of the delay between two sensors [s]."""
+
 _MOVES = 3
 _AT_REST = 1e-5
 
@@ -439,7 +442,7 @@ def _mean_shift(fit: JumpFit) -> tuple[float, float, float]:
 
     half = len(weight) // 2
     (early, u_early), (later, u_later) = mean(slice(0, half)), mean(slice(half, None))
-    return *mean(slice(None)), (later - early) / max(float(np.hypot(u_early, u_later)), 1e-12)
+    return *mean(slice(None)), (later - early) / max(float(np.hypot(u_early, u_later)), _STEADY)
 
 
 def _shrunk(seen: tuple[float, ...], known: float) -> tuple[float, float]:

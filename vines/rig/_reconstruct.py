@@ -11,7 +11,7 @@ import numpy.typing as npt
 from vines.errors import RigError
 from vines.rig._ball import BallMotion, Cavity, ball_motion
 from vines.rig._cycle import Track, slots
-from vines.rig._findings import judge
+from vines.rig._findings import U_JUMP, judge
 from vines.rig._forcing import Base, Tuning, measure_base, tune
 from vines.rig._jumps import Jumps, fit_jumps
 from vines.rig._momentum import MomentumFit, fit_momentum
@@ -39,8 +39,6 @@ _CENTROID = Uncertain(5.5e-5, 1.6e-5)
 _LINEARITY = 1.5e-3
 """Relative uncertainty of a velocity by the linearity of a displacement sensor, .1 % of its range."""
 
-_SLOPE = 4e-3
-"""The same of a velocity jump, which is a difference of slopes."""
 
 _SHORT = 2e-3
 """Restitution is not taken from impacts with a shorter flight at one side [s]."""
@@ -258,7 +256,10 @@ def _assembled(
     del left_open["friction"]
     r_effective = combined(float(frictionless[ball.usable].mean()), mean(frictionless, use).u, *left_open.values())
     # The contact's part of b is a mean over soft and hard impacts.
-    b = combined(joint.b.value, joint.b.u, _CENTROID.u * ball.restitution.speed)
+    b = combined(joint.b.value, joint.b.u, _CENTROID.u * ball.restitution.speed, _LINEARITY * joint.b.value)
+    period = 2 * np.pi / base.fit.omega
+    # Momentum sees a tilt by what it adds to the jumps of a period, as little as what a sensor is off from linear.
+    u_jumps = _LINEARITY * float(np.mean(np.abs(fit.jumps.dv))) / (ball.weighed.value * period)
     omega = base.fit.omega
     quantities = {
         "f": base.f,
@@ -273,10 +274,10 @@ def _assembled(
         ),
         "A": combined(tuning.E.value / b.value, tuning.E.u / b.value, tuning.E.value / b.value * b.u / b.value),
         "mu": ball.weighed,
-        "mu_momentum": combined(ball.alone.mu.value, ball.alone.mu.u, ball.alone.mu.value * np.hypot(gain, _SLOPE)),
+        "mu_momentum": combined(ball.alone.mu.value, ball.alone.mu.u, ball.alone.mu.value * np.hypot(gain, U_JUMP)),
         "b": b,
         "friction": joint.friction,
-        "tilt": joint.tilt,
+        "tilt": combined(joint.tilt.value, joint.tilt.u, min(u_jumps, _TILT.u)),
         "r": r,
         "r_effective": r_effective,
         "r_exponent": Uncertain(ball.restitution.exponent, ball.restitution.u_exponent),
