@@ -129,7 +129,15 @@ def judged(empty: Scored, found: Reconstruction, told: Comparison, truth: dict[s
     near, met = paired(own, found.impacts["t"])
     apart = found.impacts["t"][met] - own[near]
     q = found.quantities
+    # A mean is compared with that of the impacts it was taken from; impacts in a chatter give no restitution.
+    taken = np.isfinite(found.impacts["r"][met]) & ~found.impacts["suspect"][met]
+    inside = np.flatnonzero((t > found.impacts["t"][0] - 1e-3) & (t < found.impacts["t"][-1] + 1e-3))
+    chosen = inside[near[taken]]
+    every = true["r"]
+    true["r"] = float(np.mean(np.array(truth["impacts"]["r"])[chosen]))
+    true["w_before"] = float(np.mean(np.abs(np.array(truth["impacts"]["w_dot"])[chosen])))
     errors = {
+        "r_all": q["r"].value - every,
         "r": q["r"].value - true["r"],
         "sigma_r": q["sigma_r"].value / true["sigma_r"] - 1,
         "mu": q["mu_momentum"].value / true["mu"] - 1,

@@ -51,12 +51,13 @@ def judge(
         Half length by gauge, contact included [m].
     found : Restitution
     usable : ndarray of bool
-        Impacts that the restitution was taken from.
+        Whether restitution was taken from an impact, of those that could give it: with a flight of some milliseconds
+        on either side.
     """
     run, fit = recording.run, response.fit
     motion = float(np.std(response.bins.mean))
     excess = float(np.sqrt(max(fit.residual**2 - fit.noise**2, 0.0))) / motion
-    suspect = 1 - float(np.mean(usable))
+    suspect = 1 - float(np.mean(usable)) if len(usable) else 1.0
     findings = [
         Finding(
             "residual", excess <= MOST_RESIDUAL,

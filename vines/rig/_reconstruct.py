@@ -12,10 +12,11 @@ from vines.errors import RigError
 from vines.rig._ball import BallMotion, Cavity, ball_motion
 from vines.rig._cycle import Track, slots
 from vines.rig._findings import U_JUMP, judge
+from vines.rig._fitter import pushed
 from vines.rig._forcing import Base, Tuning, measure_base, tune
 from vines.rig._jumps import Jumps, fit_jumps
 from vines.rig._momentum import MomentumFit, fit_momentum
-from vines.rig._oscillator import Response, measure_response, pushed
+from vines.rig._oscillator import Response, measure_response
 from vines.rig._pattern import Pattern, Periods, cut_into_periods, find_pattern
 from vines.rig._reconstruction import IMPACT, Reconstruction
 from vines.rig._recording import Recording, Uncertain
@@ -40,11 +41,20 @@ _LINEARITY = 1.5e-3
 """Relative uncertainty of a velocity by the linearity of a displacement sensor, .1 % of its range."""
 
 
+_FORCED = 4e-3
+"""Relative uncertainty of the forced response by linearity: jumps that repeat and a forced response are much alike."""
+
 _SHORT = 2e-3
 """Restitution is not taken from impacts with a shorter flight at one side [s]."""
 
 
-def reconstruct(recording: Recording, ringdowns: Sequence[RingDown], *, seed: int = 0) -> Reconstruction:
+def reconstruct(
+    recording: Recording,
+    ringdowns: Sequence[RingDown],
+    *,
+    impacts: tuple[Floats, Floats] | None = None,
+    seed: int = 0,
+) -> Reconstruction:
     """Reconstruct a run.
 
     Parameters
@@ -53,6 +63,9 @@ def reconstruct(recording: Recording, ringdowns: Sequence[RingDown], *, seed: in
         Of protocol ``dwell``, ``sweep_up`` or ``sweep_down``, ball in.
     ringdowns : sequence of RingDown
         Before and after it, best both.
+    impacts : tuple of ndarray, optional
+        Times of the impacts [s] on the clock of the oscillator's channel and velocity jumps of the oscillator [m/s],
+        where they are known otherwise; then nothing is detected.
     seed : int
         Of the draws for uncertainties.
 
@@ -81,7 +94,7 @@ def reconstruct(recording: Recording, ringdowns: Sequence[RingDown], *, seed: in
     mu = run.m.value / run.M.value
     response = measure_response(
         recording, root, omega, forced,
-        friction=mu * friction.value, u_natural=(omega0.u / omega0.value, lam.u / lam.value),
+        friction=mu * friction.value, u_natural=(omega0.u / omega0.value, lam.u / lam.value), impacts=impacts,
     )  # fmt: skip
     if len(response.fit.jumps.t) < 6:
         raise RigError(
@@ -165,7 +178,7 @@ def _tuned(
     unknown = 4 / np.pi * mu * friction.u / abs(s) ** 2 / base.E.value
     return tune(
         base, omega0, lam, asked, (by_omega0, by_lam),
-        u_gain=response.channel.u_gain, u_time=response.u_late, u_noise=max(unknown, 1.5e-3),
+        u_gain=response.channel.u_gain, u_time=response.u_late, u_noise=float(np.hypot(unknown, _FORCED)),
     )  # fmt: skip
 
 
@@ -178,6 +191,7 @@ class _Ball:
     motion: BallMotion
     u_r: Floats
     usable: npt.NDArray[np.bool_]
+    long: npt.NDArray[np.bool_]
     restitution: Restitution
     weighed: Uncertain
     gauge: Uncertain
@@ -209,7 +223,7 @@ def _measure_ball(recording: Recording, response: Response, side: Floats) -> _Ba
     if np.count_nonzero(usable) < 4:
         raise RigError(f"run {run.run_id!r}: no restitution can be taken from its impacts; are they those of the ball?")
     found = restitution(motion.r[usable], u_r[usable], np.abs(motion.w_before[usable]), motion.side[usable])
-    return _Ball(alone, joint, motion, u_r, usable, found, weighed, gauge)
+    return _Ball(alone, joint, motion, u_r, usable, long, found, weighed, gauge)
 
 
 def _reach(b: Uncertain, jumps: Jumps, side: Floats) -> Uncertain:
@@ -322,7 +336,7 @@ def _assembled(
             ball.weighed.value,
             ball.gauge,
             ball.restitution,
-            ball.usable,
+            ball.usable[ball.long],
         ),
         base_harmonics=base.e,
     )
@@ -409,5 +423,5 @@ def _rows(
     rows["v2"][inner], rows["v2_after"][inner] = ball.motion.v2_before, ball.motion.v2_after
     rows["w_dot"][inner], rows["w_dot_after"][inner] = ball.motion.w_before, ball.motion.w_after
     rows["r"][inner], rows["u_r"][inner] = ball.motion.r, ball.u_r
-    rows["suspect"][inner] = ~ball.usable
+    rows["suspect"][inner] = ~ball.usable & ball.long
     return rows
