@@ -139,7 +139,7 @@ def recorded(
     E: float, phi: float, begin: float, length: float,
 ) -> tuple[Recording, RingDown, tuple[Floats, Floats]]:  # fmt: skip
     """Return what sensors and scales say: every stated uncertainty is that of the error drawn here."""
-    t = begin + (np.arange(round(length * RATE)) + 0.5) / RATE
+    t = begin + (np.arange(round(length * RATE), dtype=np.float64) + 0.5) / RATE
     x1 = motion_of(rows, s, c, omega).at(t)
     gain, base_gain, late = 1 + 0.002 * rng.normal(), 1 + 0.002 * rng.normal(), 2e-6 * rng.normal()
     noise = 10 ** rng.uniform(-6.6, -5.8)

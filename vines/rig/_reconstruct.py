@@ -423,5 +423,5 @@ def _rows(
     rows["v2"][inner], rows["v2_after"][inner] = ball.motion.v2_before, ball.motion.v2_after
     rows["w_dot"][inner], rows["w_dot_after"][inner] = ball.motion.w_before, ball.motion.w_after
     rows["r"][inner], rows["u_r"][inner] = ball.motion.r, ball.u_r
-    rows["suspect"][inner] = ~ball.usable & ball.long
+    rows["suspect"][inner] = ~ball.usable
     return rows
