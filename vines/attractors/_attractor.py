@@ -36,6 +36,10 @@ class Attractor:
         If periodic, whether it is its own mirror image (x, t) -> (-x, t + pT/2).
     sticks : float
         Spells of sticking per forcing period.
+    sticking_share : float
+        Share of the forcing periods in which the ball sticks for a while.
+    recurrent_sticking : bool
+        Whether sticking recurs: it is part of the orbit if periodic, else there is some in at least nine periods of ten.
     measures : Measures
         Over p forcing periods if periodic, else over the recorded window.
     kinetic_ratio_error, max_abs_x1_error, rms_x1_error : float
@@ -72,6 +76,8 @@ class Attractor:
     p: int | None
     symmetric: bool | None
     sticks: float
+    sticking_share: float
+    recurrent_sticking: bool
     measures: Measures
     kinetic_ratio_error: float
     max_abs_x1_error: float

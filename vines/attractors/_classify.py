@@ -13,11 +13,18 @@ from vines.attractors import _verdict as v
 from vines.attractors._attractor import Attractor
 from vines.attractors._look import look_at_block
 from vines.attractors._naming import attractor_from, word_of
-from vines.attractors._settle import NUDGE, ROUNDS, Patience
+from vines.attractors._settle import NUDGE, ROUNDS, STRETCH, Patience
 from vines.dynamics import _advance as col
 from vines.dynamics import _totals as entry
 from vines.dynamics import ensemble
-from vines.dynamics._ensemble import STATUS_NAMES, _measures, each_thread, threads_allowed
+from vines.dynamics._ensemble import (
+    STATUS_NAMES,
+    _measures,
+    _parameters,
+    _starts,
+    each_thread,
+    threads_allowed,
+)
 from vines.dynamics._simulate import EVENTS_PER_PERIOD
 from vines.dynamics._trajectory import impacts_of
 from vines.model import PARAMETER_NAMES, Params
@@ -124,6 +131,16 @@ class Classified:
             return sticks * (2.0 * np.pi / self.parameters[:, 2]) / self.totals[:, entry.DURATION]
 
     @property
+    def sticking_share(self) -> Floats:
+        """Share of the forcing periods in which the ball sticks for a while."""
+        return self.verdicts[:, v.STICKING]
+
+    @property
+    def recurrent_sticking(self) -> npt.NDArray[np.bool_]:
+        """Whether sticking recurs: see `Attractor`."""
+        return (self.sticking_share >= v.RECURS) | ((self.p > 0) & (self.sticking_share > 0))
+
+    @property
     def lyapunov(self) -> Floats:
         """Largest Lyapunov exponent per unit of time; nan where the run is not settled and none was needed."""
         return self.verdicts[:, v.EXPONENTS]
@@ -202,16 +219,15 @@ def classify_many(
     (['1:1', '1:1', '2:2/2T', '2:1', None], 'chaotic')
     """
     how = Patience(settle, record, patience, watch, tolerance, max_impacts_per_period)
-    # Before anything is waited for, the parameters and starts are checked and laid out.
-    first = ensemble(
-        params, starts, periods=max(settle, 1.0), max_impacts_per_period=max_impacts_per_period, threads=threads
-    )
-    work = _Many(first.parameters, first.starts.copy(), how, impacts, threads)
-    everyone = np.arange(len(first))
+    table, given = _parameters(params), _starts(starts)
+    n = np.broadcast_shapes(table.shape[:1], given.shape[:1])[0]
+    parameters, begin = (np.ascontiguousarray(np.broadcast_to(each, (n, 5))) for each in (table, given))
+    work = _Many(parameters, begin.copy(), how, impacts, threads)
+    everyone = np.arange(n)
     if settle > 0:
-        work.place(everyone, first.final, first.codes)
+        work.wait(everyone, settle)
     work.decide(everyone)
-    return Classified(first.parameters, first.starts, work.words, work.verdicts, work.totals, work.hits)
+    return Classified(parameters, begin, work.words, work.verdicts, work.totals, work.hits)
 
 
 class _Many:
@@ -248,10 +264,13 @@ class _Many:
             self.verdicts[runs] = found
             free = (found[:, v.UNSTABLE] > 0) & np.isnan(nudged[runs])
             with np.errstate(invalid="ignore"):
-                come = ~free & (found[:, v.SETTLED] == 0) & (found[:, v.REMAINING] <= spare[runs])
+                come = ~free & (found[:, v.SETTLED] == 0) & (spare[runs] > 0)
+                come &= found[:, v.REMAINING] <= STRETCH * spare[runs]
             if turn == ROUNDS or not np.any(free | come):
                 return
-            wait = np.where(free, float(self.how.settle), _next_wait(np.where(come, found[:, v.REMAINING], 0.0)))
+            wait = _next_wait(np.where(come, found[:, v.REMAINING], 0.0))
+            wait = np.where(come & (found[:, v.REMAINING] > spare[runs]), spare[runs], wait)
+            wait = np.where(free, float(self.how.settle), wait)
             nudged[runs[free]] = found[free, v.VALUE]
             self.states[runs[free], 3] += NUDGE
             spare[runs[come]] -= wait[come]

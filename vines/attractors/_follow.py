@@ -7,8 +7,9 @@ import math
 import numpy as np
 
 from vines.attractors import _verdict as v
+from vines.attractors._approach import LARGEST_P, STABLE, comes_to_orbit, nearest_orbit, note_coming
 from vines.attractors._contacts import contacts, repetition
-from vines.attractors._judge import NEAR, note_approach
+from vines.attractors._judge import MAX_P, NEAR, note_decay, note_drift
 from vines.attractors._window import open_window, run_window
 from vines.dynamics import _advance as col
 from vines.dynamics._advance import shift_time
@@ -28,6 +29,12 @@ FLAT = 1.5e-3
 
 SURE = 3.0
 """Standard errors by which an exponent must differ from zero to be told from it."""
+
+FAR = 0.1
+"""Runs that repeat to within this may circle a periodic orbit, slowly coming to it or leaving it."""
+
+GROWS = 1.05
+"""Factor by which the distance from an orbit must grow over the last stage for a run to be still on its way."""
 
 
 @njit
@@ -54,6 +61,7 @@ def follow(c, state, elapsed, periods, watch, cap, tolerance, verdict):
     Y = np.eye(4)
     grown = np.zeros((sum(LONGER) * BLOCKS, 5))
     filled = 0
+    passed = 0.0
     rate, error = 0.0, math.inf
     verdict[v.REGIME] = v.UNSETTLED
     rows = np.empty((int(4.0 * watch) + 64, col.ROW))
@@ -61,6 +69,7 @@ def follow(c, state, elapsed, periods, watch, cap, tolerance, verdict):
         shift_time(state, elapsed)
         length = LONGER[stage] * watch * period
         elapsed = length
+        passed += LONGER[stage] * watch
         count = open_window(state, rows)
         rows, count, code = run_window(c, state, length, cap, rows, count)
         if code != col.COMPLETE:
@@ -72,18 +81,25 @@ def follow(c, state, elapsed, periods, watch, cap, tolerance, verdict):
         grown[filled : filled + blocks] = lyapunov_blocks(c, rows, count + 1, skip, length, blocks, Y)
         filled += blocks
         rate, error = _spectrum(grown[:filled], verdict)
-        if stage == 0 and verdict[v.BEST_P] > 0.0:
-            chaotic = rate > SURE * error
-            if _comes_or_leaves(c, rows, count + 1, length, periods, watch, chaotic, tolerance, verdict):
-                return
-        if rate > SURE * error:
+        chaotic = rate > SURE * error
+        if _beside_orbit(c, rows, count + 1, length, chaotic, stage == len(LONGER) - 1, tolerance, verdict):
+            # Counted from the end of the window, not from here.
+            verdict[v.REMAINING] += passed
+            return
+        if chaotic:
             verdict[v.REGIME], verdict[v.SETTLED], verdict[v.REMAINING] = v.CHAOTIC, 1.0, 0.0
             return
         if rate < -SURE * error:
             verdict[v.REMAINING] = math.log(1.0 / tolerance) / -rate / period
             verdict[v.REASON] = v.DECAYS
             return
-    if error < FLAT:
+    last = rows[count]
+    quiet = length - rows[count - 1, col.TIME]
+    if quiet > 0.25 * length and last[col.MODE] == 0.0:
+        note_drift(verdict, period, abs(last[col.A_V2]))
+        verdict[v.REMAINING] += passed
+        verdict[v.REASON], verdict[v.VALUE] = v.RESTS, quiet / period
+    elif error < FLAT:
         verdict[v.REGIME], verdict[v.SETTLED], verdict[v.REMAINING] = v.QUASIPERIODIC, 1.0, 0.0
     else:
         verdict[v.REASON], verdict[v.VALUE], verdict[v.OTHER] = v.UNDECIDED, rate, error
@@ -110,24 +126,53 @@ def _spectrum(grown, verdict):
 
 
 @njit
-def _comes_or_leaves(c, rows, n, length, periods, watch, chaotic, tolerance, verdict):
-    """Say whether the run comes to, or leaves, a periodic orbit, and if so note how long that will take."""
+def _beside_orbit(c, rows, n, length, chaotic, last, tolerance, verdict):
+    """Say whether the run comes to a periodic orbit, or is too near one to be on anything else, and note which.
+
+    Its difference to its own repetition is compared between the first and the last quarter; REMAINING counts from the
+    end of these rows.
+    """
     period = 2.0 * math.pi / c.Omega
-    p = verdict[v.BEST_P]
-    kept = contacts(rows, n, length - periods * period)
-    before, after = verdict[v.BEST_WORST], math.inf
-    if kept.shape[0] > 1:
-        blocks = np.empty(kept.shape[0])
-        _, filled = repetition(rows, kept, p * period, verdict[v.SCALE], blocks)
-        if filled:
-            after = blocks[:filled].max()
-    if min(before, after) >= NEAR and (chaotic or after >= 0.5 * before):
-        return False
-    if after < 0.5 * before:
-        note_approach(verdict, math.log(before / max(after, 1e-15)) / watch, tolerance)
-        return True
-    verdict[v.REASON] = v.STAYS_NEAR
-    if before < after < math.inf:
-        verdict[v.REMAINING] = math.log(1.0 / after) / (math.log(after / before) / watch) if after < 1.0 else 0.0
-        verdict[v.REASON] = v.LEAVES
-    return True
+    scale = verdict[v.SCALE]
+    if chaotic:
+        # Chaos that has ended before the end: there the run is next to a stable orbit.
+        kept = contacts(rows, n, length - min(2.0 * LARGEST_P * period, 0.25 * length))
+        return comes_to_orbit(c, rows, kept, scale, NEAR, tolerance, verdict) == STABLE
+    quarter = 0.25 * length
+    opening = 1
+    while opening < n and rows[opening, col.TIME] <= quarter:
+        opening += 1
+    early, late = contacts(rows, opening, 0.0), contacts(rows, n, length - quarter)
+    blocks = np.empty(max(early.shape[0], late.shape[0]))
+    least = FAR
+    undecided = False
+    for p in range(1, MAX_P + 1):
+        lag, filled = repetition(rows, late, p * period, scale, blocks)
+        # Multiples of the period of an orbit that was seen tell no more, unless they repeat much better.
+        if filled == 0 or not blocks[:filled].max() < least:
+            continue
+        after, newest = blocks[:filled].max(), blocks[filled - 1]
+        _, filled = repetition(rows, early, p * period, scale, blocks)
+        before = blocks[:filled].max() if filled > 0 else math.inf
+        found, largest, _, remaining = False, math.inf, math.inf, math.inf
+        if p <= LARGEST_P:
+            found, largest, _, remaining = nearest_orbit(c, rows, late, p, lag, scale, tolerance)
+        comes = after < before
+        if found and largest < 1.0 and comes:
+            note_coming(verdict, remaining, largest ** (1.0 / p))
+            return True
+        if not found and after < 0.5 * before < math.inf:
+            note_decay(verdict, newest, p, math.log(before / after) / (0.75 * length / period), tolerance)
+            return True
+        # A run that nears an unstable orbit will leave it again: that is seen later.
+        passing = found and comes and not last
+        if (min(before, after) < NEAR and not passing) or (found and last and after > GROWS * before):
+            undecided = True
+            if after > before:
+                verdict[v.REMAINING] = math.log(1.0 / after) / math.log(after / before) * 0.75 * length / period
+                verdict[v.REASON] = v.LEAVES
+            else:
+                verdict[v.REMAINING], verdict[v.REASON] = math.nan, v.STAYS_NEAR
+        if found:
+            least = 0.2 * after
+    return undecided

@@ -7,13 +7,14 @@ import math
 import numpy as np
 
 from vines.attractors import _verdict as v
+from vines.attractors._approach import NO_ORBIT, comes_to_orbit, nearest_orbit, note_coming
 from vines.attractors._contacts import contacts, mirror_difference, repetition
 from vines.dynamics import _advance as col
 from vines.dynamics._jit import njit
 from vines.dynamics._tangent import tangent_product
 from vines.orbits._eigenvalues import eigenvalues_kernel
 
-__all__ = ["MAX_P", "NEAR", "clear", "judge_window", "note_approach"]
+__all__ = ["MAX_P", "NEAR", "clear", "judge_window", "note_decay", "note_drift"]
 
 MAX_P = 32
 """Largest number of forcing periods over which a repetition is looked for."""
@@ -28,7 +29,8 @@ CLEAR = 16.0
 """Shortest window, in forcing periods, in which a decay of these differences is believed."""
 
 HALVED = 1e-6
-"""A run that repeats, and nearly does so in half the time, is not yet known to need the whole of it."""
+"""A run that repeats, and to within this in half the time, comes to an orbit of half the period or leaves it: that
+closely beside a period doubling no parameter can be set."""
 
 ROUNDING = 1e-12
 """Differences of repetitions below this are rounding: the run comes no nearer."""
@@ -44,7 +46,6 @@ def clear(verdict):
     verdict[v.NUDGED] = math.nan
     verdict[v.LYAPUNOV_ERROR] = math.nan
     verdict[v.EXPONENTS : v.MULTIPLIERS_IM + 4] = math.nan
-    verdict[v.BEST_LAST] = math.inf
 
 
 @njit
@@ -80,37 +81,50 @@ def judge_window(c, rows, n, periods, tolerance, verdict):
     verdict[v.SCALE] = scale
     blocks = np.empty(kept.shape[0])
     lasts = np.full(MAX_P + 1, math.inf)
+    lags = np.zeros(MAX_P + 1, dtype=np.int64)
+    best, best_first, best_filled = 0, math.inf, 0
     for p in range(1, min(MAX_P, int(periods / 2.0 + 1e-9)) + 1):
         lag, filled = repetition(rows, kept, p * period, scale, blocks)
         if filled == 0:
             continue
-        last = blocks[filled - 1]
-        lasts[p] = last
-        # A run within the tolerance of its orbit repeats to twice that, and to less after 2 p periods where a
-        # multiplier is near -1: with a tighter bound here the orbit would be named with twice its period.
-        if last <= 2.5 * tolerance:
-            half = lasts[p // 2] if p % 2 == 0 else math.inf
-            return _repeats(c, rows, kept, p, lag, last, half, tolerance, verdict)
-        if last < 0.5 * verdict[v.BEST_LAST]:
-            verdict[v.BEST_P] = p
-            verdict[v.BEST_LAST] = last
-            verdict[v.BEST_WORST] = blocks[:filled].max()
-            verdict[v.BEST_FIRST], verdict[v.BEST_FILLED] = blocks[0], filled
+        lags[p], lasts[p] = lag, blocks[filled - 1]
+        # A run within the tolerance of its orbit repeats to twice that.
+        if lasts[p] <= 2.5 * tolerance:
+            least = p
+            while least % 2 == 0 and 2 * lags[least // 2] == lags[least] and lasts[least // 2] < HALVED:
+                least //= 2
+            return _repeats(c, rows, kept, least, lags[least], lasts[least], tolerance, verdict)
+        if best == 0 or lasts[p] < 0.5 * lasts[best]:
+            best, best_first, best_filled = p, blocks[0], filled
     verdict[v.REGIME] = v.OPEN
     verdict[v.REMAINING] = math.nan
-    first, last = verdict[v.BEST_FIRST], verdict[v.BEST_LAST]
-    if periods >= CLEAR and last < NEAR and last < 0.5 * first:
-        verdict[v.REGIME] = v.UNSETTLED
-        note_approach(verdict, math.log(first / last) / ((verdict[v.BEST_FILLED] - 1.0) * verdict[v.BEST_P]), tolerance)
+    if periods >= CLEAR and best > 0 and lasts[best] < NEAR and lasts[best] < 0.5 * best_first:
+        seen = comes_to_orbit(c, rows, kept, scale, NEAR, tolerance, verdict)
+        if seen == NO_ORBIT:
+            rate = math.log(best_first / lasts[best]) / ((best_filled - 1.0) * best)
+            note_decay(verdict, lasts[best], best, rate, tolerance)
+        # What comes near an unstable orbit will leave it again.
+        if verdict[v.REASON] == v.COMES:
+            verdict[v.REGIME] = v.UNSETTLED
     return none
 
 
 @njit
-def note_approach(verdict, rate, tolerance):
-    """Note that a run comes to a periodic orbit, its distance falling as exp(-rate t) with t in forcing periods."""
-    left = verdict[v.BEST_LAST] / -math.expm1(-rate * verdict[v.BEST_P])
-    verdict[v.REMAINING] = max(math.log(left / tolerance) / rate, 0.0)
-    verdict[v.REASON], verdict[v.VALUE] = v.COMES, math.exp(-rate)
+def note_decay(verdict, difference, p, rate, tolerance):
+    """Note that a run comes to a periodic orbit, repeating after p periods to a difference that falls as exp(-rate t).
+
+    Time is in forcing periods.
+    """
+    left = difference / -math.expm1(-rate * p)
+    note_coming(verdict, max(math.log(left / tolerance) / rate, 0.0), math.exp(-rate))
+
+
+@njit
+def note_drift(verdict, period, speed):
+    """Note how many forcing periods a ball of that speed needs from wall to wall; return whether that is forever."""
+    verdict[v.REMAINING] = 2.0 / (speed * period) if speed > 0.0 else math.inf
+    verdict[v.REASON] = v.DRIFTS
+    return not verdict[v.REMAINING] < FOREVER
 
 
 @njit
@@ -124,7 +138,7 @@ def _largest_speed(rows, n):
 
 
 @njit
-def _repeats(c, rows, kept, p, lag, last, half, tolerance, verdict):
+def _repeats(c, rows, kept, p, lag, last, tolerance, verdict):
     """Judge a run that repeats: it may still be creeping towards its orbit, or sit on an unstable one."""
     none = np.empty(0, dtype=np.int8)
     count = kept.shape[0]
@@ -151,17 +165,19 @@ def _repeats(c, rows, kept, p, lag, last, half, tolerance, verdict):
         verdict[v.REMAINING] = p * math.log(NEAR / max(last, 1e-15)) / math.log(largest)
         verdict[v.REASON], verdict[v.VALUE] = v.ON_UNSTABLE, largest
         return none
-    # The difference of one repetition is |1 - multiplier| of the distance that is left.
+    # The difference of one repetition is |1 - multiplier| of the distance that is left, or less.
     distance = last / np.min(np.abs(1.0 - roots)) if largest < 1.0 else math.inf
-    reason = v.CREEPS
-    if half < HALVED and half > 2.0 * max(distance, tolerance):
-        distance, reason = 0.5 * half, v.DOUBLES
-    if distance > tolerance and (last > ROUNDING or reason == v.DOUBLES):
-        verdict[v.REASON], verdict[v.VALUE], verdict[v.OTHER] = reason, distance, largest
-        verdict[v.REMAINING] = math.inf
-        if distance < math.inf and largest < 1.0:
-            verdict[v.REMAINING] = p * math.log(distance / tolerance) / -math.log(largest)
-        return none
+    if distance > tolerance and last > ROUNDING:
+        remaining = math.inf
+        if largest < 1.0:
+            remaining = p * math.log(distance / tolerance) / -math.log(largest)
+        found, sharper, away, needed = nearest_orbit(c, rows, kept, p, lag, verdict[v.SCALE], tolerance)
+        if found:
+            largest, distance, remaining = sharper, away, needed
+        if distance > tolerance:
+            verdict[v.REASON], verdict[v.VALUE], verdict[v.OTHER] = v.CREEPS, distance, largest
+            verdict[v.REMAINING] = max(remaining, 1.0 * p)
+            return none
     sides = np.empty(lag, dtype=np.int8)
     for k in range(lag):
         sides[k] = 1 if rows[kept[count - lag + k], col.SIDE] > 0.0 else -1
@@ -181,11 +197,10 @@ def _without_impact(c, rows, n, tolerance, verdict):
     verdict[v.REGIME], verdict[v.LYAPUNOV_ERROR] = v.NO_IMPACT, 0.0
     verdict[v.EXPONENTS], verdict[v.EXPONENTS + 1] = 0.0, 0.0
     verdict[v.EXPONENTS + 2], verdict[v.EXPONENTS + 3] = -0.5 * c.lam, -0.5 * c.lam
-    drift = abs(last[col.A_V2]) if last[col.MODE] == 0.0 else 0.0
-    periods = 2.0 / (drift * period) if drift > 0.0 else math.inf
-    if periods < FOREVER:
-        verdict[v.REGIME], verdict[v.REMAINING], verdict[v.REASON] = v.UNSETTLED, periods, v.DRIFTS
+    if not note_drift(verdict, period, abs(last[col.A_V2]) if last[col.MODE] == 0.0 else 0.0):
+        verdict[v.REGIME] = v.UNSETTLED
         return
+    verdict[v.REASON], verdict[v.REMAINING] = v.NOTHING, 0.0
     cosine, sine = math.cos(last[col.PHASE]), math.sin(last[col.PHASE])
     q_re = c.free.qr * cosine - c.free.qi * sine
     q_im = c.free.qr * sine + c.free.qi * cosine

@@ -76,6 +76,8 @@ def attractor_from(
         p=word.p if word else None,
         symmetric=bool(value[v.SYMMETRIC]) if word else None,
         sticks=measures.sticks_per_period,
+        sticking_share=value[v.STICKING],
+        recurrent_sticking=value[v.STICKING] >= v.RECURS or (word is not None and value[v.STICKING] > 0.0),
         measures=measures,
         kinetic_ratio_error=value[v.KINETIC_RATIO_ERROR],
         max_abs_x1_error=value[v.MAX_ABS_X1_ERROR],

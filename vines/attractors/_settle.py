@@ -27,6 +27,9 @@ __all__ = ["NUDGE", "ROUNDS", "Patience", "settle", "settle_from", "wait_longer"
 ROUNDS = 8
 """How often a run may be taken on because it had not arrived."""
 
+STRETCH = 1.5
+"""Factor on the patience left up to which a run is taken on: far from its orbit it may be quicker than estimated."""
+
 NUDGE = 1e-6
 """Change of the ball's velocity that frees a run from an unstable orbit on which it sits exactly."""
 
@@ -213,7 +216,9 @@ def wait_longer(
     """Return how long to run on and what is left of the patience then; nothing if the run is taken as it is."""
     if verdict[v.UNSTABLE] and math.isnan(nudged):
         return float(how.settle), spare
-    if verdict[v.SETTLED] or not verdict[v.REMAINING] <= spare:
+    if verdict[v.SETTLED] or not 0.0 < spare or not verdict[v.REMAINING] <= STRETCH * spare:
         return None
     wait = math.ceil(1.05 * float(verdict[v.REMAINING])) + 1.0
+    if verdict[v.REMAINING] > spare:
+        wait = spare
     return wait, spare - wait

@@ -25,11 +25,6 @@ __all__ = ["REGIMES", "VERDICT", "reason_text"]
     OTHER,
     LYAPUNOV_ERROR,
     KNOWN,
-    BEST_P,
-    BEST_LAST,
-    BEST_WORST,
-    BEST_FIRST,
-    BEST_FILLED,
     SCALE,
     KINETIC_RATIO_ERROR,
     MAX_ABS_X1_ERROR,
@@ -38,23 +33,27 @@ __all__ = ["REGIMES", "VERDICT", "reason_text"]
     RECORDED,
     PERIODS,
     NUDGED,
-) = range(27)
-EXPONENTS = 27
-MULTIPLIERS_RE = 31
-MULTIPLIERS_IM = 35
-FINAL = 39
-VERDICT = 44
+    STICKING,
+) = range(23)
+EXPONENTS = 23
+MULTIPLIERS_RE = 27
+MULTIPLIERS_IM = 31
+FINAL = 35
+VERDICT = 40
 
 UNSETTLED, PERIODIC, QUASIPERIODIC, CHAOTIC, NO_IMPACT, OPEN = range(6)
 REGIMES = ("unsettled", "periodic", "quasiperiodic", "chaotic", "no_impact")
 """Names of the regimes by number; OPEN is what a window leaves to a longer run."""
 
+RECURS = 0.9
+"""Share of the forcing periods with sticking from which it counts as recurrent where the motion never repeats."""
+
 (
     NOTHING,
     ON_UNSTABLE,
     CREEPS,
-    DOUBLES,
     DRIFTS,
+    RESTS,
     RINGS,
     DECAYS,
     COMES,
@@ -69,8 +68,8 @@ _TEXTS = {
     NOTHING: "",
     ON_UNSTABLE: "on an unstable periodic orbit: its largest multiplier is {value:.6g}",
     CREEPS: "still {value:.2g} from a periodic orbit whose largest multiplier is {other:.6g}",
-    DOUBLES: "still {value:.2g} from repeating in half the period: too near a period doubling to say",
     DRIFTS: "no impact while recorded, but the ball drifts towards a wall",
+    RESTS: "the ball is nearly at rest: no impact for the last {value:.4g} forcing periods",
     RINGS: "the oscillator is still {value:.2g} from its steady motion",
     DECAYS: "disturbances decay, but no repetition shows yet",
     COMES: "still comes to a periodic orbit: {value:.6g} of the distance is left each period",

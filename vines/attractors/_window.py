@@ -72,12 +72,18 @@ def run_window(c, state, stop, cap, rows, count):
 
 @njit
 def measure_window(c, rows, n, verdict):
-    """Return the totals of a window: over one repetition if it is periodic, else over all of it with its errors."""
+    """Return the totals of a window: over one repetition if it is periodic, else over all of it with its errors.
+
+    The share of its forcing periods in which the ball sticks goes to STICKING.
+    """
     stop = rows[n - 1, col.TIME]
+    period = 2.0 * math.pi / c.Omega
     if verdict[v.REGIME] == v.PERIODIC:
-        span = verdict[v.P] * 2.0 * math.pi / c.Omega
+        span = verdict[v.P] * period
         stop = _quiet_time(rows, n, span)
+        verdict[v.STICKING] = _sticking_share(rows, n, stop - span, stop, period)
         return window_totals(c, rows, n, stop - span, stop)
+    verdict[v.STICKING] = _sticking_share(rows, n, 0.0, stop, period)
     total = np.zeros(entry.TOTALS)
     width = stop / BLOCKS
     if not width > 0.0:
@@ -106,6 +112,23 @@ def _error_of_mean(values):
     n = values.shape[0]
     mean = values.sum() / n
     return math.sqrt(((values - mean) ** 2).sum() / (n - 1) / n)
+
+
+@njit
+def _sticking_share(rows, n, start, stop, period):
+    """Return in which share of the whole forcing periods from `start` to `stop` the ball rides on a wall for a while."""
+    whole = int((stop - start) / period + 1e-6)
+    counted = 0
+    seen = -1
+    for i in range(n - 1):
+        if rows[i, col.MODE] == 0.0 or rows[i + 1, col.TIME] <= start:
+            continue
+        first = int(max(rows[i, col.TIME] - start, 0.0) / period)
+        last = int((min(rows[i + 1, col.TIME], stop) - start) / period)
+        for k in range(max(first, seen + 1), min(last, whole - 1) + 1):
+            counted += 1
+            seen = k
+    return counted / whole if whole > 0 else 0.0
 
 
 @njit

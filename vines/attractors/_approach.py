@@ -1,0 +1,175 @@
+"""The periodic orbit that a run is near, solved for from its contacts, and how long the run still needs to it."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from vines.attractors import _verdict as v
+from vines.attractors._contacts import repetition
+from vines.dynamics import _advance as col
+from vines.dynamics._flight import derivatives, phasors
+from vines.dynamics._jit import njit
+from vines.dynamics._tangent import flow_basis, jump_basis
+from vines.orbits._eigenvalues import eigenvalues_kernel
+from vines.orbits._equations import newton_kernel
+
+__all__ = ["LARGEST_P", "NO_ORBIT", "STABLE", "UNSTABLE", "comes_to_orbit", "nearest_orbit", "note_coming"]
+
+NO_ORBIT, STABLE, UNSTABLE = range(3)
+
+ITERATIONS = 20
+"""Newton steps to the orbit near a run."""
+
+LONGEST = 24
+"""Most contacts of an orbit that is solved for; the work grows as their third power."""
+
+LARGEST_P = 8
+"""Most forcing periods of an orbit that is solved for."""
+
+BESIDE = 0.1
+"""Largest distance from the run at which the orbit found is the one that the run is near."""
+
+DOUBLINGS = 22
+"""A transient is predicted up to 2^DOUBLINGS repetitions."""
+
+
+@njit
+def nearest_orbit(c, rows, kept, p, lag, scale, tolerance):
+    """Solve for the orbit near the last repetition of a run, and carry the distance from it on by its linear map.
+
+    Parameters
+    ----------
+    c : Constants
+    rows : ndarray, shape (m, ROW)
+    kept : ndarray of int
+        Rows that are contacts, `lag` of them in the last p forcing periods.
+    p, lag : int
+        Forcing periods and contacts of one repetition.
+    scale : float
+        Size of velocities and displacements.
+    tolerance : float
+        Distance at which the run counts as settled.
+
+    Returns
+    -------
+    (found, largest, distance, remaining)
+        Whether there is such an orbit; its largest multiplier over p periods; how far the run is from it at its last
+        contact (in times, and in states relative to `scale`); forcing periods until that is below the tolerance, inf if
+        the orbit is unstable.
+    """
+    nothing = (False, math.nan, math.inf, math.inf)
+    count = kept.shape[0]
+    if lag < 1 or lag > LONGEST or count < lag:
+        return nothing
+    first, end = kept[count - lag], kept[count - 1]
+    for i in range(first, end + 1):
+        # With sticking the closing equations do not hold.
+        if rows[i, col.KIND] == col.STICK:
+            return nothing
+    duration = p * 2.0 * math.pi / c.Omega
+    side = np.empty(lag, dtype=np.int64)
+    guess = np.empty(lag)
+    for k in range(lag):
+        row = rows[kept[count - lag + k]]
+        side[k] = 1 if row[col.SIDE] > 0.0 else -1
+        guess[k] = rows[first, col.PHASE] / c.Omega + (row[col.TIME] - rows[first, col.TIME])
+        if k > 0 and not guess[k] > guess[k - 1]:
+            return nothing
+    if not guess[lag - 1] - guess[0] < duration:
+        return nothing
+    converged, t, _, states = newton_kernel(c, duration, side, guess, ITERATIONS)
+    if not converged:
+        return nothing
+    distance = 0.0
+    for k in range(lag):
+        row = rows[kept[count - lag + k]]
+        following = t[k + 1] if k + 1 < lag else t[0] + duration
+        if not following > t[k] or not side[k] * (states[k, 1] - states[k, 3]) > 0.0:
+            return nothing
+        distance = max(distance, abs(t[k] - guess[k]), abs(states[k, 0] - row[col.X1]) / scale)
+        distance = max(distance, abs(states[k, 1] - row[col.V1]) / scale, abs(states[k, 3] - row[col.V2]) / scale)
+    if not distance < BESIDE:
+        return nothing
+
+    # The tangent map of one repetition, from just after the last contact to just after that of the next one.
+    event = np.zeros(col.ROW)
+    event[col.KIND] = col.IMPACT
+    Y = np.eye(4)
+    for k in range(lag):
+        before = t[k - 1] if k > 0 else t[lag - 1] - duration
+        flow_basis(c, 0.0, t[k] - before, Y)
+        event[col.X1], event[col.V1], event[col.V2] = states[k, 0], states[k, 1], states[k, 3]
+        event[col.PHASE] = math.fmod(c.Omega * t[k], 2.0 * math.pi)
+        jump_basis(c, event, Y)
+    roots = np.empty(4, dtype=np.complex128)
+    eigenvalues_kernel(Y.astype(np.complex128), roots)
+    largest = np.max(np.abs(roots))
+    if not largest < 1.0:
+        return True, largest, distance, math.inf
+
+    # How far the run is from the orbit at one instant, just after its last contact.
+    x1, v1, v2 = states[lag - 1, 0], states[lag - 1, 1], states[lag - 1, 3]
+    after1 = c.keep1 * v1 + c.pass1 * v2
+    after2 = c.pass2 * v1 + c.keep2 * v2
+    ur, ui, gr, gi = phasors(c.free, c.Omega, x1, v1, event[col.PHASE])
+    _, _, a, _, _ = derivatives(c.free, c.Omega, ur, ui, gr, gi)
+    late = guess[lag - 1] - t[lag - 1]
+    away = np.empty(4)
+    away[0] = (rows[end, col.X1] - x1 - after1 * late) / scale
+    away[1] = (rows[end, col.A_V1] - after1 - (a - c.lam * (after1 - v1)) * late) / scale
+    away[2] = (rows[end, col.X2] - (x1 - side[lag - 1]) - after2 * late) / scale
+    away[3] = (rows[end, col.A_V2] - after2) / scale
+    powers = np.empty((DOUBLINGS, 4, 4))
+    powers[0] = Y
+    for j in range(1, DOUBLINGS):
+        powers[j] = powers[j - 1] @ powers[j - 1]
+    repetitions = 0.0
+    if np.max(np.abs(away)) > tolerance:
+        repetitions = 1.0
+        for j in range(DOUBLINGS - 1, -1, -1):
+            later = np.ascontiguousarray(powers[j]) @ away
+            if np.max(np.abs(later)) > tolerance:
+                away = later
+                repetitions += 2.0**j
+    return True, largest, distance, p * repetitions
+
+
+@njit
+def comes_to_orbit(c, rows, kept, scale, near, tolerance, verdict):
+    """Look for a stable periodic orbit that a run is near; if there is one, note how long the run still needs to it.
+
+    Parameters
+    ----------
+    rows, kept, scale, tolerance
+        As for `nearest_orbit`.
+    near : float
+        How well the run must repeat at its end.
+    verdict : ndarray
+        REMAINING (from the last contact on), REASON and VALUE are set if the orbit is stable.
+
+    Returns
+    -------
+    int
+        NO_ORBIT if none was found, STABLE, or UNSTABLE if only unstable ones are near.
+    """
+    seen = NO_ORBIT
+    blocks = np.empty(kept.shape[0])
+    for p in range(1, LARGEST_P + 1):
+        lag, filled = repetition(rows, kept, p * 2.0 * math.pi / c.Omega, scale, blocks)
+        if filled == 0 or not blocks[filled - 1] < near:
+            continue
+        found, largest, _, remaining = nearest_orbit(c, rows, kept, p, lag, scale, tolerance)
+        if found and largest < 1.0:
+            note_coming(verdict, remaining, largest ** (1.0 / p))
+            return STABLE
+        if found:
+            seen = UNSTABLE
+    return seen
+
+
+@njit
+def note_coming(verdict, remaining, rate):
+    """Note that a run comes to a periodic orbit: periods that it needs, and what is left of its distance after one."""
+    verdict[v.REMAINING], verdict[v.REASON], verdict[v.VALUE] = remaining, v.COMES, rate
