@@ -101,7 +101,7 @@ def nearest_orbit(c, rows, kept, p, lag, scale, tolerance):
         before = t[k - 1] if k > 0 else t[lag - 1] - duration
         flow_basis(c, 0.0, t[k] - before, Y)
         event[col.X1], event[col.V1], event[col.V2] = states[k, 0], states[k, 1], states[k, 3]
-        event[col.PHASE] = math.fmod(c.Omega * t[k], 2.0 * math.pi)
+        event[col.PHASE] = c.Omega * t[k] % (2.0 * math.pi)
         jump_basis(c, event, Y)
     roots = np.empty(4, dtype=np.complex128)
     eigenvalues_kernel(Y.astype(np.complex128), roots)

@@ -1,0 +1,203 @@
+"""Time averages that tell attractors apart which never repeat: chaotic ones and tori."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+import numpy.typing as npt
+
+from vines.dynamics import ensemble
+from vines.model import Params
+
+__all__ = ["WINDOW", "Group", "averages", "match", "observe", "sort_into"]
+
+Floats = npt.NDArray[np.float64]
+
+STATE = ("x1", "v1", "x2", "v2")
+
+WINDOW = 64
+"""Forcing periods of one window of averages."""
+
+SIGNS = np.array([1.0, 1.0, 1.0, 1.0, 1.0, -1.0, -1.0])
+"""What the mirror image does to the averages: the last two change their sign."""
+
+BATCHES = 15
+"""Parts of a run from whose scatter the standard errors of its averages are taken."""
+
+SURE = 5.0
+"""Standard errors by which two averages must differ for the attractors to be two."""
+
+FLOOR = 1e-6
+"""Relative difference of averages that is no difference, however small the errors."""
+
+
+@dataclass
+class Group:
+    """Averages of one attractor, from several runs on it.
+
+    Attributes
+    ----------
+    regimes : list of str
+        What each run was called by itself.
+    states : list of ndarray
+        A state of each run.
+    means, errors : list of ndarray, shape (7,)
+        Averages of each run, those on the mirror image reflected, and their standard errors.
+    windows : list of ndarray, shape (windows, 7)
+        The same window by window.
+    owner : int
+        Number of the attractor, -1 while it has none: a transient that is soon left.
+    """
+
+    regimes: list[str] = field(default_factory=list)
+    states: list[Floats] = field(default_factory=list)
+    means: list[Floats] = field(default_factory=list)
+    errors: list[Floats] = field(default_factory=list)
+    windows: list[Floats] = field(default_factory=list)
+    owner: int = -1
+
+    def add(self, regime: str, state: Floats, windows: Floats, sign: int) -> None:
+        """Count a run with this attractor, or with its mirror image if `sign` is -1."""
+        seen = windows if sign > 0 else windows * SIGNS
+        mean, error = mean_and_error(seen)
+        self.regimes.append(regime)
+        self.states.append(state if sign > 0 else -state)
+        self.means.append(mean)
+        self.errors.append(error)
+        self.windows.append(seen)
+
+    @property
+    def regime(self) -> str:
+        """What most of its runs are called."""
+        return max(sorted(set(self.regimes)), key=self.regimes.count)
+
+    @property
+    def mean(self) -> Floats:
+        """Averages over all its runs; the odd ones are 0 if the attractor is its own mirror image."""
+        mean = np.mean(self.means, axis=0)
+        return np.where(SIGNS < 0, 0.0, mean) if self.symmetric else mean
+
+    @property
+    def error(self) -> Floats:
+        """Standard errors of `mean`."""
+        return np.asarray(np.sqrt(np.mean(np.square(self.errors), axis=0) / len(self.errors)))
+
+    @property
+    def symmetric(self) -> bool:
+        """Whether it is not told from its own mirror image."""
+        odd = SIGNS < 0
+        return bool(np.all(np.abs(np.mean(self.means, axis=0))[odd] <= SURE * self.error[odd] + 1e-12))
+
+    def spread(self, length: int) -> Floats:
+        """Return the standard deviation of averages over so many windows."""
+        parts = [np.mean(w[k : k + length], axis=0) for w in self.windows for k in range(0, len(w) - length + 1, length)]
+        if len(parts) < 2:
+            return np.full(len(SIGNS), np.inf)
+        return np.asarray(np.sqrt(np.mean(np.square(np.array(parts) - self.mean), axis=0)))
+
+
+def averages(measures: npt.NDArray[np.void]) -> Floats:
+    """Return averages over the recorded time of runs, shape (n, 7).
+
+    Kinetic energies of mass and ball, mean square of x1, impacts and impact losses per time; then what changes its
+    sign with the mirror image: impacts and losses on L less those on R.
+    """
+    time = measures["duration"]
+    left, right = measures["impacts_left"] / time, measures["impacts_right"] / time
+    lost_left, lost_right = measures["impact_loss_left"] / time, measures["impact_loss_right"] / time
+    return np.stack(
+        [
+            measures["kinetic_1"],
+            measures["kinetic_2"],
+            measures["rms_x1"] ** 2,
+            left + right,
+            lost_left + lost_right,
+            left - right,
+            lost_left - lost_right,
+        ],
+        axis=1,
+    )
+
+
+def observe(p: Params, states: Floats, phase: float, windows: int) -> tuple[Floats, Floats, Floats]:
+    """Run on from states at one phase of the forcing and take averages window by window.
+
+    Returns
+    -------
+    values, half, end : ndarray, shape (n, windows, 7), (n, 4), (n, 4)
+        Averages, and the states half-way and at the end.
+    """
+    values = np.empty((len(states), windows, len(SIGNS)))
+    half = now = states
+    for k in range(windows):
+        if k == windows // 2:
+            half = now
+        run = ensemble(
+            p, dict(zip(STATE, now.T, strict=True)) | {"phase": phase}, periods=WINDOW, record="measures"
+        )
+        values[:, k] = averages(run.measures) if run.measures is not None else np.nan
+        now = np.stack([run.final[name] for name in STATE], axis=1)
+    return values, half, now
+
+
+def mean_and_error(windows: Floats) -> tuple[Floats, Floats]:
+    """Return the averages of a run of many windows and their standard errors by batch means."""
+    batches = np.array([np.mean(part, axis=0) for part in np.array_split(windows, min(BATCHES, len(windows)))])
+    error = np.std(batches, axis=0, ddof=1) / np.sqrt(len(batches)) if len(batches) > 1 else np.inf
+    return np.mean(windows, axis=0), np.broadcast_to(error, windows.shape[1:])
+
+
+def _apart(values: Floats, errors: Floats, group: Group, spread: Floats) -> tuple[Floats, npt.NDArray[np.int64]]:
+    """Return how many standard errors averages are from those of a group, or of its mirror image, and which of both."""
+    allowed = np.hypot(errors, spread) + FLOOR * np.abs(group.mean) + 1e-12
+    straight, reflected = (np.max(np.abs(values - mean) / allowed, axis=-1) for mean in (group.mean, group.mean * SIGNS))
+    return np.minimum(straight, reflected), np.where(reflected < straight, -1, 1)
+
+
+def match(values: Floats, length: int, groups: list[Group]) -> tuple[npt.NDArray[np.int64], npt.NDArray[np.int64]]:
+    """Return for averages over so many windows, shape (n, 7), the group that they agree with, and its sign.
+
+    -1 where none does within SURE of the spread that such averages have on it, or where several do.
+    """
+    apart = np.full((len(values), len(groups)), np.inf)
+    signs = np.ones((len(values), len(groups)), dtype=np.int64)
+    for k, group in enumerate(groups):
+        apart[:, k], signs[:, k] = _apart(values, np.zeros(len(SIGNS)), group, np.hypot(group.spread(length), group.error))
+    fits = apart < SURE
+    best = np.argmin(apart, axis=1) if groups else np.zeros(len(values), dtype=np.int64)
+    chosen = np.where(fits.sum(axis=1) == 1, best, -1)
+    return chosen, signs[np.arange(len(values)), best] if groups else np.ones(len(values), dtype=np.int64)
+
+
+def sort_into(
+    groups: list[Group], regimes: list[str], states: Floats, values: Floats
+) -> tuple[npt.NDArray[np.int64], npt.NDArray[np.int64]]:
+    """Put long runs into the groups that they agree with within the standard errors, or into new ones.
+
+    Parameters
+    ----------
+    groups : list of Group
+        Added to.
+    regimes, states, values
+        Of each run: what it is called, a state, averages window by window.
+
+    Returns
+    -------
+    which, sign : ndarray of int
+        Number of the group of each run, and -1 where it is on the mirror image.
+    """
+    which, signs = np.empty(len(states), dtype=np.int64), np.ones(len(states), dtype=np.int64)
+    for k, (regime, state, windows) in enumerate(zip(regimes, states, values, strict=True)):
+        mean, error = mean_and_error(windows)
+        apart = [_apart(mean, error, group, group.error) for group in groups]
+        best = min(range(len(groups)), key=lambda j: float(apart[j][0]), default=-1)
+        if best < 0 or not apart[best][0] < SURE:
+            groups.append(Group())
+            best = len(groups) - 1
+            signs[k] = 1
+        else:
+            signs[k] = int(apart[best][1])
+        groups[best].add(regime, state, windows, int(signs[k]))
+        which[k] = best
+    return which, signs
