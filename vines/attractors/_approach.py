@@ -121,19 +121,31 @@ def nearest_orbit(c, rows, kept, p, lag, scale, tolerance):
     away[1] = (rows[end, col.A_V1] - after1 - (a - c.lam * (after1 - v1)) * late) / scale
     away[2] = (rows[end, col.X2] - (x1 - side[lag - 1]) - after2 * late) / scale
     away[3] = (rows[end, col.A_V2] - after2) / scale
+    # The allowance for a state at one instant that goes with the tolerance of the contacts.
+    allowed = tolerance * _size(Y, away) / distance if distance > 0.0 else math.inf
     powers = np.empty((DOUBLINGS, 4, 4))
     powers[0] = Y
     for j in range(1, DOUBLINGS):
         powers[j] = powers[j - 1] @ powers[j - 1]
     repetitions = 0.0
-    if np.max(np.abs(away)) > tolerance:
+    if distance > tolerance:
         repetitions = 1.0
         for j in range(DOUBLINGS - 1, -1, -1):
             later = np.ascontiguousarray(powers[j]) @ away
-            if np.max(np.abs(later)) > tolerance:
+            if _size(Y, later) > allowed:
                 away = later
                 repetitions += 2.0**j
     return True, largest, distance, p * repetitions
+
+
+@njit
+def _size(Y, away):
+    """Return the largest part of a difference now or at one of the next three returns: it may turn as it shrinks."""
+    size = np.max(np.abs(away))
+    for _ in range(3):
+        away = Y @ away
+        size = max(size, np.max(np.abs(away)))
+    return size
 
 
 @njit

@@ -157,15 +157,17 @@ def _beside_orbit(c, rows, n, length, chaotic, last, tolerance, verdict):
         found, largest, _, remaining = False, math.inf, math.inf, math.inf
         if p <= LARGEST_P:
             found, largest, _, remaining = nearest_orbit(c, rows, late, p, lag, scale, tolerance)
-        comes = after < before
-        if found and largest < 1.0 and comes:
+        stable = found and largest < 1.0
+        # At last, beside an orbit that attracts so little that it does not show.
+        if stable and (after < before or (last and after < NEAR and after < GROWS * before)):
             note_coming(verdict, remaining, largest ** (1.0 / p))
             return True
         if not found and after < 0.5 * before < math.inf:
             note_decay(verdict, newest, p, math.log(before / after) / (0.75 * length / period), tolerance)
             return True
-        # A run that nears an unstable orbit will leave it again: that is seen later.
-        passing = found and comes and not last
+        # A run that nears an unstable orbit will leave it again, and one beside a stable orbit may turn about it in more
+        # than the quarter: that is seen later.
+        passing = found and not last and (stable or after < before)
         if (min(before, after) < NEAR and not passing) or (found and last and after > GROWS * before):
             undecided = True
             if after > before:

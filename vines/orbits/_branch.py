@@ -74,6 +74,8 @@ class Branch:
         (the corrector failed at the smallest step).
     parent : str or None
         Name of the branch that it was switched from, if it was.
+    remark : str
+        What could not be followed out of it, and why; empty if nothing.
     """
 
     word: Word
@@ -83,6 +85,7 @@ class Branch:
     events: tuple[Bifurcation, ...]
     ends: tuple[str, str]
     parent: str | None = None
+    remark: str = ""
 
     @property
     def values(self) -> npt.NDArray[np.float64]:

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any
 
-from vines.errors import ParameterError
+from vines.errors import OrbitNotFound, ParameterError
 from vines.orbits._branch import Bifurcation, Branch
 from vines.orbits._continuation import continue_orbit
 from vines.orbits._joined import BRANCHING, is_joint
@@ -47,14 +47,15 @@ def follow_cascade(
         The first branch, then each generation in turn. `Branch.parent` is the `branch_id` of the one that it comes out
         of; it begins next to that branching point, whose type is ``ends[0]``. Of an asymmetric pair one is
         followed: the other is its mirror image. A family that comes out at one branching point and ends at
-        another is there once.
+        another is there once. Where what comes out could not be reached or followed, `Branch.remark` of the
+        branch that it comes out of says so, and the others are there all the same.
 
     Raises
     ------
     ParameterError
         As for `continue_orbit`, or if `depth` is negative.
     OrbitNotFound
-        If a branch is lost.
+        If the first branch is lost.
 
     Examples
     --------
@@ -88,26 +89,35 @@ def generations(first: list[Branch], depth: int, within: tuple[float, float], op
     options : dict
         Of `continue_orbit`, for the first ones; ``step`` is halved with each generation.
 
-    Raises
-    ------
-    OrbitNotFound
-        If a branch is lost.
+    Returns
+    -------
+    list of Branch
+        The first ones and then each generation in turn. What could not be reached or followed is told in `Branch.remark`
+        of the branch that it comes out of.
     """
-    generation, found = first, list(first)
-    for k in range(1, depth + 1):
-        finer = {**options, "step": options["step"] / 2**k}
+    generation, found = first, []
+    for k in range(depth + 1):
+        if k == depth:
+            found += generation
+            break
+        finer = {**options, "step": options["step"] / 2 ** (k + 1)}
         children: list[Branch] = []
         for branch in generation:
             reached: list[float] = []
+            lost: list[str] = []
             for bifurcation in branch.bifurcations:
                 if bifurcation.type not in BRANCHING or is_joint(bifurcation) or _among(bifurcation.value, reached):
                     continue
-                child = _child(bifurcation, branch.branch_id, within, finer)
+                try:
+                    child = _child(bifurcation, branch.branch_id, within, finer)
+                except OrbitNotFound as error:
+                    lost.append(f"out of the {bifurcation.type} at {bifurcation.value:.9g}: {error}")
+                    continue
                 if child is not None:
                     children.append(child)
                     reached += [b.value for b in child.bifurcations if is_joint(b)]
+            found.append(replace(branch, remark="; ".join(lost)) if lost else branch)
         generation = children
-        found += children
     return found
 
 

@@ -16,6 +16,8 @@ from vines.dynamics._jit import njit
 
 __all__ = ["closing_kernel", "eliminate", "newton_kernel"]
 
+_EPS = 2.220446049250313e-16
+
 
 @njit
 def eliminate(matrix, right):
@@ -180,6 +182,8 @@ def newton_kernel(c, duration, side, t, iterations):
     t = t.copy()
     regular, defect, slope, states = closing_kernel(c, duration, side, t)
     size = np.max(np.abs(defect)) if regular else math.inf
+    # The equations are sums of parts as large as the steady motion without the ball.
+    rounding = 8.0 * _EPS * c.mu * (1.0 + math.hypot(c.free.qr, c.free.qi))
     for _ in range(iterations):
         step = defect.copy().reshape((N, 1))
         if not regular or not np.isfinite(size) or not eliminate(slope, step):
@@ -200,8 +204,10 @@ def newton_kernel(c, duration, side, t, iterations):
             if better < size or share * largest < 1e-12 * duration or share < 1e-3:
                 break
             share *= 0.5
+        # Next to a bifurcation the steps stay larger than that, but the defect can't fall below its rounding.
+        stalled = better >= 0.5 * size and better <= rounding
         t = trial
         size = better
-        if share * largest < 1e-13 * duration:
+        if share * largest < 1e-13 * duration or stalled:
             return np.isfinite(size) and size < 1e-9 * c.mu, t, size, states
     return False, t, size, states

@@ -80,12 +80,7 @@ def follow_families(
         Symmetric families first, each with what comes out of it. Every branch but those switched to has its first orbit
         at the lower value of the parameter of its two ends. Of an asymmetric pair
         with one word one is followed: the other is its mirror image. ``parent`` is linked where a family comes out
-        of another of the list.
-
-    Raises
-    ------
-    OrbitNotFound
-        If a branch of a later generation is lost.
+        of another of the list. What could not be followed out of a branch is told in its `remark`.
 
     Examples
     --------

@@ -91,6 +91,7 @@ def branch_row(branch: Branch, parent: str | None = None) -> Row:
         "end_to": branch.ends[1],
         "orbits": len(values),
         "parent": branch.parent if parent is None else parent,
+        "remark": branch.remark,
         **branch.orbits[0].params.as_dict(),
     }
 

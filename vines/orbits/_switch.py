@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from vines.dynamics import no_ball
 from vines.errors import OrbitNotFound
 from vines.orbits._branch import Bifurcation
 from vines.orbits._family import GeneralProblem
@@ -21,6 +22,7 @@ _CLOSE = 1e-6
 """Newton step relative to the step off the family, after which the closing equations take over."""
 
 _RESIDUAL = 1e-13
+"""Largest residual of an orbit that was reached, in a cavity that is larger than the motion."""
 
 
 def switch_branch(bifurcation: Bifurcation) -> list[Orbit]:
@@ -34,8 +36,9 @@ def switch_branch(bifurcation: Bifurcation) -> list[Orbit]:
     Returns
     -------
     list of Orbit
-        At a symmetry breaking an asymmetric orbit and its mirror image, at a period doubling the orbit of twice the
-        period; where a family ends that came out of another one, the orbit of that other family.
+        At a symmetry breaking an asymmetric orbit and its mirror image, first the one whose impacts lie at the larger
+        mean x1; at a period doubling the orbit of twice the period; where a family ends that came out of another one,
+        the orbit of that other family.
 
     Raises
     ------
@@ -63,11 +66,17 @@ def switch_branch(bifurcation: Bifurcation) -> list[Orbit]:
     for step in _STEPS:
         orbit = _step_off(problem, step)
         if orbit is not None:
-            return [orbit, mirror_image(orbit)] if bifurcation.type == "symmetry_breaking" else [orbit]
+            return _pair(orbit) if bifurcation.type == "symmetry_breaking" else [orbit]
     raise OrbitNotFound(
         f"no {problem.word} orbit was reached from {bifurcation} by steps of {min(_STEPS):g} to {max(_STEPS):g} rad; "
         "the branching may be degenerate: change another parameter"
     )
+
+
+def _pair(orbit: Orbit) -> list[Orbit]:
+    """Return an orbit and its mirror image in the one order that does not depend on which of them was found."""
+    pair = [orbit, mirror_image(orbit)]
+    return sorted(pair, key=lambda one: float(one.states[:, 0].mean()), reverse=True)
 
 
 def _step_off(problem: GeneralProblem, step: float) -> Orbit | None:
@@ -98,4 +107,6 @@ def _step_off(problem: GeneralProblem, step: float) -> Orbit | None:
         orbit = refine(here.word, here.params, here)
     except OrbitNotFound:
         return None
-    return orbit if orbit.residual <= _RESIDUAL and origin(orbit) is None and not orbit.symmetric else None
+    # Residuals are sums of parts as large as the steady motion without the ball.
+    allowed = _RESIDUAL * (1.0 + no_ball(orbit.params))
+    return orbit if orbit.residual <= allowed and origin(orbit) is None and not orbit.symmetric else None
