@@ -40,7 +40,7 @@ def test_two_panels_share_axes_that_are_logarithmic_where_the_range_is_wide() ->
 def test_the_legend_has_the_classes_that_occur_and_the_mark_of_sticking() -> None:
     (legend,) = regimes_figure(_map()).legends
     told = [text.get_text() for text in legend.get_texts()]
-    assert told == ["1:1, symmetric", "chaotic", "any, darker: the ball sticks"]
+    assert told == ["1:1, symmetric", "chaotic", "any, darker: sticking recurs"]
 
 
 def test_a_wide_region_bears_its_name_inside_itself() -> None:

@@ -39,7 +39,7 @@ class Attractor:
     sticking_share : float
         Share of the forcing periods in which the ball sticks for a while.
     recurrent_sticking : bool
-        Whether sticking recurs: it is part of the orbit if periodic, else there is some in at least nine periods of ten.
+        Whether sticking recurs: it is part of a periodic orbit, or there is some in at least nine periods of ten.
     measures : Measures
         Over p forcing periods if periodic, else over the recorded window.
     kinetic_ratio_error, max_abs_x1_error, rms_x1_error : float

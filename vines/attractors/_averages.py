@@ -57,13 +57,12 @@ class Group:
     windows: list[Floats] = field(default_factory=list)
     owner: int = -1
 
-    def add(self, regime: str, state: Floats, windows: Floats, sign: int) -> None:
+    def add(self, regime: str, state: Floats, windows: Floats, error: Floats, sign: int) -> None:
         """Count a run with this attractor, or with its mirror image if `sign` is -1."""
         seen = windows if sign > 0 else windows * SIGNS
-        mean, error = mean_and_error(seen)
         self.regimes.append(regime)
         self.states.append(state if sign > 0 else -state)
-        self.means.append(mean)
+        self.means.append(np.mean(seen, axis=0))
         self.errors.append(error)
         self.windows.append(seen)
 
@@ -91,7 +90,9 @@ class Group:
 
     def spread(self, length: int) -> Floats:
         """Return the standard deviation of averages over so many windows."""
-        parts = [np.mean(w[k : k + length], axis=0) for w in self.windows for k in range(0, len(w) - length + 1, length)]
+        parts = [
+            np.mean(w[k : k + length], axis=0) for w in self.windows for k in range(0, len(w) - length + 1, length)
+        ]
         if len(parts) < 2:
             return np.full(len(SIGNS), np.inf)
         return np.asarray(np.sqrt(np.mean(np.square(np.array(parts) - self.mean), axis=0)))
@@ -133,9 +134,7 @@ def observe(p: Params, states: Floats, phase: float, windows: int) -> tuple[Floa
     for k in range(windows):
         if k == windows // 2:
             half = now
-        run = ensemble(
-            p, dict(zip(STATE, now.T, strict=True)) | {"phase": phase}, periods=WINDOW, record="measures"
-        )
+        run = ensemble(p, dict(zip(STATE, now.T, strict=True)) | {"phase": phase}, periods=WINDOW, record="measures")
         values[:, k] = averages(run.measures) if run.measures is not None else np.nan
         now = np.stack([run.final[name] for name in STATE], axis=1)
     return values, half, now
@@ -151,7 +150,9 @@ def mean_and_error(windows: Floats) -> tuple[Floats, Floats]:
 def _apart(values: Floats, errors: Floats, group: Group, spread: Floats) -> tuple[Floats, npt.NDArray[np.int64]]:
     """Return how many standard errors averages are from those of a group, or of its mirror image, and which of both."""
     allowed = np.hypot(errors, spread) + FLOOR * np.abs(group.mean) + 1e-12
-    straight, reflected = (np.max(np.abs(values - mean) / allowed, axis=-1) for mean in (group.mean, group.mean * SIGNS))
+    straight, reflected = (
+        np.max(np.abs(values - mean) / allowed, axis=-1) for mean in (group.mean, group.mean * SIGNS)
+    )
     return np.minimum(straight, reflected), np.where(reflected < straight, -1, 1)
 
 
@@ -163,16 +164,16 @@ def match(values: Floats, length: int, groups: list[Group]) -> tuple[npt.NDArray
     apart = np.full((len(values), len(groups)), np.inf)
     signs = np.ones((len(values), len(groups)), dtype=np.int64)
     for k, group in enumerate(groups):
-        apart[:, k], signs[:, k] = _apart(values, np.zeros(len(SIGNS)), group, np.hypot(group.spread(length), group.error))
+        apart[:, k], signs[:, k] = _apart(
+            values, np.zeros(len(SIGNS)), group, np.hypot(group.spread(length), group.error)
+        )
     fits = apart < SURE
     best = np.argmin(apart, axis=1) if groups else np.zeros(len(values), dtype=np.int64)
     chosen = np.where(fits.sum(axis=1) == 1, best, -1)
     return chosen, signs[np.arange(len(values)), best] if groups else np.ones(len(values), dtype=np.int64)
 
 
-def sort_into(
-    groups: list[Group], regimes: list[str], states: Floats, values: Floats
-) -> tuple[npt.NDArray[np.int64], npt.NDArray[np.int64]]:
+def sort_into(groups: list[Group], regimes: list[str], states: Floats, values: Floats) -> None:
     """Put long runs into the groups that they agree with within the standard errors, or into new ones.
 
     Parameters
@@ -181,23 +182,18 @@ def sort_into(
         Added to.
     regimes, states, values
         Of each run: what it is called, a state, averages window by window.
-
-    Returns
-    -------
-    which, sign : ndarray of int
-        Number of the group of each run, and -1 where it is on the mirror image.
     """
-    which, signs = np.empty(len(states), dtype=np.int64), np.ones(len(states), dtype=np.int64)
-    for k, (regime, state, windows) in enumerate(zip(regimes, states, values, strict=True)):
+    # An error from few batches is uncertain itself: one that is small by chance is not believed.
+    usual = np.median([mean_and_error(windows)[1] for windows in values], axis=0) if len(values) else 0.0
+    for regime, state, windows in zip(regimes, states, values, strict=True):
         mean, error = mean_and_error(windows)
+        error = np.maximum(error, usual)
         apart = [_apart(mean, error, group, group.error) for group in groups]
-        best = min(range(len(groups)), key=lambda j: float(apart[j][0]), default=-1)
-        if best < 0 or not apart[best][0] < SURE:
+        best = min(range(len(groups)), key=lambda k: float(apart[k][0]), default=-1)
+        sign = 1
+        if best >= 0 and apart[best][0] < SURE:
+            sign = int(apart[best][1])
+        else:
             groups.append(Group())
             best = len(groups) - 1
-            signs[k] = 1
-        else:
-            signs[k] = int(apart[best][1])
-        groups[best].add(regime, state, windows, int(signs[k]))
-        which[k] = best
-    return which, signs
+        groups[best].add(regime, state, windows, error, sign)

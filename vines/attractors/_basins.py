@@ -23,6 +23,7 @@ Floats = npt.NDArray[Any]
 
 COORDINATES = ("x1", "v1", "x2", "v2", "phase")
 
+
 @dataclass(frozen=True)
 class Basins:
     """The basins of a grid of starts; one entry of the arrays for each cell.

@@ -165,8 +165,8 @@ def _beside_orbit(c, rows, n, length, chaotic, last, tolerance, verdict):
         if not found and after < 0.5 * before < math.inf:
             note_decay(verdict, newest, p, math.log(before / after) / (0.75 * length / period), tolerance)
             return True
-        # A run that nears an unstable orbit will leave it again, and one beside a stable orbit may turn about it in more
-        # than the quarter: that is seen later.
+        # A run that nears an unstable orbit will leave it again, and one beside a stable orbit may take longer than the
+        # quarter to turn about it: that is seen later.
         passing = found and not last and (stable or after < before)
         if (min(before, after) < NEAR and not passing) or (found and last and after > GROWS * before):
             undecided = True

@@ -121,7 +121,11 @@ class Search:
         return still
 
     def _distances(self, states: Floats) -> Floats:
-        return np.stack([s.distance(states) for s in self.sections], axis=1) if self.sections else np.empty((len(states), 0))
+        return (
+            np.stack([s.distance(states) for s in self.sections], axis=1)
+            if self.sections
+            else np.empty((len(states), 0))
+        )
 
     def _label(self, runs: _Runs, which: Numbers, sections: Numbers) -> None:
         owners = np.array([s.owner for s in self.sections], dtype=np.int64)
@@ -167,7 +171,7 @@ class Search:
         return regular, section
 
     def _rest(self, found: Classified, run: int) -> int:
-        """Return the section of the motion without impact: there is no point to come near to, the ball rests anywhere."""
+        """Return the section of the motion without impact; it has no points, for the ball rests anywhere."""
         for k, section in enumerate(self.sections):
             if self.attractors[section.owner].regime == "no_impact":
                 return k
@@ -235,7 +239,7 @@ class Search:
         late = gone & ~(self._distances(half) < NEAR).any(axis=1)
         stay = np.flatnonzero(wild & ~gone)
         known = len(self.groups)
-        which, _ = sort_into(self.groups, regime[stay].tolist(), end[stay], values[stay])
+        sort_into(self.groups, regime[stay].tolist(), end[stay], values[stay])
         # If a quarter leaves within half the patience, it is a transient and no answer.
         passing = np.count_nonzero(late) > 0.25 * (np.count_nonzero(late) + len(stay))
         for k in range(known, len(self.groups)):

@@ -216,7 +216,7 @@ def wait_longer(
     """Return how long to run on and what is left of the patience then; nothing if the run is taken as it is."""
     if verdict[v.UNSTABLE] and math.isnan(nudged):
         return float(how.settle), spare
-    if verdict[v.SETTLED] or not 0.0 < spare or not verdict[v.REMAINING] <= STRETCH * spare:
+    if verdict[v.SETTLED] or not spare > 0.0 or not verdict[v.REMAINING] <= STRETCH * spare:
         return None
     wait = math.ceil(1.05 * float(verdict[v.REMAINING])) + 1.0
     if verdict[v.REMAINING] > spare:

@@ -116,7 +116,7 @@ def _error_of_mean(values):
 
 @njit
 def _sticking_share(rows, n, start, stop, period):
-    """Return in which share of the whole forcing periods from `start` to `stop` the ball rides on a wall for a while."""
+    """Return in which share of the forcing periods from `start` to `stop` the ball rides on a wall for a while."""
     whole = int((stop - start) / period + 1e-6)
     counted = 0
     seen = -1

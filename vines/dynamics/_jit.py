@@ -13,6 +13,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any, TypeVar
 
+from vines.dynamics._old_kernels import delete_old, is_digest, note_use
 from vines.places import cache_folder
 
 __all__ = ["CACHE", "fused_njit", "kernel_digest", "loop_njit", "njit"]
@@ -50,12 +51,18 @@ def _base_folder() -> Path:
     if not named:
         return cache_folder()
     path = Path(named)
-    ours = path.parent.name == "numba" and len(path.name) == 16 and set(path.name) <= set("0123456789abcdef")
+    ours = path.parent.name == "numba" and is_digest(path.name)
     return path.parent.parent if ours else path
 
 
 CACHE = _base_folder() / "numba" / kernel_digest()
 """The folder of the compiled kernels of these sources."""
+
+if CACHE.is_dir():
+    note_use(CACHE)
+else:
+    # New sources, so kernels of older ones are not asked for again.
+    delete_old(CACHE.parent)
 
 os.environ["NUMBA_CACHE_DIR"] = str(CACHE)
 

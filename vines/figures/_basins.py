@@ -7,30 +7,60 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
+import numpy.typing as npt
+
+from vines.figures._style import RC, new_figure
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 __all__ = ["BasinMap", "basins_figure"]
 
+Floats = npt.NDArray[np.float64]
+
 SYMBOLS = {"x1": "$x_1$", "v1": "$x_1'$", "x2": "$x_2$", "v2": "$x_2'$", "phase": r"phase $\phi$"}
-HUES = ("#2166ac", "#e08214", "#1b7837", "#762a83", "#b2182b", "#888888")
+HUES = ("#33658a", "#e07a1f", "#117733", "#aa4499", "#ddcc77", "#86bbd8")
+CHAOS = ("#d2d2d2", "#a9a9a9", "#808080")
+UNSETTLED = "#000000"
+"""Colours as in the map of regimes: periodic attractors coloured, chaotic ones grey, what has not settled black."""
+
+SHADE = 0.62
+"""Factor on the colour where the mirror image of an attractor is reached."""
+
+PIXELS = 2000
+"""Most pixels along a side that halved cells are drawn with."""
 
 
 @dataclass(frozen=True, slots=True)
 class BasinMap:
-    """Cells of a map: centres, halvings, attractor (-1 unsettled) and whether its mirror image was reached.
+    """Cells of a map of starts.
 
-    `names` describe the attractors, with their shares; `steps` are the sizes of an uncut cell.
+    Attributes
+    ----------
+    axes : (str, str)
+        Coordinates along x and y.
+    x, y : (n,) array
+        Centres of the cells.
+    level : (n,) array of int
+        How often each was halved in both directions.
+    attractor : (n,) array of int
+        What was reached, -1 where that has not settled.
+    mirrored : (n,) array of bool
+        Whether that is the mirror image.
+    names, regimes : sequence of str
+        For each attractor, with its share; and what is written for the cells that have not settled, if there are any.
+    steps : (float, float)
+        Sizes of an uncut cell.
     """
 
     axes: tuple[str, str]
-    x: np.ndarray
-    y: np.ndarray
-    level: np.ndarray
-    attractor: np.ndarray
-    mirrored: np.ndarray
+    x: Floats
+    y: Floats
+    level: npt.NDArray[np.int64]
+    attractor: npt.NDArray[np.int64]
+    mirrored: npt.NDArray[np.bool_]
     names: Sequence[str]
+    regimes: Sequence[str]
     steps: tuple[float, float]
 
 
@@ -46,27 +76,72 @@ def basins_figure(data: BasinMap, *, title: str = "", width: float = 7.0) -> Fig
     width : float
         In inches.
     """
-    from matplotlib.collections import PolyCollection
+    import matplotlib as mpl
     from matplotlib.colors import to_rgb
-    from matplotlib.figure import Figure
     from matplotlib.patches import Patch
 
-    figure = Figure(figsize=(width, 0.78 * width), layout="constrained")
-    ax = figure.add_subplot()
-    colours = np.array([to_rgb(HUES[k % len(HUES)]) for k in range(len(data.names))] + [(1.0, 1.0, 1.0)])
-    shown = colours[np.where(data.attractor < 0, len(colours) - 1, data.attractor)]
-    shown = np.where(data.mirrored[:, None], 0.62 * shown, shown)
-    half = 0.5 * np.array(data.steps) / 2.0 ** data.level[:, None]
-    corners = np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]])
-    centres = np.stack([data.x, data.y], axis=1)
-    quads = centres[:, None, :] + corners[None, :, :] * half[:, None, :]
-    cells = PolyCollection(list(quads), facecolors=shown, edgecolors="none", antialiased=False, rasterized=True)
-    ax.add_collection(cells)
-    ax.set_xlim(quads[..., 0].min(), quads[..., 0].max())
-    ax.set_ylim(quads[..., 1].min(), quads[..., 1].max())
-    ax.set_xlabel(f"{SYMBOLS[data.axes[0]]} at the start")
-    ax.set_ylabel(f"{SYMBOLS[data.axes[1]]} at the start")
-    handles = [Patch(color=colours[k], label=name) for k, name in enumerate(data.names)]
-    figure.legend(handles=handles, loc="outside lower center", ncols=min(3, len(handles)), frameon=False)
-    ax.set_title(title)
+    colours = _colours(data.regimes)
+    shown = np.array([to_rgb(colour) for colour in (*colours, UNSETTLED)])[data.attractor]
+    shown = np.where(data.mirrored[:, None], SHADE * shown, shown)
+    image, extent = _image(data, shown)
+    with mpl.rc_context(RC):
+        figure = new_figure(width, 0.8 * width)
+        ax = figure.add_subplot()
+        ax.imshow(image, extent=extent, origin="lower", aspect="auto", interpolation="none")
+        ax.set_xlabel(f"{SYMBOLS[data.axes[0]]} at the start")
+        ax.set_ylabel(f"{SYMBOLS[data.axes[1]]} at the start")
+        handles = [
+            Patch(facecolor=colour, edgecolor="#777777", linewidth=0.5, label=name)
+            for colour, name in zip((*colours, UNSETTLED), data.names, strict=False)
+        ]
+        figure.legend(handles=handles, loc="outside lower center", ncols=min(2, len(handles)))
+        ax.set_title(title, fontsize=9)
     return figure
+
+
+def _colours(regimes: Sequence[str]) -> list[str]:
+    hues, greys, colours = 0, 0, []
+    for regime in regimes:
+        if regime == "chaotic":
+            colours.append(CHAOS[greys % len(CHAOS)])
+            greys += 1
+        else:
+            colours.append(HUES[hues % len(HUES)])
+            hues += 1
+    return colours
+
+
+def _image(data: BasinMap, colours: Floats) -> tuple[Floats, tuple[float, float, float, float]]:
+    """Return the picture of the cells, (ny, nx, 3), white where there is none, and its edges (left, right, low, high).
+
+    A pixel is a cell halved as often as the finest, but not so often that the picture grows without need: the colours
+    of smaller cells are mixed.
+    """
+    cells = data.level - data.level.min()
+    half = [0.5 * h / 2.0**cells for h in data.steps]
+    left, low = (float(np.min(v - side)) for v, side in zip((data.x, data.y), half, strict=True))
+    count = [
+        round((float(np.max(v + side)) - edge) / h)
+        for v, side, edge, h in zip((data.x, data.y), half, (left, low), data.steps, strict=True)
+    ]
+    fine = 0
+    while fine < cells.max() and max(count) * 2 ** (fine + 1) <= PIXELS:
+        fine += 1
+    nx, ny = (n * 2**fine for n in count)
+    total, area = np.zeros((ny * nx, 3)), np.zeros(ny * nx)
+    for level in np.unique(cells).tolist():
+        here = cells == level
+        across = 2 ** max(fine - level, 0)
+        size = 4.0 ** min(fine - level, 0)
+        corner = [
+            np.floor((v[here] - edge) / (h / 2**level)).astype(np.int64) * across // 2 ** max(level - fine, 0)
+            for v, edge, h in zip((data.x, data.y), (left, low), data.steps, strict=True)
+        ]
+        for dy in range(across):
+            for dx in range(across):
+                pixel = (corner[1] + dy) * nx + corner[0] + dx
+                area += size * np.bincount(pixel, minlength=ny * nx)
+                for k in range(3):
+                    total[:, k] += size * np.bincount(pixel, weights=colours[here, k], minlength=ny * nx)
+    mixed = np.where(area[:, None] > 0, total / np.maximum(area, 1e-300)[:, None], 1.0)
+    return mixed.reshape(ny, nx, 3), (left, left + count[0] * data.steps[0], low, low + count[1] * data.steps[1])

@@ -56,7 +56,7 @@ class RegimeMap:
     regime : (ny, nx) array of int
         Place in :data:`REGIME_CLASSES`, -1 where there is no point.
     sticks : (ny, nx) array of bool
-        Whether the ball sticks again and again.
+        Whether sticking recurs.
     name : (ny, nx) array of object
         n:m/pT where periodic, else None.
     ratio : (ny, nx) array
@@ -125,7 +125,7 @@ def regimes_figure(data: RegimeMap, *, title: str = "", width: float = 7.0) -> F
         if data.sticks.any():
             dark: Any = SHADE * np.array(to_rgb(REGIME_CLASSES["1:1, symmetric"]))
             handles.append(
-                Patch(facecolor=dark, edgecolor="#777777", linewidth=0.5, label="any, darker: the ball sticks")
+                Patch(facecolor=dark, edgecolor="#777777", linewidth=0.5, label="any, darker: sticking recurs")
             )
         figure.legend(handles=handles, loc="outside lower center", ncols=5)
         figure.suptitle(", ".join(part for part in (title, data.caption) if part), fontsize=9)

@@ -92,8 +92,8 @@ def generations(first: list[Branch], depth: int, within: tuple[float, float], op
     Returns
     -------
     list of Branch
-        The first ones and then each generation in turn. What could not be reached or followed is told in `Branch.remark`
-        of the branch that it comes out of.
+        The first ones and then each generation in turn. What could not be reached or followed is told in
+        `Branch.remark` of the branch that it comes out of.
     """
     generation, found = first, []
     for k in range(depth + 1):

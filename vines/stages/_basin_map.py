@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from vines.errors import DeclarationError
@@ -23,11 +25,9 @@ def basin_map(stage: Input) -> BasinMap:
         raise DeclarationError(f"plot basins needs a stage of the kind basins; {stage.name!r} is {stage.kind!r}")
     cells = stage.table("basins")
     column = {name: cells[name].to_numpy(zero_copy_only=False) for name in cells.column_names}
-    names = [
-        f"{row['name'] or row['regime']}: {100 * row['fraction']:.3g} ± {100 * row['fraction_error']:.1g} %"
-        for row in sorted(stage.table("attractors").to_pylist(), key=lambda row: row["attractor"])
-        if row["attractor"] >= 0
-    ]
+    told = {row["attractor"]: row for row in stage.table("attractors").to_pylist()}
+    order = sorted(told, key=lambda k: (k < 0, k))
+    shown = [k for k in order if k >= 0 or told[k]["fraction"] > 0]
     steps = []
     for name in ("x", "y"):
         values = np.unique(column[name][column["level"] == column["level"].min()])
@@ -39,6 +39,14 @@ def basin_map(stage: Input) -> BasinMap:
         level=column["level"],
         attractor=column["attractor"],
         mirrored=column["mirrored"].astype(bool),
-        names=names,
+        names=[_name(told[k]) for k in shown],
+        regimes=[told[k]["regime"] for k in shown if k >= 0],
         steps=(steps[0], steps[1]),
     )
+
+
+def _name(row: dict[str, Any]) -> str:
+    """Return what is written of an attractor: what it is, its share, and how long it lasts if not for good."""
+    what = row["name"] or row["regime"] if row["attractor"] >= 0 else "not settled"
+    text = f"{what}: {100 * row['fraction']:.4g} ± {100 * row['fraction_error']:.1g} % of the starts"
+    return f"{text}, left after {row['lifetime']:.2g} periods" if row.get("lifetime") else text

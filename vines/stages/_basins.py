@@ -20,7 +20,15 @@ def compute(job: WholeJob) -> Batch:
     options: Any = job.options
     p = Params(**job.params)
     axes = [(axis.name, np.linspace(axis.start, axis.stop, axis.count)) for axis in (options.x, options.y)]
-    found = basins(p, *axes, others=dict(options.start), refine=options.refine, patience=options.patience)
+    found = basins(
+        p,
+        *axes,
+        others=dict(options.start),
+        refine=options.refine,
+        settle=options.settle,
+        patience=options.patience,
+        watch=options.watch,
+    )
     n = len(found.x)
     cells = {name: np.full(n, value) for name, value in p.as_dict().items()}
     cells |= {"x_name": np.full(n, found.axes[0], dtype=object), "y_name": np.full(n, found.axes[1], dtype=object)}
@@ -33,11 +41,13 @@ def compute(job: WholeJob) -> Batch:
         if attractor is None:
             rows.append(row | {"attractor": -1})
             continue
-        m = attractor.measures
+        m, stay = attractor.measures, found.lifetimes[k]
         rows.append(
             row
             | {
                 "regime": attractor.regime,
+                "lifetime": stay.periods if stay.periods == stay.periods else None,
+                "lifetime_error": stay.error if stay.error == stay.error else None,
                 "name": attractor.name,
                 "alias": Word(attractor.word).alias if attractor.word else None,
                 "word": attractor.word,

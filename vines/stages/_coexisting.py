@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from vines.attractors import Attractor, Classified, classify_many
+from vines.attractors import Attractor, Classified, classify_many, share_error
 from vines.dynamics import no_ball
 from vines.model import PARAMETER_NAMES, Params, Word
 from vines.stages._rows import STATE
@@ -109,7 +109,7 @@ def attractor_rows(point_id: str, found: list[tuple[Attractor, int]], random: in
                 **p.as_dict(),
                 "attractor": k,
                 "fraction": share,
-                "fraction_error": (share * (1 - share) / random) ** 0.5 if share is not None else None,
+                "fraction_error": share_error(share, random) if share is not None else None,
                 "regime": attractor.regime,
                 "name": attractor.name,
                 "alias": Word(attractor.word).alias if attractor.word else None,

@@ -67,14 +67,19 @@ class Grid(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 class BasinsOptions(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """To which attractor each start of a grid over the coordinates `x` and `y` comes, the others as in `start`.
 
-    Cells at a boundary are halved in both directions `refine` times; after `patience` periods a start is unsettled.
+    Starts that come to no known orbit within `settle` periods are classified, exponents being believed after `watch`
+    periods more. After `patience` periods a start that has not settled is called so, and so is one on chaos that does not
+    last as long.
+    Cells at a boundary are halved in both directions `refine` times.
     """
 
     x: Grid
     y: Grid
     start: dict[str, float] = {}
     refine: int = 0
+    settle: int = 512
     patience: int = 4000
+    watch: int = 128
 
 
 def _check_simulation(params: dict[str, float], options: Any) -> None:
@@ -104,7 +109,9 @@ def _check_basins(params: dict[str, float], options: Any) -> None:
     for name, value, least in (
         ("count", min(options.x.count, options.y.count), 2),
         ("refine", options.refine, 0),
+        ("settle", options.settle, 1),
         ("patience", options.patience, 1),
+        ("watch", options.watch, 16),
     ):
         if value < least:
             raise ParameterError(f"{name} is {value}, allowed is {name} >= {least}")

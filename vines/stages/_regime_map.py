@@ -32,7 +32,7 @@ def regime_map(stage: Input) -> RegimeMap:
             "plot regimes needs a stage of kind 'sweep' that varies two"
         )
     first, second = stage.axes
-    wanted = [first, second, "regime", "name", "n", "m", "p", "symmetric", "sticks_per_period", "kinetic_ratio"]
+    wanted = [first, second, "regime", "name", "n", "m", "p", "symmetric", "recurrent_sticking", "kinetic_ratio"]
     table = stage.table().select(wanted)
     frame = table.to_pandas()
     x, y = np.unique(frame[first]), np.unique(frame[second])
@@ -48,7 +48,7 @@ def regime_map(stage: Input) -> RegimeMap:
         x=x,
         y=y,
         regime=grid(_classes(frame), -1),
-        sticks=grid((frame["sticks_per_period"] > 0).to_numpy(), False),
+        sticks=grid(frame["recurrent_sticking"].eq(True).to_numpy(), False),
         name=grid(np.array(table["name"].to_pylist(), dtype=object), None),
         ratio=grid(frame["kinetic_ratio"].to_numpy(), math.nan),
         caption=", ".join(

@@ -81,6 +81,8 @@ def point_row(
         "impacts_left": m.impacts_left,
         "impacts_right": m.impacts_right,
         "sticks_per_period": m.sticks_per_period,
+        "sticking_share": attractor.sticking_share,
+        "recurrent_sticking": attractor.recurrent_sticking,
         "lyapunov": attractor.lyapunov,
         "lyapunov_error": attractor.lyapunov_error,
         "duration": m.duration,

@@ -131,6 +131,9 @@ def start_again(result: Result, table: str, place: int) -> Comparison:
     if row["attractor"] < 0 or (table == "basins" and not (regular and row["periods"] <= _PROMPT)):
         return comparison
     found = _from_cell(result, row) if table == "basins" else _from_end(row)
+    if found is None:
+        comparison.same("attractor", row["attractor"], -1)
+        return comparison
     comparison.same("periodic motion", regular, found.regime in _REGULAR)
     if not regular or comparison.wrong:
         return comparison
@@ -150,10 +153,11 @@ def _from_end(row: dict[str, Any]) -> Attractor:
     return settle_from(params_of(row), {name: row[f"end_{name}"] for name in _STATE}, settle=0)
 
 
-def _from_cell(result: Result, row: dict[str, Any]) -> Attractor:
+def _from_cell(result: Result, row: dict[str, Any]) -> Attractor | None:
     from vines.attractors import basins
 
     options: Any = result.manifest["ingredients"]["options"]
     coordinates = ((row["x_name"], [row["x"]]), (row["y_name"], [row["y"]]))
-    found = basins(params_of(row), *coordinates, others=options["start"], patience=options["patience"])
-    return found.attractors[found.label[0]]
+    waiting = {name: options[name] for name in ("settle", "patience", "watch")}
+    found = basins(params_of(row), *coordinates, others=options["start"], **waiting)
+    return found.attractors[found.label[0]] if found.label[0] >= 0 else None
