@@ -63,6 +63,7 @@ def follow(c, state, elapsed, periods, watch, cap, tolerance, verdict):
     filled = 0
     passed = 0.0
     rate, error = 0.0, math.inf
+    length, count = 0.0, 0
     verdict[v.REGIME] = v.UNSETTLED
     rows = np.empty((int(4.0 * watch) + 64, col.ROW))
     for stage in range(len(LONGER)):

@@ -251,11 +251,13 @@ class Search:
 
     def _shown(self, group: Group) -> Attractor:
         """Return one run of a group as an attractor."""
+        shown = None
         for state in group.states:
             at = dict(zip(STATE, state.tolist(), strict=True)) | {"phase": self.phase}
             shown = settle_from(self.p, at, settle=0, record=SHOWN, patience=0, watch=self.watch)
             if shown.regime == group.regime:
-                return shown
+                break
+        assert shown is not None
         return replace(shown, regime=group.regime)
 
     def _keep(self, owner: int, states: Floats) -> None:

@@ -76,7 +76,7 @@ def sections_of(p: Params, attractor: Attractor, owner: int) -> list[Section]:
     """
     at = attractor.final
     periods = int(attractor.p or 1)
-    run = simulate(p, **{name: at[name] for name in STATE}, phi=at["phase"], periods=periods + 0.5)
+    run = simulate(p, x1=at["x1"], v1=at["v1"], x2=at["x2"], v2=at["v2"], phi=at["phase"], periods=periods + 0.5)
     times = np.arange(periods) * p.period
     found = []
     for mirrored in (False, True) if not attractor.symmetric else (False,):
@@ -89,7 +89,8 @@ def sections_of(p: Params, attractor: Attractor, owner: int) -> list[Section]:
 
 
 def _frame(p: Params, point: Floats, phase: float, periods: int) -> npt.NDArray[np.complex128]:
-    run = simulate(p, **dict(zip(STATE, point.tolist(), strict=True)), phi=phase, periods=periods)
+    x1, v1, x2, v2 = point.tolist()
+    run = simulate(p, x1=x1, v1=v1, x2=x2, v2=v2, phi=phase, periods=periods)
     vectors = np.linalg.eig(tangent_map(run))[1].astype(np.complex128)
     if not np.linalg.cond(vectors) < FLAT:
         return np.eye(4, dtype=np.complex128)

@@ -68,8 +68,8 @@ class BasinsOptions(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """To which attractor each start of a grid over the coordinates `x` and `y` comes, the others as in `start`.
 
     Starts that come to no known orbit within `settle` periods are classified, exponents being believed after `watch`
-    periods more. After `patience` periods a start that has not settled is called so, and so is one on chaos that does not
-    last as long.
+    periods more. After `patience` periods a start that has not settled is called so, and so is one on chaos that does
+    not last as long.
     Cells at a boundary are halved in both directions `refine` times.
     """
 
