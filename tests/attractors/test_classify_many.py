@@ -51,24 +51,32 @@ def test_on_its_attractor_a_run_is_judged_as_settle_judges_it() -> None:
 
 
 def test_from_random_starts_they_differ_only_where_a_transient_is_chaotic() -> None:
-    """Lanes and the scalar kernel round differently, and a chaotic transient forgets which orbit was to be reached."""
+    """Lanes and the scalar kernel round differently, and a chaotic transient forgets which orbit was to be reached.
+
+    Both answers must then come up among starts of the scalar kernel that differ in the ninth digit. Where chaos lasts
+    (points 10 and 242 leave it after some 5,000 and 900 periods, 365 after some 45,000) one of them may be rare. A run
+    that one of them calls unsettled, such as a ball that chaos has left nearly at rest, needs no second one.
+    """
     parameters, starts = _random(400, 1)
     many = classify_many(parameters, starts)
     other = []
     for k, one in enumerate(_alone(many)):
         if (one.regime, one.name) != (many.regime[k], many.name[k]):
-            other.append(k)
+            other.append((k, {(one.regime, one.name), (many.regime[k], many.name[k])}))
         elif one.name:
             assert one.measures.max_abs_x1 == pytest.approx(many.measures["max_abs_x1"][k], rel=1e-8)
-    assert len(other) <= 24
-    forgetful = 0
-    for k in other:
-        # A change in the ninth digit of the start does the same to `settle` alone, unless one of the two is rare.
+    assert len(other) <= 18
+    assert sum(("unsettled", None) in answers for _, answers in other) <= 5
+    for k, answers in other:
         p = Params(**dict(zip(PARAMETER_NAMES, many.parameters[k].tolist(), strict=True)))
         start = dict(zip(NAMES, many.starts[k].tolist(), strict=True))
-        nearby = [settle_from(p, start | {"v1": start["v1"] + j * 1e-9}) for j in range(-20, 21)]
-        forgetful += len({(one.regime, one.name) for one in nearby}) > 1
-    assert forgetful >= 0.75 * len(other)
+        wanted = answers - {("unsettled", None)}
+        for j in range(1, 1000):
+            near = settle_from(p, start | {"v1": start["v1"] + j * 1e-9})
+            wanted.discard((near.regime, near.name))
+            if not wanted:
+                break
+        assert not wanted, f"point {k}: {wanted} of {answers} is not among neighbouring starts"
 
 
 @settings(deadline=None, max_examples=20)

@@ -10,7 +10,7 @@ import numpy.typing as npt
 from vines.dynamics import ensemble
 from vines.model import Params
 
-__all__ = ["WINDOW", "Group", "averages", "match", "observe", "sort_into"]
+__all__ = ["WINDOW", "Group", "averages", "match", "observe", "sort_into", "steady"]
 
 Floats = npt.NDArray[np.float64]
 
@@ -22,8 +22,8 @@ WINDOW = 64
 SIGNS = np.array([1.0, 1.0, 1.0, 1.0, 1.0, -1.0, -1.0])
 """What the mirror image does to the averages: the last two change their sign."""
 
-BATCHES = 15
-"""Parts of a run from whose scatter the standard errors of its averages are taken."""
+BATCHES = 10
+"""Parts of a run from whose scatter the standard errors of its averages are taken, each of three windows or more."""
 
 SURE = 5.0
 """Standard errors by which two averages must differ for the attractors to be two."""
@@ -121,23 +121,21 @@ def averages(measures: npt.NDArray[np.void]) -> Floats:
     )
 
 
-def observe(p: Params, states: Floats, phase: float, windows: int) -> tuple[Floats, Floats, Floats]:
+def observe(p: Params, states: Floats, phase: float, windows: int) -> tuple[Floats, Floats]:
     """Run on from states at one phase of the forcing and take averages window by window.
 
     Returns
     -------
-    values, half, end : ndarray, shape (n, windows, 7), (n, 4), (n, 4)
-        Averages, and the states half-way and at the end.
+    values, end : ndarray, shape (n, windows, 7) and (n, 4)
+        Averages, and the states at the end.
     """
     values = np.empty((len(states), windows, len(SIGNS)))
-    half = now = states
+    now = states
     for k in range(windows):
-        if k == windows // 2:
-            half = now
         run = ensemble(p, dict(zip(STATE, now.T, strict=True)) | {"phase": phase}, periods=WINDOW, record="measures")
         values[:, k] = averages(run.measures) if run.measures is not None else np.nan
         now = np.stack([run.final[name] for name in STATE], axis=1)
-    return values, half, now
+    return values, now
 
 
 def mean_and_error(windows: Floats) -> tuple[Floats, Floats]:
@@ -145,6 +143,18 @@ def mean_and_error(windows: Floats) -> tuple[Floats, Floats]:
     batches = np.array([np.mean(part, axis=0) for part in np.array_split(windows, min(BATCHES, len(windows)))])
     error = np.std(batches, axis=0, ddof=1) / np.sqrt(len(batches)) if len(batches) > 1 else np.inf
     return np.mean(windows, axis=0), np.broadcast_to(error, windows.shape[1:])
+
+
+def steady(values: Floats) -> npt.NDArray[np.bool_]:
+    """Say of which runs, (n, windows, 7), the averages of the first and the second half agree within their errors."""
+    half = values.shape[1] // 2
+    keep = []
+    for windows in values:
+        (first, one), (second, other) = mean_and_error(windows[:half]), mean_and_error(windows[half:])
+        keep.append(
+            bool(np.all(np.abs(first - second) <= SURE * np.hypot(one, other) + FLOOR * np.abs(second) + 1e-12))
+        )
+    return np.array(keep, dtype=bool)
 
 
 def _apart(values: Floats, errors: Floats, group: Group, spread: Floats) -> tuple[Floats, npt.NDArray[np.int64]]:

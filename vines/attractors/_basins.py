@@ -78,7 +78,7 @@ def basins(
     *,
     others: Mapping[str, float] | None = None,
     refine: int = 0,
-    settle: float = 512,
+    settle: float = 256,
     patience: float = 4000,
     watch: float = 128,
 ) -> Basins:

@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from vines.attractors._attractor import Attractor
-from vines.attractors._averages import WINDOW, Group, averages, match, observe, sort_into
+from vines.attractors._averages import WINDOW, Group, averages, match, observe, sort_into, steady
 from vines.attractors._classify import Classified, classify_many
 from vines.attractors._sections import NEAR, ON, Section, sections_of
 from vines.attractors._settle import settle_from
@@ -36,13 +36,16 @@ LONG = 20_000
 """Forcing periods that the sample may take."""
 
 WATCHED = 256
-"""Runs that never repeat from which averages are taken over the whole patience."""
+"""Runs that never repeat that are watched for the whole patience; averages are taken over its second half."""
 
 STAYING = 4096
 """Runs that never repeat of which it is watched whether they stay."""
 
 SHOWN = 512
 """Forcing periods recorded of the run that stands for an attractor that never repeats."""
+
+BESIDE = 1e-9
+"""Change of the ball's velocity that gives a chaotic run a future of its own."""
 
 LOOK = 16
 """Windows of averages of a second look, where one window did not agree with any attractor."""
@@ -72,7 +75,7 @@ class Search:
         self.p, self.phase, self.watch = p, phase, watch
         self.patience = math.ceil(patience / ROUND) * ROUND
         self.settle = min(math.ceil(settle / ROUND) * ROUND, self.patience)
-        self.windows = max(self.patience // WINDOW, 2)
+        self.windows = max(self.patience // WINDOW, LOOK)
         self.attractors: list[Attractor] = []
         self.sections: list[Section] = []
         self.groups: list[Group] = []
@@ -182,6 +185,8 @@ class Search:
 
     def _decide(self, runs: _Runs, still: Numbers) -> Numbers:
         """Classify runs where they are; return those that have not settled."""
+        if not len(still):
+            return still
         open_ones, strange, values = [], [], []
         for k in range(0, len(still), CHUNK):
             part = still[k : k + CHUNK]
@@ -205,14 +210,15 @@ class Search:
         passing, which = self._assign(runs, which, values, 1)
         left = [passing]
         if len(which):
-            seen, _, runs.states[which] = observe(self.p, runs.states[which], self.phase, LOOK)
-            values = seen.mean(axis=1)
+            seen, runs.states[which] = observe(self.p, runs.states[which], self.phase, LOOK)
+            # Where one window did not do, what came before may not have died out: only the second half counts.
+            values = seen[:, LOOK // 2 :].mean(axis=1)
             again = which
-            passing, which = self._assign(runs, which, values, LOOK)
+            passing, which = self._assign(runs, which, values, LOOK // 2)
             left.append(passing)
             if len(which):
                 self._watch(runs.states[_spread(which, WATCHED)])
-                passing, which = self._assign(runs, which, values[np.isin(again, which)], LOOK)
+                passing, which = self._assign(runs, which, values[np.isin(again, which)], LOOK // 2)
                 left.append(passing)
         return [*left, which]
 
@@ -230,24 +236,32 @@ class Search:
 
     def _watch(self, states: Floats) -> None:
         """Take long averages from runs that never repeat, and learn which attractors they are on."""
-        values, half, end = observe(self.p, states, self.phase, self.windows)
+        values, end = observe(self.p, states, self.phase, self.windows)
         found = self._classify(end, 0.0)
         self._on_orbits(found)
-        regime = found.regime
-        wild = found.settled & np.isin(regime, ("chaotic", "quasiperiodic"))
-        gone = (self._distances(end) < NEAR).any(axis=1) | (found.settled & ~wild)
-        late = gone & ~(self._distances(half) < NEAR).any(axis=1)
-        stay = np.flatnonzero(wild & ~gone)
+        values = values[:, self.windows // 2 :]
+        wild = found.settled & np.isin(found.regime, ("chaotic", "quasiperiodic"))
+        stay = np.flatnonzero(wild & ~self._captured(end) & steady(values))
         known = len(self.groups)
-        sort_into(self.groups, regime[stay].tolist(), end[stay], values[stay])
-        # If a quarter leaves within half the patience, it is a transient and no answer.
-        passing = np.count_nonzero(late) > 0.25 * (np.count_nonzero(late) + len(stay))
+        sort_into(self.groups, found.regime[stay].tolist(), end[stay], values[stay])
         for k in range(known, len(self.groups)):
-            group = self.groups[k]
-            if passing:
-                continue
-            group.owner = len(self.attractors)
-            self.attractors.append(self._shown(group))
+            if self._lasts(k):
+                self.groups[k].owner = len(self.attractors)
+                self.attractors.append(self._shown(self.groups[k]))
+
+    def _lasts(self, k: int) -> bool:
+        """Say whether more than half of the runs on a group, or beside it, are still on it a patience later."""
+        group = self.groups[k]
+        count = min(max(SAMPLE, len(group.states)), WATCHED)
+        states = np.array(group.states)[np.arange(count) % len(group.states)]
+        states[:, 3] += np.linspace(-BESIDE, BESIDE, count)
+        values, end = observe(self.p, states, self.phase, self.windows)
+        late = max(self.windows // 4, 1)
+        which, _ = match(values[:, -late:].mean(axis=1), late, self.groups)
+        return bool(np.mean((which == k) & ~self._captured(end)) > 0.5)
+
+    def _captured(self, states: Floats) -> npt.NDArray[np.bool_]:
+        return np.asarray((self._distances(states) < NEAR).any(axis=1))
 
     def _shown(self, group: Group) -> Attractor:
         """Return one run of a group as an attractor."""

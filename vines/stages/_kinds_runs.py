@@ -77,7 +77,7 @@ class BasinsOptions(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     y: Grid
     start: dict[str, float] = {}
     refine: int = 0
-    settle: int = 512
+    settle: int = 256
     patience: int = 4000
     watch: int = 128
 

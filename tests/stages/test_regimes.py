@@ -1,0 +1,64 @@
+"""The map of regimes in a coarse version: its pipeline as it is shipped, with fewer points."""
+
+import collections
+import json
+
+import pytest
+
+from vines.model import Params
+from vines.orbits import find_orbit
+
+
+@pytest.fixture(scope="module")
+def coarse(tmp_path_factory):
+    from tests.conftest import REPOSITORY, Project
+
+    root = tmp_path_factory.mktemp("regimes")
+    (root / "pipelines").symlink_to(REPOSITORY / "pipelines")
+    project = Project(root)
+    fewer = {"A.count": 20, "mu.count": 15}
+    settings = [part for key, count in fewer.items() for part in ("--set", f"stages.map.vary.{key}={count}")]
+    project.vines("run", "regimes", "--quiet", *settings)
+    return project
+
+
+@pytest.fixture(scope="module")
+def points(coarse):
+    told = coarse.vines("query", "select * from points where pipeline = 'regimes'", "--format", "json")
+    return json.loads(told.stdout)
+
+
+def test_every_point_is_named_and_most_are_settled(coarse, points):
+    assert len(points) == 300
+    counts = collections.Counter(row["regime"] for row in points)
+    assert set(counts) <= {"periodic", "quasiperiodic", "chaotic", "no_impact", "unsettled"}
+    assert counts["periodic"] > 100
+    assert counts["chaotic"] > 100
+    assert counts["unsettled"] < 10
+    for row in points:
+        assert (row["name"] is not None) == (row["regime"] == "periodic")
+        assert row["settled"] == (row["regime"] != "unsettled")
+        if row["regime"] == "chaotic":
+            assert row["lyapunov"] > 3 * row["lyapunov_error"] > 0
+    assert list(coarse.data.glob("results/*/picture.png"))
+
+
+def test_symmetric_one_to_one_points_are_the_orbits_in_closed_form(points):
+    symmetric = [row for row in points if row["name"] == "1:1" and row["symmetric"]]
+    assert len(symmetric) > 50
+    for row in symmetric:
+        orbit = find_orbit("LR", Params(mu=row["mu"], A=row["A"], Omega=row["Omega"], r=row["r"], lam=row["lam"]))
+        assert orbit.stable
+        assert row["kinetic_ratio"] == pytest.approx(orbit.measures.kinetic_ratio, rel=1e-8)
+        assert row["max_abs_x1"] == pytest.approx(orbit.measures.max_abs_x1, rel=1e-8)
+
+
+def test_recurrent_sticking_is_a_column_of_its_own(points):
+    now_and_then = [row for row in points if row["sticks_per_period"] > 0 and not row["recurrent_sticking"]]
+    always = [row for row in points if row["recurrent_sticking"]]
+    assert now_and_then
+    assert always
+    for row in always:
+        assert row["sticking_share"] >= 0.9 or (row["regime"] == "periodic" and row["sticking_share"] > 0)
+    # Sticking in every period takes a ball that is heavy or a base that hardly moves it.
+    assert all(row["regime"] != "no_impact" for row in always)
