@@ -1,6 +1,7 @@
 """From one family to the next: branch switching, cascades, and the question of the paper's section 5.1."""
 
 import itertools
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -19,6 +20,7 @@ from vines.orbits import (
 )
 from vines.orbits._criticality import branching_curvature
 from vines.orbits._defining import turnings_kernel
+from vines.orbits._general import refine
 from vines.orbits._joined import is_joint, unfolded
 
 P = Params(mu=0.01, A=0.015)
@@ -42,6 +44,42 @@ def test_a_broken_symmetry_gives_a_pair_of_mirror_images(cascade):
     np.testing.assert_allclose(back.states, one.states, atol=1e-14)
     np.testing.assert_allclose(back.phase, one.phase, atol=1e-13)
     assert abs(one.flight_times - other.flight_times).max() > 1e-3
+
+
+def test_the_image_that_comes_first_does_not_depend_on_rounding(cascade):
+    bifurcation = cascade[0].bifurcations[0]
+    one, other = switch_branch(bifurcation)
+    assert one.states[:, 0].mean() > 0 > other.states[:, 0].mean()
+    # The orbit there half a period later is its own mirror image with rounding errors of its own.
+    for moved in (mirror_image(bifurcation.orbit), mirror_image(mirror_image(bifurcation.orbit))):
+        again, _ = switch_branch(replace(bifurcation, orbit=moved))
+        np.testing.assert_allclose(again.states, one.states, atol=1e-7)
+    assert all(orbit.states[:, 0].mean() > 0 for branch in cascade[1:] for orbit in branch.orbits[1:])
+
+
+def test_next_to_a_branching_at_resonance_newton_ends_whatever_the_rounding():
+    """Without the ball x1 is 42 there: the equations are sums of such parts, and their defect is no smaller."""
+    branch = continue_orbit(find_orbit("LR", Params(mu=0.72, A=0.5)), "mu", 0.73)
+    [breaking] = branch.bifurcations
+    assert breaking.value == pytest.approx(0.726793320568, abs=1e-9)
+    rng = np.random.default_rng(1)
+    for orbit in switch_branch(breaking):
+        for _ in range(20):
+            guess = orbit.t + 1e-8 * rng.standard_normal(2)
+            np.testing.assert_allclose(refine(orbit.word, orbit.params, guess).states, orbit.states, atol=1e-8)
+
+
+def test_a_family_that_is_not_reached_is_told_and_the_others_are_there(monkeypatch, cascade):
+    def fails(bifurcation):
+        if bifurcation.type == "period_doubling":
+            raise OrbitNotFound("it was lost")
+        return switch_branch(bifurcation)
+
+    monkeypatch.setattr("vines.orbits._cascade.switch_branch", fails)
+    first, second = follow_cascade(cascade[0].orbits[0], "A", 0.024, depth=2)
+    assert (first.remark, second.parent) == ("", first.branch_id)
+    assert second.remark == "out of the period_doubling at 0.0204743801: it was lost"
+    assert branch_row(second)["remark"] == second.remark
 
 
 def test_a_doubling_gives_the_doubled_word_and_a_simulation_stays_on_it(cascade):
