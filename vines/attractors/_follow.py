@@ -95,7 +95,10 @@ def follow(c, state, elapsed, periods, watch, cap, tolerance, verdict):
             verdict[v.REASON] = v.DECAYS
             return
     last = rows[count]
-    quiet = length - rows[count - 1, col.TIME]
+    event = count - 1
+    while event > 0 and rows[event, col.KIND] not in (col.IMPACT, col.STICK):
+        event -= 1
+    quiet = length - rows[event, col.TIME]
     if quiet > 0.25 * length and last[col.MODE] == 0.0:
         note_drift(verdict, period, abs(last[col.A_V2]))
         verdict[v.REMAINING] += passed
@@ -152,7 +155,7 @@ def _beside_orbit(c, rows, n, length, chaotic, last, tolerance, verdict):
         # Multiples of the period of an orbit that was seen tell no more, unless they repeat much better.
         if filled == 0 or not blocks[:filled].max() < least:
             continue
-        after, newest = blocks[:filled].max(), blocks[filled - 1]
+        after, oldest, newest, passes = blocks[:filled].max(), blocks[0], blocks[filled - 1], filled
         _, filled = repetition(rows, early, p * period, scale, blocks)
         before = blocks[:filled].max() if filled > 0 else math.inf
         found, largest, _, remaining = False, math.inf, math.inf, math.inf
@@ -163,9 +166,12 @@ def _beside_orbit(c, rows, n, length, chaotic, last, tolerance, verdict):
         if stable and (after < before or (last and after < NEAR and after < GROWS * before)):
             note_coming(verdict, remaining, largest ** (1.0 / p))
             return True
-        if not found and after < 0.5 * before < math.inf:
-            note_decay(verdict, newest, p, math.log(before / after) / (0.75 * length / period), tolerance)
+        if not found and newest < 0.5 * oldest:
+            note_decay(verdict, newest, p, math.log(oldest / newest) / ((passes - 1.0) * p), tolerance)
             return True
+        if p > LARGEST_P:
+            # A torus may nearly repeat after many periods.
+            continue
         # A run that nears an unstable orbit will leave it again, and one beside a stable orbit may take longer than the
         # quarter to turn about it: that is seen later.
         passing = found and not last and (stable or after < before)
