@@ -16,7 +16,7 @@ def coarse(tmp_path_factory):
     root = tmp_path_factory.mktemp("regimes")
     (root / "pipelines").symlink_to(REPOSITORY / "pipelines")
     project = Project(root)
-    fewer = {"A.count": 20, "mu.count": 15}
+    fewer = {"A.count": 16, "mu.count": 12}
     settings = [part for key, count in fewer.items() for part in ("--set", f"stages.map.vary.{key}={count}")]
     project.vines("run", "regimes", "--quiet", *settings)
     return project
@@ -29,11 +29,11 @@ def points(coarse):
 
 
 def test_every_point_is_named_and_most_are_settled(coarse, points):
-    assert len(points) == 300
+    assert len(points) == 192
     counts = collections.Counter(row["regime"] for row in points)
     assert set(counts) <= {"periodic", "quasiperiodic", "chaotic", "no_impact", "unsettled"}
-    assert counts["periodic"] > 100
-    assert counts["chaotic"] > 100
+    assert counts["periodic"] > 60
+    assert counts["chaotic"] > 60
     assert counts["unsettled"] < 10
     for row in points:
         assert (row["name"] is not None) == (row["regime"] == "periodic")
@@ -45,7 +45,7 @@ def test_every_point_is_named_and_most_are_settled(coarse, points):
 
 def test_symmetric_one_to_one_points_are_the_orbits_in_closed_form(points):
     symmetric = [row for row in points if row["name"] == "1:1" and row["symmetric"]]
-    assert len(symmetric) > 50
+    assert len(symmetric) > 20
     for row in symmetric:
         orbit = find_orbit("LR", Params(mu=row["mu"], A=row["A"], Omega=row["Omega"], r=row["r"], lam=row["lam"]))
         assert orbit.stable

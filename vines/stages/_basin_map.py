@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import numpy as np
@@ -48,5 +49,14 @@ def basin_map(stage: Input) -> BasinMap:
 def _name(row: dict[str, Any]) -> str:
     """Return what is written of an attractor: what it is, its share, and how long it lasts if not for good."""
     what = row["name"] or row["regime"] if row["attractor"] >= 0 else "not settled"
-    text = f"{what}: {100 * row['fraction']:.4g} ± {100 * row['fraction_error']:.1g} % of the starts"
-    return f"{text}, left after {row['lifetime']:.2g} periods" if row.get("lifetime") else text
+    share, error = 100 * row["fraction"], 100 * row["fraction_error"]
+    digits = max(0, -math.floor(math.log10(error)))
+    text = f"{what}: {share:.{digits}f} ± {error:.{digits}f} % of the starts"
+    if row.get("lifetime") is None:
+        return text
+    return f"{text}, left after {_rounded(row['lifetime']):,.0f} periods on average"
+
+
+def _rounded(value: float) -> float:
+    """Return a number to two digits."""
+    return float(f"{value:.2g}")
