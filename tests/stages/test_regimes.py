@@ -44,8 +44,9 @@ def test_every_point_is_named_and_most_are_settled(coarse, points):
 
 
 def test_symmetric_one_to_one_points_are_the_orbits_in_closed_form(points):
-    symmetric = [row for row in points if row["name"] == "1:1" and row["symmetric"]]
-    assert len(symmetric) > 20
+    # A complete chatter counts as one contact too: those orbits have more impacts.
+    symmetric = [row for row in points if row["name"] == "1:1" and row["symmetric"] and row["sticks_per_period"] == 0]
+    assert len(symmetric) > 10
     for row in symmetric:
         orbit = find_orbit("LR", Params(mu=row["mu"], A=row["A"], Omega=row["Omega"], r=row["r"], lam=row["lam"]))
         assert orbit.stable
