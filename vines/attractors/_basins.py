@@ -66,7 +66,7 @@ class Basins:
 
     def fraction(self, k: int) -> tuple[float, float]:
         """Return the share of the starts that come to attractor k (-1: unsettled) and its standard error."""
-        share = float(np.sum(self.weight[self.label == k]))
+        share = math.fsum(self.weight[self.label == k].tolist())
         # Weights differ after a refinement: the effective number of independent cells.
         return share, share_error(share, 1.0 / float(np.sum(self.weight**2)))
 
