@@ -245,8 +245,9 @@ def connect_tables(
 def _open() -> Any:
     import duckdb
 
-    config = {"autoinstall_known_extensions": "false", "autoload_known_extensions": "false"}
-    connection = duckdb.connect(":memory:", config=config)
+    connection = duckdb.connect(
+        ":memory:", config={"autoinstall_known_extensions": "false", "autoload_known_extensions": "false"}
+    )
     # A result never changes, and its footer tells where to look: to read it again takes longer than a narrow query.
     connection.execute("SET parquet_metadata_cache = true")
     return connection
