@@ -173,8 +173,8 @@ def test_the_unstable_2_to_1_ends_where_the_asymmetric_1_to_1_does(cascade, two_
     # They are one orbit there: 2:1 has an impact without speed where 1:1 has a turning point on the wall.
     faint = np.argmin(ours.orbit.side * ours.orbit.w_dot)
     rest = np.delete(ours.orbit.states, faint, axis=0)
-    pair = min((theirs.orbit, mirror_image(theirs.orbit)), key=lambda o: abs(o.states - rest).max())
-    np.testing.assert_allclose(pair.states, rest, atol=1e-8)
+    # The one of larger mean x1 is followed; it grazes on R, its mirror image on L.
+    np.testing.assert_allclose(mirror_image(theirs.orbit).states, rest, atol=1e-8)
     # Both exist below only: a non-smooth fold.
     assert max(cascade[1].values) == theirs.value
     assert max(two_to_one.values) == ours.value
@@ -182,12 +182,9 @@ def test_the_unstable_2_to_1_ends_where_the_asymmetric_1_to_1_does(cascade, two_
 
 def test_2_to_2_over_2t_ends_in_a_non_smooth_fold_with_an_unstable_3_to_2_over_2t(cascade):
     grazing = cascade[2].bifurcations[-1]
-    orbit = grazing.orbit
-    # Rounding says which of two mirror images the cascade followed; take the one that grazes on the left.
+    # The cascade's one grazes on R; take its mirror image, which grazes on L.
+    orbit = mirror_image(grazing.orbit)
     turnings = turnings_kernel(constants(orbit.params), orbit.period, orbit.t, orbit.states)
-    if turnings[np.argmin(turnings[:, 3]), 2] < 0:
-        orbit = mirror_image(orbit)
-        turnings = turnings_kernel(constants(orbit.params), orbit.period, orbit.t, orbit.states)
     flight, tau, wall = turnings[np.argmin(turnings[:, 3]), :3]
     assert wall == 1
     times = np.sort(np.append(orbit.t, orbit.t[int(flight)] + tau))
@@ -222,9 +219,8 @@ def test_the_chaos_of_the_cascade_grazes_and_then_loses_itself_to_2_to_1(cascade
     start = orbit.start()
     run = simulate(p, **{**start, "v1": start["v1"] + 1e-7}, periods=20_000)
     word = "".join("L" if side > 0 else "R" for side in run.impacts["side"])
-    if "RR" in word:
-        # The mirror image of the branch was followed.
-        word = word.translate(str.maketrans("LR", "RL"))
-    assert ("LL" in word) == grazes
-    assert ("RLR" in word[-60:]) == stays
+    # The cascade's one grazes on R.
+    assert ("RR" in word) == grazes
+    assert "LL" not in word
+    assert ("LRL" in word[-60:]) == stays
     assert find_orbit("LLR", p).stable
