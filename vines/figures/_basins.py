@@ -24,6 +24,8 @@ CHAOS = ("#d2d2d2", "#a9a9a9", "#808080")
 UNSETTLED = "#000000"
 """Colours as in the map of regimes: periodic attractors coloured, chaotic ones grey, what has not settled black."""
 
+LETTERS, SWATCH = 13, 9
+"""Letters of the legend to an inch, and the room of a colour in it, in letters."""
 SHADE = 0.62
 """Factor on the colour where the mirror image of an attractor is reached."""
 
@@ -94,7 +96,8 @@ def basins_figure(data: BasinMap, *, title: str = "", width: float = 7.0) -> Fig
             Patch(facecolor=colour, edgecolor="#777777", linewidth=0.5, label=name)
             for colour, name in zip((*colours, UNSETTLED), data.names, strict=False)
         ]
-        figure.legend(handles=handles, loc="outside lower center", ncols=min(2, len(handles)))
+        beside = 2 * max(len(name) + SWATCH for name in data.names) < LETTERS * width
+        figure.legend(handles=handles, loc="outside lower center", ncols=2 if beside else 1)
         ax.set_title(title, fontsize=9)
     return figure
 
