@@ -2,6 +2,7 @@
 
 import os
 import shutil
+import signal
 import subprocess
 import sys
 from pathlib import Path
@@ -18,6 +19,8 @@ os.environ.setdefault("NUMBA_CACHE_DIR", str(cache_folder()))
 os.environ["RERUN_ANALYTICS"] = "0"
 os.environ.pop("VINES_ROOT", None)
 os.environ.pop("VINES_DATA", None)
+# A shell starts what runs in the background with SIGINT ignored; the commands that tests interrupt would inherit that.
+signal.signal(signal.SIGINT, signal.default_int_handler)
 
 # No timed test in the suite: a busy machine must not fail a property.
 # In CI the examples are the same each time; a developer's run goes on looking for new ones.

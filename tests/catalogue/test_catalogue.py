@@ -13,6 +13,8 @@ from vines.catalogue import connect, connect_tables
 from vines.errors import QueryError, SchemaError, UnknownNameError
 from vines.store import Store, write_parquet
 
+VERSION = schema.table("points").version
+
 
 @pytest.fixture
 def store(tmp_path):
@@ -110,7 +112,7 @@ def test_a_file_of_another_version_or_unit_is_one_clear_line(store):
     table = pq.read_table(path)
     about = json.loads(table.schema.metadata[b"vines"])
     for change, words in (
-        ({"version": 7}, "it is version 7 of 'points', this vines has version 1"),
+        ({"version": 7}, f"it is version 7 of 'points', this vines has version {VERSION}"),
         ({"units": {**about["units"], "A": "m"}}, "the unit of 'A' is told as 'm', the schema says '1'"),
     ):
         pq.write_table(table.replace_schema_metadata({"vines": json.dumps(about | change)}), path)

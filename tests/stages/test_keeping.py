@@ -30,10 +30,10 @@ def test_the_committed_schema_is_current(project):
 
 def test_diff_gc_graph_and_a_store_that_was_moved(project):
     declare(project)
-    project.vines("run", "small", "--quiet")
+    project.vines("run", "small", "--quiet", "--jobs", "1")
     first = json.loads((project.data / "pipelines" / "small.pins.json").read_text())["up"]["result"]
     assert project.vines("gc").stdout.startswith("nothing to remove")
-    project.vines("run", "small", "--quiet", "--set", "params.r=0.6")
+    project.vines("run", "small", "--quiet", "--jobs", "1", "--set", "params.r=0.6")
     different = project.vines("diff", first[:8], "small.up", check=False)
     assert different.returncode == 1
     assert "asked for: r 0.65 → 0.6" in different.stdout
