@@ -19,6 +19,7 @@ import numpy as np
 
 import vines
 from benchmarks import start_up
+from vines.places import cache_folder
 
 PAGE = Path(__file__).resolve().parent.parent / "docs" / "acceptance.md"
 CHATTER = {"release": 48.6979167390, "mu": 0.0084, "A": 0.015}
@@ -103,7 +104,7 @@ def waiting() -> list[str]:
 def paper() -> list[str]:
     """Compute every figure of the paper into an empty store, compare with what is printed, verify and recompute."""
     with tempfile.TemporaryDirectory() as folder:
-        env = os.environ | {"VINES_DATA": folder}
+        env = os.environ | {"VINES_DATA": folder, "NUMBA_CACHE_DIR": str(cache_folder())}
 
         def ask(*words: str) -> tuple[str, float]:
             begin = time.perf_counter()
