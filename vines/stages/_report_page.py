@@ -8,13 +8,13 @@ import re
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from html import escape
+from html import escape, unescape
 from typing import Any
 
 from vines import schema
 from vines.stages._report_assets import POLICY, SCRIPT, STYLE
 
-__all__ = ["Figure", "Head", "Run", "Section", "StageFacts", "page"]
+__all__ = ["Figure", "Head", "Run", "Section", "StageFacts", "page", "plain"]
 
 _SIGNS = {
     **{"reproduced": "✓", "differs": "✗", "not_reproducible": "–"},
@@ -78,6 +78,18 @@ class Section:
     runs: Sequence[Run]
     tables: Sequence[Head]
     stages: Sequence[StageFacts]
+
+
+def plain(title: str) -> str:
+    r"""Return the title of a picture without the marks of its mathematics.
+
+    Examples
+    --------
+    >>> plain(r"Fig. 2:  $\mu = 0.01$,  $\Omega = 1$")
+    'Fig. 2: μ = 0.01, Ω = 1'
+    """
+    letters = re.sub(r"\\([A-Za-z]+)", lambda found: unescape(f"&{found[1]};"), title)  # TeX and HTML name them alike
+    return " ".join(letters.replace("$", "").split())
 
 
 def page(name: str, title: str, source: str, sections: Sequence[Section]) -> str:
@@ -170,7 +182,7 @@ def _figure(figure: Figure) -> str:
         f'<button class="tool" data-act="{act}" aria-label="{label}">{sign}</button>'
         for act, label, sign in (("out", "smaller", "−"), ("in", "larger", "+"), ("reset", "whole figure", "⤢"))
     )
-    title = escape(figure.title)
+    title = escape(plain(figure.title))
     return (
         f'<figure><div class="frame" tabindex="0" role="group" '
         f'aria-label="{title}; + and - zoom, arrows move, 0 resets">'
