@@ -8,6 +8,7 @@ defines it, so an ``__init__`` that only imports doesn't count, and adding an ex
 from __future__ import annotations
 
 import ast
+import functools
 import hashlib
 import importlib.util
 import json
@@ -163,8 +164,9 @@ class CodeDigests:
         entry = self._cached.get(str(file))
         if entry is not None and entry["stamp"] == stamp:
             return _Module(entry["digest"], entry["imports"], entry["exports"], entry["light"])
-        read = _read_source(module, file)
-        if time.time_ns() - stat.st_mtime_ns > _SETTLED_NS:
+        settled = time.time_ns() - stat.st_mtime_ns > _SETTLED_NS
+        read = _read_once(module, file, stat.st_mtime_ns, stat.st_size) if settled else _read_source(module, file)
+        if settled:
             self._cached[str(file)] = {
                 "stamp": stamp,
                 "digest": read.digest,
@@ -181,6 +183,13 @@ class CodeDigests:
             return cached["files"] if cached.get("form") == _FORM else {}
         except (OSError, ValueError, KeyError, AttributeError):
             return {}
+
+
+@functools.cache
+def _read_once(module: str, file: Path, mtime_ns: int, size: int) -> _Module:
+    """Return what a file says; all plans of a process share it, also where there is no cache on disk yet."""
+    del mtime_ns, size
+    return _read_source(module, file)
 
 
 def _read_source(module: str, file: Path) -> _Module:
