@@ -81,9 +81,7 @@ class Study:
         """Say that the kernels are compiled: to warm them up calls some with numbers that only the right model has."""
         mark = "import os; from vines.stages._running import _compiled as f"
         mark += "; os.makedirs(f().parent, exist_ok=True); f().touch()"
-        path = os.pathsep.join(filter(None, [str(self.sources), os.environ.get("PYTHONPATH")]))
-        environment = {**os.environ, "PYTHONPATH": path}
-        subprocess.run([sys.executable, "-c", mark], cwd=self.folder, env=environment, check=True)
+        subprocess.run([sys.executable, "-c", mark], cwd=self.folder, env=self._environment(), check=True)
 
     def change_restitution(self, by):
         """Change r in all declarations, and in the claims where they pick rows by it."""
@@ -111,15 +109,17 @@ class Study:
             numeric |= {row["id"]: row for row in rows if row["published_value"] is not None}
         return numeric
 
-    def _vines(self, *arguments):
+    def _environment(self):
         path = os.pathsep.join(filter(None, [str(self.sources), os.environ.get("PYTHONPATH")]))
-        environment = {**os.environ, "VINES_ROOT": str(self.folder), "PYTHONPATH": path}
+        return {**os.environ, "VINES_ROOT": str(self.folder), "PYTHONPATH": path}
+
+    def _vines(self, *arguments):
         done = subprocess.run(
             [sys.executable, "-m", "vines.cli", *arguments],
             capture_output=True,
             text=True,
             cwd=self.folder,
-            env=environment,
+            env=self._environment(),
             timeout=1800,
             check=False,
         )
