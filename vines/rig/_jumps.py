@@ -378,7 +378,7 @@ class _Problem:
         mean, u = (np.zeros(len(step)), np.full(len(step), 3.0)) if expected is None else expected
         _add(band, right, velocity, 1 / u**2, mean)
         # Keeps the first flight solvable when it holds no samples.
-        band[0] += 1e-9 * float(np.median(band[0]))
+        band[0, :2] += 1e-9 * float(np.median(band[0]))
         factor = cholesky_banded(band, lower=True)
         answer = cho_solve_banded((factor, True), np.column_stack([right, cross]))
         border = answer[:, 1:]
