@@ -9,7 +9,7 @@ import numpy.typing as npt
 
 from vines.rig._jumps import Jumps
 
-__all__ = ["BallMotion", "Cavity", "ball_motion"]
+__all__ = ["BallMotion", "Cavity", "Course", "ball_motion"]
 
 Floats = npt.NDArray[np.float64]
 
@@ -26,11 +26,32 @@ class Cavity:
         Deceleration of the ball against the cavity [m/s^2].
     tilt : float
         Acceleration of the ball by gravity, to the right [m/s^2].
+    touch : float
+        Centroid of the force of a contact after the touch [s].
     """
 
     b: float
     friction: float = 0.0
     tilt: float = 0.0
+    touch: float = 0.0
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Course:
+    """What a first look at the ball's motion tells of each flight and each impact.
+
+    Attributes
+    ----------
+    slowed, driven : ndarray, shape (K - 1,)
+        By how much friction of 1 m/s^2 lowers the velocity at the end of a flight, and raises that at its start, beside
+        the mean velocity [s].
+    deep : ndarray, shape (K,)
+        How deep the ball goes into the wall for each second from the touch to the centroid of the force [m/s].
+    """
+
+    slowed: Floats
+    driven: Floats
+    deep: Floats
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -60,7 +81,7 @@ class BallMotion:
     r: Floats
 
 
-def ball_motion(jumps: Jumps, side: Floats, cavity: Cavity) -> BallMotion:
+def ball_motion(jumps: Jumps, side: Floats, cavity: Cavity, course: Course | None = None) -> BallMotion:
     """Return the ball's velocities at the impacts.
 
     Parameters
@@ -70,12 +91,14 @@ def ball_motion(jumps: Jumps, side: Floats, cavity: Cavity) -> BallMotion:
     side : ndarray, shape (K,)
         +1 L, -1 R: the sign opposite to that of the oscillator's velocity jump.
     cavity : Cavity
+    course : Course, optional
+        Without it a ball that crosses the cavity is slowed all the way, and one that comes back to its wall is slowed
+        first and driven afterwards, so that its end velocities stay; and contacts take no time.
 
     Notes
     -----
-    At an impact x2 = x1 - side b, so the mean velocity of a flight is known. Friction and tilt are constant
-    accelerations to a good approximation: a flight from wall to wall is slowed all the way, one that comes back to its
-    wall is slowed first and driven afterwards, which leaves its mean and, to first order, its end velocities.
+    At an impact x2 = x1 - side (b + how deep the ball goes in), so the mean velocity of a flight is known; tilt and
+    friction tell the end velocities from it.
 
     Examples
     --------
@@ -84,12 +107,14 @@ def ball_motion(jumps: Jumps, side: Floats, cavity: Cavity) -> BallMotion:
     >>> ball_motion(still, np.array([1.0, -1.0, 1.0, -1.0]), Cavity(0.5)).w_before
     array([-1.,  1.])
     """
-    x2 = jumps.x - side * cavity.b
+    x2 = jumps.x - side * (cavity.b if course is None else cavity.b + cavity.touch * course.deep)
     time = np.diff(jumps.t, axis=-1)
     mean = np.diff(x2, axis=-1) / time
-    across = side[:-1] * (side[:-1] != side[1:])
-    push = (cavity.tilt - cavity.friction * across) * time / 2
-    before, after = (mean + push)[..., :-1], (mean - push)[..., 1:]
+    pulled = cavity.tilt * time / 2
+    across = side[:-1] * (side[:-1] != side[1:]) * time / 2
+    slowed, driven = (across, across) if course is None else (course.slowed, course.driven)
+    before = (mean + pulled - cavity.friction * slowed)[..., :-1]
+    after = (mean - pulled + cavity.friction * driven)[..., 1:]
     w_before = jumps.v_before[..., 1:-1] - before
     w_after = jumps.v_after[..., 1:-1] - after
     with np.errstate(divide="ignore", invalid="ignore"):

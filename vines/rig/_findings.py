@@ -3,22 +3,24 @@
 from __future__ import annotations
 
 import numpy as np
-import numpy.typing as npt
 
 from vines.rig._forcing import Base, Tuning
 from vines.rig._momentum import MomentumFit
 from vines.rig._oscillator import Response
+from vines.rig._rebound import Rebounds
 from vines.rig._reconstruction import Finding
 from vines.rig._recording import Recording, Uncertain
-from vines.rig._restitution import Restitution
 
-__all__ = ["MOST_RESIDUAL", "MOST_SUSPECT", "U_JUMP", "judge"]
+__all__ = ["MOST_RESIDUAL", "MOST_SILENT", "MOST_SUSPECT", "U_JUMP", "judge"]
 
 MOST_RESIDUAL = 1e-3
 """Most that the fit may leave beyond noise, relative to the rms of the motion: a missed impact leaves more."""
 
 MOST_SUSPECT = 0.05
-"""Largest fraction of impacts whose momentum does not add up."""
+"""Largest fraction of impacts that contradict the rest."""
+
+MOST_SILENT = 0.5
+"""Largest fraction of impacts that are too soft to tell a restitution: a mean over fewer is no mean of the run."""
 
 U_JUMP = 6e-3
 """Relative standard uncertainty of velocity jumps by the linearity of a displacement sensor: differences of slopes."""
@@ -32,32 +34,21 @@ def judge(
     base: Base,
     response: Response,
     tuning: Tuning,
-    alone: MomentumFit,
-    joint: MomentumFit,
-    mu: float,
-    gauge: Uncertain,
-    found: Restitution,
-    usable: npt.NDArray[np.bool_],
+    ball: Rebounds,
 ) -> tuple[Finding, ...]:
     """Return what every gate and check finds.
 
     Parameters
     ----------
-    recording, base, response, tuning, alone, joint
-        What was reconstructed; `alone` finds mu by momentum only.
-    mu : float
-        Weighed.
-    gauge : Uncertain
-        Half length by gauge, contact included [m].
-    found : Restitution
-    usable : ndarray of bool
-        Whether restitution was taken from an impact, of those that could give it: with a flight of some milliseconds
-        on either side.
+    recording, base, response, tuning, ball
+        What was reconstructed.
     """
     run, fit = recording.run, response.fit
     motion = float(np.std(response.bins.mean))
     excess = float(np.sqrt(max(fit.residual**2 - fit.noise**2, 0.0))) / motion
-    suspect = 1 - float(np.mean(usable)) if len(usable) else 1.0
+    long = ball.long
+    suspect = float(np.mean(ball.contradicts[long])) if long.any() else 1.0
+    silent = 1 - float(np.mean(ball.measured[long])) if long.any() else 1.0
     findings = [
         Finding(
             "residual", excess <= MOST_RESIDUAL,
@@ -66,7 +57,13 @@ def judge(
         ),
         Finding(
             "suspect_impacts", suspect <= MOST_SUSPECT,
-            f"{suspect:.1%} of the impacts don't keep momentum, allowed are {MOST_SUSPECT:.0%}",
+            f"{suspect:.1%} of the impacts contradict momentum or the common restitution, allowed are "
+            f"{MOST_SUSPECT:.0%}: impacts are missing or false",
+        ),
+        Finding(
+            "silent_impacts", silent <= MOST_SILENT,
+            f"{silent:.1%} of the impacts give no restitution, allowed are {MOST_SILENT:.0%}: they are too soft for "
+            "the noise, or chatter",
         ),
         Finding(
             "forcing", tuning.misfit <= _FAR,
@@ -75,11 +72,11 @@ def judge(
             "unit or clock of base or oscillator is wrong, or omega0 is",
             fault=True,
         ),
-        _mass(alone, mu, response.channel.u_gain),
-        _gauge(joint, gauge.value, gauge.u),
+        _mass(ball.alone, ball.weighed.value, response.channel.u_gain),
+        _gauge(ball.length(), ball.gauge),
         Finding(
-            "restitution", 0.0 < found.r < 1.0,
-            f"the mean restitution is {found.r:.3f}, possible is 0 to 1: a sign or unit is wrong, or impacts are "
+            "restitution", 0.0 < ball.law.r < 1.0,
+            f"the restitution is {ball.law.r:.3f}, possible is 0 to 1: a sign or unit is wrong, or impacts are "
             "missing",
             fault=True,
         ),
@@ -144,12 +141,12 @@ def _mass(alone: MomentumFit, mu: float, u_gain: float) -> Finding:
     )
 
 
-def _gauge(joint: MomentumFit, b: float, u: float) -> Finding:
-    far = abs(joint.b.value - b) / u
+def _gauge(found: Uncertain, gauge: Uncertain) -> Finding:
+    far = abs(found.value - gauge.value) / gauge.u
     return Finding(
         "cavity",
         far <= _FAR,
-        f"momentum asks for b = {1e3 * joint.b.value:.4g} mm, the gauge says {1e3 * b:.4g} mm, {far:.1f} standard "
-        "deviations apart: a unit is wrong, or the cavity is not the one described",
+        f"momentum asks for b = {1e3 * found.value:.4g} mm, the gauge says {1e3 * gauge.value:.4g} mm, {far:.1f} "
+        "standard deviations apart: a unit is wrong, or the cavity is not the one described",
         fault=True,
     )

@@ -9,8 +9,9 @@ import numpy.typing as npt
 
 from vines.rig._bins import Bins
 from vines.rig._jumps import JumpFit, fit_jumps
+from vines.rig._slide import Push
 
-__all__ = ["KEEP", "LEAST", "Fitter", "pushed"]
+__all__ = ["KEEP", "LEAST", "Fitter"]
 
 Floats = npt.NDArray[np.float64]
 
@@ -42,13 +43,13 @@ class Fitter:
         u: Floats,
         dv: Floats,
         draws: int = 8,
-        steps: Floats | None = None,
+        pushed: Push | None = None,
         extra: tuple[Floats, Floats] | None = None,
     ) -> JumpFit:
         def once(expected: tuple[Floats, Floats] | None, more: tuple[Floats, Floats] | None, draws: int) -> JumpFit:
             return fit_jumps(
                 self.bins, self.s, self.omega, times, u, dv, order=self.order, draws=draws, forced=self.forced,
-                steps=steps, extra=more, expected=expected,
+                pushed=pushed, extra=more, expected=expected,
             )  # fmt: skip
 
         if self.order == 0:
@@ -59,11 +60,3 @@ class Fitter:
         knocks = np.abs(first.jumps.dv - dv) > KEEP * spread
         sideways = (self.omega * first.motion.at(self.bins.t, 1)[None, :], np.array([_U_SIDEWAYS]))
         return once((dv, np.where(knocks, np.abs(dv), spread)), sideways, draws)
-
-
-def pushed(side: Floats, size: float) -> Floats:
-    """Return the static displacement of each flight by friction: to the right after an impact on the left end."""
-    steps = np.zeros(len(side) + 1)
-    if len(side) > 1:
-        steps[1:-1] = np.where(side[:-1] != side[1:], side[:-1] * size, 0.0)
-    return steps

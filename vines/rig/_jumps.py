@@ -18,6 +18,7 @@ from vines.errors import RigError
 from vines.rig._bins import Bins
 from vines.rig._motion import Motion
 from vines.rig._sine_fit import clumping
+from vines.rig._slide import Push
 
 __all__ = ["JumpFit", "Jumps", "fit_jumps"]
 
@@ -76,8 +77,8 @@ class JumpFit:
         differences, in the unit of the signal.
     clumped : float
         By how much the variance of longer means exceeds that of independent residuals.
-    distrusted : float
-        Fraction of flights left out because their motion is not that of one flight: an impact in them is missing.
+    fair : ndarray of bool, shape (K + 1,)
+        Flights that were used; the motion on the others is not that of one flight: an impact in them is missing.
     left : ndarray, shape (n,)
         What is left, at `left_t` [s].
     extra : ndarray
@@ -95,7 +96,7 @@ class JumpFit:
     residual: float
     noise: float
     clumped: float
-    distrusted: float
+    fair: npt.NDArray[np.bool_]
     left: Floats
     left_t: Floats
     extra: Floats
@@ -115,7 +116,7 @@ def fit_jumps(
     guard: float = 2.5e-4,
     expected: tuple[Floats, Floats] | None = None,
     forced: tuple[npt.NDArray[np.complex128], Floats] | None = None,
-    steps: Floats | None = None,
+    pushed: Push | None = None,
     extra: tuple[Floats, Floats] | None = None,
     draws: int = 32,
     seed: int = 0,
@@ -148,8 +149,8 @@ def fit_jumps(
     forced : tuple of ndarray, optional
         Harmonics 2 … of the forced response as the base's harmonics ask for them [m], and their standard uncertainties:
         a train of equal jumps and a few free harmonics are nearly the same motion.
-    steps : ndarray, shape (K + 1,), optional
-        Static displacement of each flight [m]: the ball's friction pushes the oscillator one way or the other.
+    pushed : Push, optional
+        What the ball's friction adds to the displacement; an acceleration is taken as it is.
     extra : tuple of ndarray, optional
         Further signals that may be in the channel, one a row, at the times of `bins`, and the standard uncertainties of
         their sizes about 0.
@@ -166,8 +167,8 @@ def fit_jumps(
     more = (np.zeros((0, len(bins.t))), np.zeros(0)) if extra is None else extra
     problem = _Problem(bins, s, omega, np.asarray(times, float), order, harmonics, guard, more)
     problem.forced_known = forced
-    if steps is not None:
-        problem.push(steps)
+    if pushed is not None:
+        problem.push(pushed)
     u_times = np.broadcast_to(np.asarray(u_times, float), problem.times.shape)
     noise = max(_noise(bins), 1e-15)
     scale = noise
@@ -185,7 +186,7 @@ def fit_jumps(
     left = problem.left(z, linear)
     motion = problem.motion(z, linear)
     trusted = left[problem.trusted]
-    jumps, shift = _read(motion, problem.steps)
+    jumps, shift = _read(motion, problem.pushed)
     rng = np.random.default_rng(seed)
     drawn, first = [], []
     lower = np.linalg.cholesky(schur)
@@ -193,7 +194,7 @@ def fit_jumps(
         move = np.linalg.solve(lower.T, rng.normal(size=len(linear)))
         noise_z = cho_solve_banded((factor, True), _multiply(factor, rng.normal(size=factor.shape[1])))
         other = problem.motion(z + noise_z - border @ move, linear + move)
-        drawn.append(_read(other, problem.steps)[0])
+        drawn.append(_read(other, problem.pushed)[0])
         first.append(other.c[0])
     together = Jumps(*(np.array([getattr(one, name) for one in drawn]) for name in ("t", "x", "v_before", "v_after")))
     return JumpFit(
@@ -206,7 +207,7 @@ def fit_jumps(
         float(np.sqrt(np.mean(trusted**2))),
         noise,
         clumped,
-        1 - float(np.mean(problem.fair)),
+        problem.fair,
         left,
         problem.t,
         linear[2 * harmonics + 1 :],
@@ -214,10 +215,11 @@ def fit_jumps(
     )
 
 
-def _read(motion: Motion, steps: Floats) -> tuple[Jumps, Floats]:
+def _read(motion: Motion, pushed: Push) -> tuple[Jumps, Floats]:
     """Return the state at each impact at its refined time, and the shift of the time."""
-    x, v_before, v_after = motion.before(), motion.before(1), motion.after(1)
-    gap = motion.after() - x + np.diff(steps)
+    x, v_before = motion.before() + pushed.end[:-1], motion.before(1) + pushed.speed[:-1]
+    v_after = motion.after(1)
+    gap = motion.after() + pushed.start[1:] - x
     dv = v_after - v_before
     # x_after(t) - x_before(t) = gap + dv (t - t_k) vanishes at the true time; far moves mean that dv is no jump at all.
     shift = np.where(np.abs(dv) > 1e-6, -gap / np.where(dv == 0, 1.0, dv), 0.0)
@@ -264,7 +266,7 @@ class _Problem:
         self.starts = np.concatenate([[start], times])
         self.stop = stop
         reach = guard + 0.5 * bins.width + _TAIL * bins.smooth
-        keep = np.ones(len(bins.t), bool)
+        self.kept = keep = np.ones(len(bins.t), bool)
         low, high = np.searchsorted(bins.t, times - reach), np.searchsorted(bins.t, times + reach)
         for k in range(int((high - low).max(initial=0))):
             keep[np.minimum(low + k, high - 1)[high > low]] = False
@@ -286,7 +288,7 @@ class _Problem:
         self.forced[2 * harmonics] = 1.0
         self.forced[2 * harmonics + 1 :] = columns[:, keep]
         self.fair = np.ones(flights, bool)
-        self.steps = np.zeros(flights)
+        self.pushed = Push(np.zeros(0), *np.zeros((3, flights)))
         self._sum_flights()
         self._gather()
 
@@ -295,11 +297,11 @@ class _Problem:
         """Which blocks lie on trusted flights."""
         return self.fair[self.flight]
 
-    def push(self, steps: Floats) -> None:
-        """Take a static displacement of each flight off the signal; an acceleration has none."""
+    def push(self, pushed: Push) -> None:
+        """Take a known part of each flight off a displacement."""
         if self.order == 0:
-            self.steps = steps
-            self.y = self.y - steps[self.flight]
+            self.pushed = pushed
+            self.y = self.y - pushed.signal[self.kept]
             self._sum_signal()
             self._gather()
 
@@ -373,10 +375,11 @@ class _Problem:
         velocity = np.stack(
             [-carried.real, carried.imag, np.full(len(step), self.s.real), np.full(len(step), -self.s.imag)], axis=1
         )
-        _add(band, right, position, 1 / np.maximum(u_gap, 1e-12) ** 2, -np.diff(self.steps))
+        end, speed = self.pushed.end[:-1], self.pushed.speed[:-1]
+        _add(band, right, position, 1 / np.maximum(u_gap, 1e-12) ** 2, end - self.pushed.start[1:])
         # A jump of more than 3 m/s would need a ball of the oscillator's own mass: a bound for flights without samples.
         mean, u = (np.zeros(len(step)), np.full(len(step), 3.0)) if expected is None else expected
-        _add(band, right, velocity, 1 / u**2, mean)
+        _add(band, right, velocity, 1 / u**2, mean + speed)
         # Keeps the first flight solvable when it holds no samples.
         band[0, :2] += 1e-9 * float(np.median(band[0]))
         factor = cholesky_banded(band, lower=True)

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from vines.rig._ball import Cavity, ball_motion
+from vines.rig._ball import Cavity, Course, ball_motion
 from vines.rig._jumps import Jumps
 from vines.rig._recording import Uncertain
 
@@ -16,7 +16,7 @@ __all__ = ["MomentumFit", "fit_momentum"]
 
 Floats = npt.NDArray[np.float64]
 
-_NAMES = ("mu", "b", "tilt", "skew", "bow")
+_NAMES = ("mu", "b", "tilt", "touch", "skew", "bow")
 _FAR = 5.0
 
 _SKEW = 2e-3
@@ -29,10 +29,13 @@ class MomentumFit:
 
     Attributes
     ----------
-    mu, b, friction, tilt : Uncertain
-        [1], [m], [m/s^2], [m/s^2].
-    misfit : ndarray, shape (K - 2,)
-        (dv1 + mu dv2)/u at each impact that has two flights; large where an impact near it is missed or false.
+    mu, b, friction, tilt, touch : Uncertain
+        [1], [m], [m/s^2], [m/s^2], [s].
+    covariance : ndarray, shape (6, 6)
+        Of mu, b, tilt, touch and the sensor's slope and curvature.
+    misfit, u : ndarray, shape (K - 2,)
+        (dv1 + mu dv2)/u at each impact that has two flights, and u [m/s]; large where an impact near it is missed or
+        false.
     good : ndarray of bool, shape (K - 2,)
         Which of them the fit used.
     """
@@ -41,37 +44,50 @@ class MomentumFit:
     b: Uncertain
     friction: Uncertain
     tilt: Uncertain
+    touch: Uncertain
+    covariance: Floats
     misfit: Floats
+    u: Floats
     good: npt.NDArray[np.bool_]
 
     @property
     def cavity(self) -> Cavity:
         """The cavity with these numbers."""
-        return Cavity(self.b.value, self.friction.value, self.tilt.value)
+        return Cavity(self.b.value, self.friction.value, self.tilt.value, self.touch.value)
+
+    def spread(self, slopes: dict[str, float]) -> float:
+        """Return the standard uncertainty of a quantity that depends on some of the estimates with given slopes."""
+        slope = np.array([slopes.get(name, 0.0) for name in _NAMES])
+        return float(np.sqrt(slope @ self.covariance @ slope))
 
 
 def fit_momentum(
     jumps: Jumps,
     draws: Jumps,
     side: Floats,
+    course: Course,
     *,
     mu: Uncertain | None,
     b: Uncertain,
+    touch: Uncertain,
     friction: Uncertain,
     tilt: Uncertain,
     usable: npt.NDArray[np.bool_] | None = None,
 ) -> MomentumFit:
-    """Solve dv1 = -mu (v2_after - v2_before) for mu, b and tilt, with what is known of them beforehand.
+    """Solve dv1 = -mu (v2_after - v2_before) for mu, b, tilt and touch, with what is known of them beforehand.
 
     Parameters
     ----------
     jumps, draws : Jumps
         State of the oscillator at the impacts, and draws of it.
     side : ndarray, shape (K,)
+    course : Course
     mu : Uncertain or None
         From weighing; None if it is to be found by momentum alone.
     b : Uncertain
         From a gauge [m].
+    touch : Uncertain
+        Centroid of the force of a contact after the touch [s].
     friction, tilt : Uncertain
         Of the ball [m/s^2]. Momentum hardly sees friction, which slows the ball before one impact as after the one
         before, so that it is taken as given.
@@ -85,32 +101,34 @@ def fit_momentum(
     them must be known: mu weighed gives b, b gauged gives mu. A sensor that is not quite linear has another gain where
     the ball hits one end than where it hits the other; unaccounted for, that would look like a tilt.
     """
-    value = {"mu": 0.01, "b": b.value, "friction": friction.value, "tilt": tilt.value, "skew": 0.0, "bow": 0.0}
-    known = {"b": b, "tilt": tilt, "skew": Uncertain(0.0, _SKEW), "bow": Uncertain(0.0, _SKEW)}
+    value = {"mu": 0.01, "b": b.value, "friction": friction.value, "tilt": tilt.value, "touch": touch.value}
+    value |= {"skew": 0.0, "bow": 0.0}
+    known = {"b": b, "tilt": tilt, "touch": touch, "skew": Uncertain(0.0, _SKEW), "bow": Uncertain(0.0, _SKEW)}
     if mu is not None:
         known["mu"] = mu
     usable = np.ones(len(side) - 2, bool) if usable is None else usable
     if mu is None:
-        motion = ball_motion(jumps, side, Cavity(b.value, friction.value, tilt.value))
+        motion = ball_motion(jumps, side, Cavity(b.value, friction.value, tilt.value, touch.value), course)
         gain = motion.v2_after - motion.v2_before
         with np.errstate(divide="ignore", invalid="ignore"):
             guess = float(np.median((-jumps.dv[1:-1] / gain)[usable]))
         value["mu"] = guess if np.isfinite(guess) and guess != 0 else 0.01
     else:
         value["mu"] = mu.value
-    step = {"mu": 1e-4 * value["mu"], "b": 1e-4 * b.value, "tilt": 1e-3, "skew": 1e-4, "bow": 1e-4}
+    step = {"mu": 1e-4 * value["mu"], "b": 1e-4 * b.value, "tilt": 1e-3, "touch": 1e-6, "skew": 1e-4, "bow": 1e-4}
     good = usable.copy()
     covariance = np.eye(len(_NAMES))
     u: Any = 1.0
     for _ in range(8):
-        base = _residual(jumps, side, value)
-        noise = _residual(draws, side, value)
+        base = _residual(jumps, side, value, course)
+        noise = _residual(draws, side, value, course)
         u = np.sqrt(np.mean((noise - base) ** 2, axis=0) + (2e-4 * np.abs(jumps.dv[1:-1])) ** 2 + 1e-12)
         scaled = base / u
         spread = max(1.0, float(np.median(np.abs(scaled[good])) / 0.6745)) if good.any() else 1.0
         good = usable & (np.abs(scaled) < _FAR * spread)
         slope = np.stack(
-            [(_residual(jumps, side, value | {n: value[n] + step[n]}) - base) / step[n] / u for n in _NAMES], axis=1
+            [(_residual(jumps, side, value | {n: value[n] + step[n]}, course) - base) / step[n] / u for n in _NAMES],
+            axis=1,
         )[good]
         normal = slope.T @ slope / spread**2
         right = -slope.T @ scaled[good] / spread**2
@@ -125,13 +143,15 @@ def fit_momentum(
             value[name] += float(change[i])
         if np.all(np.abs(change) < 1e-4 * np.sqrt(np.diag(covariance))):
             break
-    base = _residual(jumps, side, value) / u
+    base = _residual(jumps, side, value, course) / u
     found = {name: Uncertain(value[name], float(np.sqrt(covariance[i, i]))) for i, name in enumerate(_NAMES)}
-    return MomentumFit(found["mu"], found["b"], friction, found["tilt"], misfit=base, good=good)
+    return MomentumFit(
+        found["mu"], found["b"], friction, found["tilt"], found["touch"], covariance, misfit=base, u=u, good=good
+    )
 
 
-def _residual(jumps: Jumps, side: Floats, value: dict[str, float]) -> Floats:
-    motion = ball_motion(jumps, side, Cavity(value["b"], value["friction"], value["tilt"]))
+def _residual(jumps: Jumps, side: Floats, value: dict[str, float], course: Course) -> Floats:
+    motion = ball_motion(jumps, side, Cavity(value["b"], value["friction"], value["tilt"], value["touch"]), course)
     place = jumps.x[..., 1:-1] / np.abs(jumps.x).max()
     dv = jumps.dv[..., 1:-1] * (1 + value["skew"] * place + value["bow"] * (place**2 - np.mean(place**2)))
     return dv + value["mu"] * (motion.v2_after - motion.v2_before)

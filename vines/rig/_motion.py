@@ -60,6 +60,10 @@ class Motion:
         """Return x1 or a derivative just after each impact, shape (K,)."""
         return self._on(np.arange(1, len(self.starts)), self.starts[1:], {derivative: 1.0})
 
+    def on(self, flight: npt.NDArray[np.intp], t: Floats, derivative: int = 0) -> Floats:
+        """Return x1 or a derivative at times of given flights, their ends included."""
+        return self._on(flight, t, {derivative: 1.0})
+
     def forced(self, t: Floats, derivative: int = 0) -> Floats:
         """Return the forced response or a derivative of it."""
         return self._forced(t, {derivative: 1.0})

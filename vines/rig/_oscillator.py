@@ -10,11 +10,12 @@ import numpy.typing as npt
 from vines.errors import RigError
 from vines.rig._bins import Bins, bins_of
 from vines.rig._detect import U_PULSE, Detected, detect, inside
-from vines.rig._fitter import KEEP, Fitter, pushed
+from vines.rig._fitter import KEEP, Fitter
 from vines.rig._impacts import pulses_of
 from vines.rig._jumps import JumpFit
 from vines.rig._linearity import bends, straightened
 from vines.rig._recording import Recording, Sampled
+from vines.rig._slide import Push, push, slide
 
 __all__ = ["Response", "measure_response"]
 
@@ -47,6 +48,8 @@ class Response:
         Its block means.
     fit : JumpFit
         On the clock of `channel`.
+    pushed : Push or None
+        What the ball's friction was taken to add.
     pulse : ndarray, shape (K,)
         Velocity jumps by the pulses of the acceleration, scaled to those of the fit [m/s].
     gain : complex or None
@@ -64,6 +67,7 @@ class Response:
     order: int
     bins: Bins
     fit: JumpFit
+    pushed: Push | None
     pulse: Floats
     gain: complex | None
     late: float
@@ -120,18 +124,22 @@ def measure_response(
         times, dv, u = inside(bins, *impacts, np.full(len(impacts[0]), U_PULSE))
         found = Detected(times, dv, u, len(times))
     times, dv, u, delay = found.t, found.dv, found.u, found.delay
-    keep = _credible(fitter.fit(times + delay, u, dv), u)
-    times, dv, u = times[keep], dv[keep], u[keep]
-    steps = pushed(-np.sign(dv), friction / abs(s) ** 2)
-    if order == 0:
-        fitter = _linear(fitter, times + delay, u, dv, steps, u_natural)
+    fit = fitter.fit(times + delay, u, dv)
+    keep = _credible(fit, u)
+    if not keep.all():
+        times, dv, u = times[keep], dv[keep], u[keep]
+        fit = fitter.fit(times + delay, u, dv)
+    pushed = None
+    if order == 0 and len(times) > 1:
+        pushed = _rubbed(fit, bins.t, recording.run.b.value, friction)
+        fitter = _linear(fitter, times + delay, u, dv, pushed, u_natural)
         bins = fitter.bins
-    fit = fitter.fit(times + delay, u, dv, draws=32, steps=steps)
+    fit = fitter.fit(times + delay, u, dv, draws=32, pushed=pushed)
     late, u_late = (
         _share(delay, found.u_delay, channel.u_time, sensor.u_time) if found.gain is not None else (0.0, channel.u_time)
     )
     return Response(
-        channel, order, bins, fit, dv, found.gain, late, u_late, found.drift, found.candidates,
+        channel, order, bins, fit, pushed, dv, found.gain, late, u_late, found.drift, found.candidates,
         found.candidates - len(times),
     )  # fmt: skip
 
@@ -150,6 +158,13 @@ def _quiet(accelerometer: Sampled) -> Bins:
     return Bins(t[fair], pulses.values[::stride][fair], 0.0, pulses.smooth)
 
 
+def _rubbed(fit: JumpFit, samples: Floats, b: float, friction: float) -> Push:
+    """Return what the friction of a ball that flies between the impacts of a first fit adds to the displacement."""
+    jumps, s = fit.jumps, fit.motion.s
+    found = slide(fit.motion, jumps.x + np.sign(jumps.dv) * b)
+    return push(found, fit.motion.starts[1:], samples, s, friction / abs(s) ** 2)
+
+
 def _credible(fit: JumpFit, u: Floats) -> npt.NDArray[np.bool_]:
     """Say which impacts to keep: of two in one place, with jumps that cancel, not the one that was heard less well."""
     dv, t = fit.jumps.dv, fit.motion.starts[1:]
@@ -161,21 +176,21 @@ def _credible(fit: JumpFit, u: Floats) -> npt.NDArray[np.bool_]:
 
 
 def _linear(
-    fitter: Fitter, times: Floats, u: Floats, dv: Floats, steps: Floats, u_natural: tuple[float, float]
+    fitter: Fitter, times: Floats, u: Floats, dv: Floats, pushed: Push, u_natural: tuple[float, float]
 ) -> Fitter:
     """Return the fitter with the displacement less what its sensor adds, if that explains a part of what is left.
 
     Harmonics that the base does not have are the sensor's then: without that, they and jumps that repeat would say the
     same.
     """
-    fit = fitter.fit(times, u, dv, steps=steps)
+    fit = fitter.fit(times, u, dv, pushed=pushed)
     columns, sizes = bends(fitter.bins, fit.motion, *u_natural)
     strict = fitter
     if fitter.forced is not None:
         c, u_c = fitter.forced
         known = 0.03 * np.abs(c) + _HARMONICS * float(np.abs(fitter.bins.mean).max())
         strict = replace(fitter, forced=(c, np.minimum(u_c, known)))
-    bent = strict.fit(times, u, dv, steps=steps, extra=(columns, sizes))
+    bent = strict.fit(times, u, dv, pushed=pushed, extra=(columns, sizes))
     if bent.residual > _EXPLAINS * fit.residual:
         return fitter
     return replace(strict, bins=straightened(fitter.bins, columns, bent.extra))

@@ -3,24 +3,31 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 import numpy.typing as npt
 
 from vines.errors import RigError
-from vines.rig._ball import BallMotion, Cavity, ball_motion
+from vines.rig._ball import ball_motion
 from vines.rig._cycle import Track, slots
 from vines.rig._findings import U_JUMP, judge
-from vines.rig._fitter import pushed
 from vines.rig._forcing import Base, Tuning, measure_base, tune
-from vines.rig._jumps import Jumps, fit_jumps
-from vines.rig._momentum import MomentumFit, fit_momentum
+from vines.rig._jumps import fit_jumps
 from vines.rig._oscillator import Response, measure_response
 from vines.rig._pattern import Pattern, Periods, cut_into_periods, find_pattern
+from vines.rig._rebound import (
+    FRICTION,
+    LINEARITY,
+    TILT,
+    Rebounds,
+    mean_restitution,
+    measure_rebounds,
+    stated,
+    uncalibrated,
+)
 from vines.rig._reconstruction import IMPACT, Reconstruction
 from vines.rig._recording import Recording, Uncertain
-from vines.rig._restitution import Restitution, restitution
 from vines.rig._ring_down import RingDown, natural
 from vines.rig._uncertainty import combined, mean_over_periods, period_weights
 
@@ -28,24 +35,8 @@ __all__ = ["reconstruct"]
 
 Floats = npt.NDArray[np.float64]
 
-_FRICTION = Uncertain(0.06, 0.055)
-"""Deceleration of the ball where the laboratory did not measure it [m/s^2]: .001 to .02 g, evenly in the logarithm."""
-
-_TILT = Uncertain(0.0, 0.02)
-"""Acceleration along the cavity: a tenth of a degree [m/s^2]."""
-
-_CENTROID = Uncertain(5.5e-5, 1.6e-5)
-"""Centroid of the force of a contact of 70 to 200 us after the touch [s]."""
-
-_LINEARITY = 1.5e-3
-"""Relative uncertainty of a velocity by the linearity of a displacement sensor, .1 % of its range."""
-
-
 _FORCED = 4e-3
 """Relative uncertainty of the forced response by linearity: jumps that repeat and a forced response are much alike."""
-
-_SHORT = 2e-3
-"""Restitution is not taken from impacts with a shorter flight at one side [s]."""
 
 
 def reconstruct(
@@ -90,7 +81,7 @@ def reconstruct(
     omega = base.fit.omega
     root = _root(omega0.value, lam.value)
     forced = _harmonics(base, recording, root)
-    friction = _stated(run.more.get("friction"), _FRICTION)
+    friction = stated(run.more.get("friction"), FRICTION)
     mu = run.m.value / run.M.value
     response = measure_response(
         recording, root, omega, forced,
@@ -107,7 +98,7 @@ def reconstruct(
     bounds = tuple(omega * t + base.phase.value + tuning.phase for t in span)
     periods = cut_into_periods(phase, side, (bounds[0], bounds[1]))
     pattern = find_pattern(periods, phase)
-    ball = _measure_ball(recording, response, side)
+    ball = measure_rebounds(recording, response, side)
     return _assembled(recording, base, response, side, tuning, phase, periods, pattern, ball, seed)
 
 
@@ -149,8 +140,6 @@ def _tuned(
     s = _root(omega0.value, lam.value)
     turn = np.exp(1j * omega * response.late)
 
-    steps = pushed(-np.sign(fit.jumps.dv), mu * friction.value / abs(s) ** 2)
-
     def again(omega0_: float, lam_: float) -> complex:
         moved = _root(omega0_, lam_)
         other = fit_jumps(
@@ -164,7 +153,7 @@ def _tuned(
             draws=0,
             seed=seed,
             forced=forced,
-            steps=steps,
+            pushed=response.pushed,
         )
         return complex(_asked(other.motion.c[:1], moved, omega)[0] * turn)
 
@@ -182,69 +171,9 @@ def _tuned(
     )  # fmt: skip
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class _Ball:
-    """Momentum and the ball's motion."""
-
-    alone: MomentumFit
-    joint: MomentumFit
-    motion: BallMotion
-    u_r: Floats
-    usable: npt.NDArray[np.bool_]
-    long: npt.NDArray[np.bool_]
-    restitution: Restitution
-    weighed: Uncertain
-    gauge: Uncertain
-
-
-def _measure_ball(recording: Recording, response: Response, side: Floats) -> _Ball:
-    run, fit = recording.run, response.fit
-    friction = _stated(run.more.get("friction"), _FRICTION)
-    tilt = _stated(run.more.get("tilt"), _TILT)
-    time = np.diff(fit.jumps.t)
-    long = (time[:-1] > _SHORT) & (time[1:] > _SHORT)
-    mu = run.m.value / run.M.value
-    weighed = combined(mu, mu * run.m.u / run.m.value, mu * run.M.u / run.M.value)
-    # The jumps are in the units of the channel, so its calibration stands between them and the masses.
-    known = combined(mu, weighed.u, mu * max(response.channel.u_gain, 1e-4))
-    gauge = _reach(run.b, fit.jumps, side)
-    alone = fit_momentum(fit.jumps, fit.draws, side, mu=None, b=gauge, friction=friction, tilt=tilt, usable=long)
-    joint = fit_momentum(fit.jumps, fit.draws, side, mu=known, b=gauge, friction=friction, tilt=tilt, usable=long)
-    motion = ball_motion(fit.jumps, side, joint.cavity)
-    noise = ball_motion(fit.draws, side, joint.cavity)
-    with np.errstate(invalid="ignore"):
-        u_r = np.sqrt(np.nanmean((noise.r - motion.r) ** 2, axis=0))
-    fair = joint.good & np.isfinite(motion.r) & np.isfinite(u_r) & (motion.w_before * motion.side > 0) & (u_r < 0.2)
-    if np.count_nonzero(fair) < 4:
-        fair = np.isfinite(motion.r) & np.isfinite(u_r) & (np.abs(motion.r) < 2)
-    middle = float(np.median(motion.r[fair])) if fair.any() else 0.5
-    spread = 1.4826 * float(np.median(np.abs(motion.r[fair] - middle))) + 1e-3
-    usable = fair & (np.abs(motion.r - middle) < 6 * np.hypot(spread, u_r))
-    if np.count_nonzero(usable) < 4:
-        raise RigError(f"run {run.run_id!r}: no restitution can be taken from its impacts; are they those of the ball?")
-    found = restitution(motion.r[usable], u_r[usable], np.abs(motion.w_before[usable]), motion.side[usable])
-    return _Ball(alone, joint, motion, u_r, usable, long, found, weighed, gauge)
-
-
-def _reach(b: Uncertain, jumps: Jumps, side: Floats) -> Uncertain:
-    """Return b for instantaneous impacts: in a contact that lasts, the ball turns |w'| t_c beyond where it touches.
-
-    t_c is the centroid of the force after the touch: for any law of contact the straight lines before and after meet
-    there.
-    """
-    speed = float(np.median(np.abs(ball_motion(jumps, side, Cavity(b.value)).w_before)))
-    return combined(b.value + speed * _CENTROID.value, max(b.u, 1e-6), speed * _CENTROID.u)
-
-
-def _stated(given: object, otherwise: Uncertain) -> Uncertain:
-    if isinstance(given, dict) and {"value", "u"} <= given.keys():
-        return Uncertain(float(given["value"]), max(float(given["u"]), 1e-6))
-    return otherwise
-
-
 def _assembled(
     recording: Recording, base: Base, response: Response, side: Floats, tuning: Tuning, phase: Floats,
-    periods: Periods, pattern: Pattern, ball: _Ball, seed: int,
+    periods: Periods, pattern: Pattern, ball: Rebounds, seed: int,
 ) -> Reconstruction:  # fmt: skip
     run, fit = recording.run, response.fit
     complete = len(periods.words)
@@ -254,26 +183,37 @@ def _assembled(
     number = periods.number - periods.first
     inner = number[1:-1]
     inside = (inner >= 0) & (inner < complete)
-    use = ball.usable & inside
+    use = ball.counted & inside
+    speed = np.abs(ball.motion.w_before)
 
-    def mean(values: Floats, which: npt.NDArray[np.bool_]) -> Uncertain:
-        return mean_over_periods(values[which], inner[which], weights)
+    def mean(values: Floats, which: npt.NDArray[np.bool_], size: Floats | None = None) -> Uncertain:
+        return mean_over_periods(values[which], inner[which], weights, None if size is None else size[which])
 
     def scaled(speed: Uncertain) -> Uncertain:
         return combined(speed.value, speed.u, speed.value * gain, speed.value * joint.b.u / joint.b.value)
 
-    joint = ball.joint
+    joint, law = ball.joint, ball.law
     gain = response.channel.u_gain
-    left_open = _type_b(fit.jumps, side, ball, response)
-    r = combined(ball.restitution.r, mean(ball.motion.r, use).u, *left_open.values())
-    frictionless = ball_motion(fit.jumps, side, replace(joint.cavity, friction=0.0)).r
+    left_open = uncalibrated(ball, response, side)
+    u_mean = mean(ball.motion.r, use, speed).u
+    r = combined(mean_restitution(ball.motion, ball.counted), u_mean, *left_open.values())
+    # Of a soft impact the law says more than its own noisy ratio does.
+    each = np.where(ball.measured, ball.motion.r, law.at(np.where(ball.counted, speed, law.speed)))
+    r_mean = combined(float(each[ball.counted].mean()), mean(each, use).u, *left_open.values())
+    frictionless = ball_motion(fit.jumps, side, replace(joint.cavity, friction=0.0), ball.course)
     del left_open["friction"]
-    r_effective = combined(float(frictionless[ball.usable].mean()), mean(frictionless, use).u, *left_open.values())
-    # The contact's part of b is a mean over soft and hard impacts.
-    b = combined(joint.b.value, joint.b.u, _CENTROID.u * ball.restitution.speed, _LINEARITY * joint.b.value)
+    # From the ratio of means to the law at the mean speed; the exponent, where it is not known, is between -.2 and 0.
+    own = speed[ball.counted] / speed[ball.counted].mean()
+    bent = float(np.mean(own ** (1 + law.exponent)))
+    u_bent = min(law.u_exponent, 0.1) * abs(float(np.mean(own ** (1 + law.exponent) * np.log(own))))
+    r_effective = combined(
+        mean_restitution(frictionless, ball.counted) / bent, u_mean, r.value * u_bent, *left_open.values()
+    )
+    length = ball.length()
+    b = combined(length.value, length.u, LINEARITY * length.value)
     period = 2 * np.pi / base.fit.omega
     # Momentum sees a tilt by what it adds to the jumps of a period, as little as what a sensor is off from linear.
-    u_jumps = _LINEARITY * float(np.mean(np.abs(fit.jumps.dv))) / (ball.weighed.value * period)
+    u_jumps = LINEARITY * float(np.mean(np.abs(fit.jumps.dv))) / (ball.weighed.value * period)
     omega = base.fit.omega
     quantities = {
         "f": base.f,
@@ -291,15 +231,16 @@ def _assembled(
         "mu_momentum": combined(ball.alone.mu.value, ball.alone.mu.u, ball.alone.mu.value * np.hypot(gain, U_JUMP)),
         "b": b,
         "friction": joint.friction,
-        "tilt": combined(joint.tilt.value, joint.tilt.u, min(u_jumps, _TILT.u)),
+        "tilt": combined(joint.tilt.value, joint.tilt.u, min(u_jumps, TILT.u)),
         "r": r,
+        "r_mean": r_mean,
         "r_effective": r_effective,
-        "r_exponent": Uncertain(ball.restitution.exponent, ball.restitution.u_exponent),
-        "sigma_r": Uncertain(ball.restitution.sigma_r, ball.restitution.u_sigma_r),
+        "r_exponent": Uncertain(law.exponent, law.u_exponent),
+        "sigma_r": Uncertain(law.sigma_r, law.u_sigma_r),
         "impacts_per_period": mean_over_periods(
             np.array([float(len(w)) for w in periods.words]), np.arange(complete), weights
         ),
-        "w_before": scaled(mean(np.abs(ball.motion.w_before), use)),
+        "w_before": scaled(mean(speed, use)),
         "w_after": scaled(mean(np.abs(ball.motion.w_after), use)),
     }
     begin = (periods.cut + 2 * np.pi * (periods.first + np.arange(complete + 1)) - phase[0]) / omega + fit.jumps.t[0]
@@ -313,7 +254,7 @@ def _assembled(
         quantities["impact_phase"] = combined(
             (angle + periods.cut) % (2 * np.pi), spread, base.phase.u, omega * response.u_late
         )
-    track = Track(fit.motion, fit.jumps.t, side, fit.jumps.x - side * b.value, phase)
+    track = Track(fit.motion, fit.jumps.t, side, ball.motion.x2, phase)
     return Reconstruction(
         run=run,
         sha256=recording.sha256,
@@ -326,50 +267,12 @@ def _assembled(
         residual=fit.residual,
         noise=fit.noise,
         pruned=response.pruned,
-        findings=judge(
-            recording,
-            base,
-            response,
-            tuning,
-            ball.alone,
-            ball.joint,
-            ball.weighed.value,
-            ball.gauge,
-            ball.restitution,
-            ball.usable[ball.long],
-        ),
+        findings=judge(recording, base, response, tuning, ball),
         base_harmonics=base.e,
     )
 
 
-def _type_b(jumps: Jumps, side: Floats, ball: _Ball, response: Response) -> dict[str, float]:
-    """Return what calibrations and the cavity leave open of the mean restitution, by their cause."""
-    cavity, joint = ball.joint.cavity, ball.joint
-
-    def mean(moved: Jumps, within: Cavity) -> float:
-        return float(np.mean(ball_motion(moved, side, within).r[ball.usable]))
-
-    here = mean(jumps, cavity)
-    gain = 1 + float(np.hypot(response.channel.u_gain, _LINEARITY))
-    scaled = replace(jumps, x=jumps.x * gain, v_before=jumps.v_before * gain, v_after=jumps.v_after * gain)
-    late = 1e-6
-    turn = 0.5 * (response.fit.motion.before(2) + response.fit.motion.after(2))
-    shifted = replace(
-        jumps,
-        x=jumps.x + jumps.v_before * late,
-        v_before=jumps.v_before + turn * late,
-        v_after=jumps.v_after + turn * late,
-    )
-    return {
-        "b": mean(jumps, replace(cavity, b=cavity.b + joint.b.u)) - here,
-        "friction": mean(jumps, replace(cavity, friction=cavity.friction + joint.friction.u)) - here,
-        "tilt": mean(jumps, replace(cavity, tilt=cavity.tilt + joint.tilt.u)) - here,
-        "gain": mean(scaled, cavity) - here,
-        "delay": 3 * (mean(shifted, cavity) - here),
-    }
-
-
-def _energies(response: Response, ball: _Ball, b: Uncertain, begin: Floats, weights: Floats) -> dict[str, Uncertain]:
+def _energies(response: Response, ball: Rebounds, b: Uncertain, begin: Floats, weights: Floats) -> dict[str, Uncertain]:
     """Return max|x1| a period and K2/K1; `begin` are the limits of the periods on the channel's clock."""
     motion, jumps = response.fit.motion, response.fit.jumps
     times, values = motion.peaks()
@@ -409,7 +312,7 @@ def _energies(response: Response, ball: _Ball, b: Uncertain, begin: Floats, weig
 
 
 def _rows(
-    response: Response, ball: _Ball, side: Floats, phase: Floats, number: npt.NDArray[np.int64]
+    response: Response, ball: Rebounds, side: Floats, phase: Floats, number: npt.NDArray[np.int64]
 ) -> npt.NDArray[np.void]:
     jumps = response.fit.jumps
     rows = np.zeros(len(side), IMPACT)
@@ -423,5 +326,5 @@ def _rows(
     rows["v2"][inner], rows["v2_after"][inner] = ball.motion.v2_before, ball.motion.v2_after
     rows["w_dot"][inner], rows["w_dot_after"][inner] = ball.motion.w_before, ball.motion.w_after
     rows["r"][inner], rows["u_r"][inner] = ball.motion.r, ball.u_r
-    rows["suspect"][inner] = ~ball.usable
+    rows["suspect"][inner] = ~ball.counted
     return rows

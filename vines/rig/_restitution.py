@@ -1,4 +1,4 @@
-"""Mean restitution, its dependence on speed, and its scatter freed from measurement noise."""
+"""Restitution as a law of the speed, and its scatter freed from measurement noise."""
 
 from __future__ import annotations
 
@@ -22,14 +22,14 @@ _UNEVEN = 3e-3
 
 @dataclass(frozen=True, slots=True)
 class Restitution:
-    """r_k = r (|w'_k|/speed)^exponent + sigma_r g_k + noise of the measurement.
+    """The law r_k = r (|w'_k|/speed)^exponent + sigma_r g_k, measured with noise.
 
     Attributes
     ----------
     r : float
-        Mean of the impacts.
+        At the mean speed.
     exponent, u_exponent : float
-        Of the power of the speed before impact; 0 ± inf where the speeds differ by less than a tenth.
+        Of the power of the speed before impact; 0 ± inf where the speeds hardly differ.
     sigma_r, u_sigma_r : float
         Standard deviation of the scatter, with the noise of each r_k taken off.
     speed : float
@@ -46,9 +46,13 @@ class Restitution:
     speed: float
     n: int
 
+    def at(self, speed: Floats) -> Floats:
+        """Return the restitution without scatter at speeds [m/s], at most 1."""
+        return np.minimum(self.r * (speed / self.speed) ** self.exponent, 1.0)
+
 
 def restitution(r: Floats, u: Floats, speed: Floats, side: Floats) -> Restitution:
-    """Estimate mean, exponent and scatter of the restitution by maximum likelihood.
+    """Fit the law of the restitution and its scatter by restricted maximum likelihood.
 
     Parameters
     ----------
@@ -68,18 +72,39 @@ def restitution(r: Floats, u: Floats, speed: Floats, side: Floats) -> Restitutio
     Examples
     --------
     >>> rng = np.random.default_rng(4)
-    >>> u, side = np.full(4000, 0.01), np.where(np.arange(4000) % 2, 1.0, -1.0)
-    >>> found = restitution(0.65 + 0.02 * rng.normal(size=4000) + u * rng.normal(size=4000), u, np.ones(4000), side)
-    >>> round(found.r, 2), round(found.sigma_r, 3)
-    (0.65, 0.02)
+    >>> speed, side = np.exp(rng.normal(size=4000)), np.where(np.arange(4000) % 2, 1.0, -1.0)
+    >>> u = 0.01 / speed
+    >>> noisy = 0.65 * (speed / speed.mean()) ** -0.1 + 0.02 * rng.normal(size=4000) + u * rng.normal(size=4000)
+    >>> found = restitution(noisy, u, speed, side)
+    >>> round(found.r, 2), round(found.exponent, 2), round(found.sigma_r, 3)
+    (0.65, -0.1, 0.02)
     """
     x = np.log(speed / speed.mean())
     spread = float(np.std(x))
     varied = spread > _VARIED and len(r) > 20
-    line = np.stack([np.ones_like(x), x]) if varied else np.ones((1, len(r)))
-    columns = np.vstack([line, *([x**2] if varied else []), *([side] if abs(np.mean(side)) < 1 else [])])
+    sigma, mean, exponent = 1.4826 * float(np.median(np.abs(r - np.median(r)))) + 1e-3, float(np.median(r)), 0.0
+    u_exponent, bend = float("inf"), 0.0
+    for _ in range(4):
+        # Gauss-Newton in the mean and the exponent, at the scatter found so far.
+        law = mean * np.exp(exponent * x)
+        line = np.stack([law / mean, law * x])[: 2 if varied else 1]
+        weighted = line / (sigma**2 + u**2)
+        covariance = np.linalg.inv(weighted @ line.T)
+        change = covariance @ (weighted @ (r - law))
+        mean += float(change[0])
+        if varied:
+            exponent += float(change[1])
+            u_exponent = float(np.hypot(np.sqrt(covariance[1, 1]), _UNEVEN / spread / abs(mean)))
+        law = mean * np.exp(exponent * x)
+        sigma, bend = _scatter(r, u, [law, *([law * x, law * x**2] if varied else []), side])
+    u_sigma = sigma / np.sqrt(bend) if bend > 0 else sigma
+    return Restitution(mean, exponent, u_exponent, sigma, float(u_sigma), float(speed.mean()), len(r))
+
+
+def _scatter(r: Floats, u: Floats, columns: list[Floats]) -> tuple[float, float]:
+    """Return the standard deviation that is left beside some columns and noise, and the curvature in its logarithm."""
     # Orthonormal, so that columns that say the same count once.
-    left, sizes, _ = np.linalg.svd(columns.T, full_matrices=False)
+    left, sizes, _ = np.linalg.svd(np.stack(columns, axis=1), full_matrices=False)
     basis = left[:, sizes > 1e-6 * sizes[0]].T
 
     def cost(log_sigma: float) -> float:
@@ -93,13 +118,4 @@ def restitution(r: Floats, u: Floats, speed: Floats, side: Floats) -> Restitutio
     best: Any = minimize_scalar(cost, bounds=(np.log(1e-5), np.log(0.5)), method="bounded")
     at = float(best.x)
     bend = (cost(at + 0.05) - 2 * cost(at) + cost(at - 0.05)) / 0.05**2
-    sigma = float(np.exp(at))
-    u_sigma = sigma / np.sqrt(bend) if bend > 0 else sigma
-    exponent, u_exponent = 0.0, float("inf")
-    if varied:
-        weighted = line / (sigma**2 + u**2)
-        normal = weighted @ line.T
-        mean, slope = np.linalg.solve(normal, weighted @ r)
-        exponent = float(slope / mean)
-        u_exponent = float(np.hypot(np.sqrt(np.linalg.inv(normal)[1, 1]), _UNEVEN / spread) / abs(mean))
-    return Restitution(float(np.mean(r)), exponent, u_exponent, sigma, float(u_sigma), float(speed.mean()), len(r))
+    return float(np.exp(at)), bend

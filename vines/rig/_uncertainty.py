@@ -33,7 +33,9 @@ def period_weights(periods: int, *, draws: int = 400, seed: int = 0) -> Floats:
     return weights
 
 
-def mean_over_periods(values: Floats, period: npt.NDArray[np.int64], weights: Floats) -> Uncertain:
+def mean_over_periods(
+    values: Floats, period: npt.NDArray[np.int64], weights: Floats, size: Floats | None = None
+) -> Uncertain:
     """Return the mean of values that belong to periods, with the bootstrap's standard uncertainty.
 
     Parameters
@@ -43,13 +45,16 @@ def mean_over_periods(values: Floats, period: npt.NDArray[np.int64], weights: Fl
         Period of each, from 0.
     weights : ndarray, shape (draws, periods)
         From `period_weights`.
+    size : ndarray, shape (n,), optional
+        By which each value counts; all alike if left out.
     """
     count = weights.shape[1]
-    sums, counts = np.bincount(period, values, count), np.bincount(period, minlength=count).astype(float)
+    size = np.ones(len(values)) if size is None else size
+    sums, counts = np.bincount(period, values * size, count), np.bincount(period, size, count)
     total = weights @ counts
     means = (weights @ sums)[total > 0] / total[total > 0]
     blocks = max(2, count // max(1, math.isqrt(count)))
-    return Uncertain(float(np.mean(values)), float(np.std(means)) * math.sqrt(blocks / (blocks - 1)))
+    return Uncertain(float(np.average(values, weights=size)), float(np.std(means)) * math.sqrt(blocks / (blocks - 1)))
 
 
 def combined(value: float, *parts: float) -> Uncertain:
