@@ -16,6 +16,9 @@ Floats = npt.NDArray[np.float64]
 _VARIED = 0.05
 """Least standard deviation of log speed at which an exponent is sought."""
 
+_TOLD = 2.0
+"""Least standard deviation of log speed, relative to the noise, at which the scatter is freed from the speed's part."""
+
 _UNEVEN = 3e-3
 """Standard uncertainty of the restitution of slow impacts against that of fast ones, by the sensor's linearity."""
 
@@ -82,6 +85,8 @@ def restitution(r: Floats, u: Floats, speed: Floats, side: Floats) -> Restitutio
     x = np.log(speed / speed.mean())
     spread = float(np.std(x))
     varied = spread > _VARIED and len(r) > 20
+    # Of speeds that differ by less than they are measured to, a dependence would be that of their noise.
+    told = len(r) > 20 and spread > _TOLD * float(np.sqrt(np.mean(u**2)) / abs(np.mean(r)))
     sigma, mean, exponent = 1.4826 * float(np.median(np.abs(r - np.median(r)))) + 1e-3, float(np.median(r)), 0.0
     u_exponent, bend = float("inf"), 0.0
     for _ in range(4):
@@ -96,7 +101,7 @@ def restitution(r: Floats, u: Floats, speed: Floats, side: Floats) -> Restitutio
             exponent += float(change[1])
             u_exponent = float(np.hypot(np.sqrt(covariance[1, 1]), _UNEVEN / spread / abs(mean)))
         law = mean * np.exp(exponent * x)
-        sigma, bend = _scatter(r, u, [law, *([law * x, law * x**2] if varied else []), side])
+        sigma, bend = _scatter(r, u, [law, side, *([law * x, law * x**2, side * x] if told else [])])
     u_sigma = sigma / np.sqrt(bend) if bend > 0 else sigma
     return Restitution(mean, exponent, u_exponent, sigma, float(u_sigma), float(speed.mean()), len(r))
 
