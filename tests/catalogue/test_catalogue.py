@@ -124,6 +124,7 @@ def test_a_file_of_another_version_or_unit_is_one_clear_line(store):
             with connect(store) as catalogue, pytest.raises(SchemaError) as caught:
                 catalogue.query(sql)
             assert words in str(caught.value)
+            assert "until 'vines run first' made it again" in str(caught.value)
             assert "\n" not in str(caught.value)
         with connect(store) as catalogue:  # what does not read the file still answers
             assert catalogue.fetch("select count(*) from second.symmetric")[1] == [(3,)]

@@ -148,15 +148,23 @@ class Catalogue:
         """See that the files of a view tell the units and version of their schemas."""
         if not view.sources:
             return
-        files = ", ".join(text(str(path)) for _, path in view.sources)
+        files = ", ".join(text(str(path)) for _, path, _ in view.sources)
         found = self._connection.execute(
             f"SELECT file_name, value FROM parquet_kv_metadata([{files}]) WHERE key = 'vines'"
         ).fetchall()
         told = {Path(name): value for name, value in found}
-        for name, path in view.sources:
-            wrong = schema.metadata_disagreements(name, told.get(path))
-            if wrong:
-                raise SchemaError(f"{path}: {wrong[0]}; run its pipeline again, with --force if the file was changed")
+        wrong = {
+            path: (lines[0], pipeline)
+            for name, path, pipeline in view.sources
+            if (lines := schema.metadata_disagreements(name, told.get(path)))
+        }
+        if wrong:
+            path, (line, _) = next(iter(wrong.items()))
+            again = " and ".join(f"'vines run {each}'" for each in dict.fromkeys(each for _, each in wrong.values()))
+            raise SchemaError(
+                f"{path}: {line}, and no query on {view.name} is answered until {again} made it again "
+                "(--force if the file was changed; 'vines rig ingest FOLDER' where that made it)"
+            )
 
     def _say(self, text: str) -> str:
         unknown = _NO_TABLE.search(text)

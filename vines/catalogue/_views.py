@@ -68,15 +68,15 @@ class View:
         What a query calls it.
     statements : tuple of str
         SQL that makes it, and its short name without quotes if it has one.
-    sources : tuple of (str, Path)
-        Table and file of each piece.
+    sources : tuple of (str, Path, str)
+        Table, file and pipeline of each piece.
     words : tuple of str
         All of them, in lower case, stand in a query that uses the view.
     """
 
     name: str
     statements: tuple[str, ...]
-    sources: tuple[tuple[str, Path], ...]
+    sources: tuple[tuple[str, Path, str], ...]
     words: tuple[str, ...]
 
 
@@ -115,7 +115,7 @@ def list_views(
         return str(result.folder / file) if place is None else place(pipeline, stage, file)
 
     pieces: dict[str, list[str]] = {name: [] for name, spec in schema.tables().items() if spec.stored}
-    files: dict[str, list[tuple[str, Path]]] = {name: [] for name in pieces}
+    files: dict[str, list[tuple[str, Path, str]]] = {name: [] for name in pieces}
     logs: list[str] = []
     single: list[View] = []
     for pipeline, stage, result in results:
@@ -127,13 +127,13 @@ def list_views(
             source = f"read_parquet({text(str(path_of(pipeline, stage, result, path.name)))})"
             query = select(schema.table(name), pipeline, stage, source, about["columns"])
             pieces[name].append(query)
-            files[name].append((name, path))
+            files[name].append((name, path, pipeline))
             called = f"{pipeline}.{stage}" if i == 0 else f"{pipeline}.{stage}.{name}"
             made = [f"CREATE VIEW {quote(called)} AS {query}"]
             if i == 0:
                 made = [f"CREATE SCHEMA IF NOT EXISTS {quote(pipeline)}", *made]
                 made.append(f"CREATE VIEW {quote(pipeline)}.{quote(stage)} AS SELECT * FROM {quote(called)}")
-            single.append(View(called, tuple(made), ((name, path),), (pipeline.lower(), stage.lower())))
+            single.append(View(called, tuple(made), ((name, path, pipeline),), (pipeline.lower(), stage.lower())))
     whole = []
     for name, queries in pieces.items():
         query = " UNION ALL ".join(queries) or select(schema.table(name), "", "", None, ())

@@ -19,6 +19,9 @@ STIFFNESS_DRIFT = -1.5e-4
 U_STIFFNESS_DRIFT = 0.5e-4
 """Standard uncertainty of that."""
 
+_U_TEMPERATURE = 0.1
+"""[K] A sensor on the frame follows the spring's temperature to a tenth or two of a kelvin."""
+
 _U_DAMPING = 1e-4
 """Relative standard uncertainty of lam at least: no damper is linear beyond that."""
 
@@ -147,12 +150,12 @@ def natural(ringdowns: tuple[RingDown, ...], temperature: float) -> tuple[Uncert
     if known.all() and np.ptp(at) > 1.0 and len(at) > 1:
         line = np.cov(at, values)
         slope = float(line[0, 1] / line[0, 0] / values.mean())
-        u_slope = float(np.sqrt(np.sum(u**2 * (at - at.mean()) ** 2)) / np.sum((at - at.mean()) ** 2) / values.mean())
+        each = np.hypot(u, _U_TEMPERATURE * drift * values)
+        u_slope = float(np.sqrt(np.sum((each * (at - at.mean())) ** 2)) / np.sum((at - at.mean()) ** 2) / values.mean())
         weight = u_drift**2 / (u_drift**2 + u_slope**2)
         drift, u_drift = drift + weight * (slope - drift), u_drift * u_slope / np.hypot(u_drift, u_slope)
     moved = values * (1 + drift * away)
-    # A sensor on the frame follows the spring's temperature to a tenth or two of a kelvin.
-    own = np.sqrt(u**2 + (values * lack) ** 2 + (0.1 * drift * values) ** 2)
+    own = np.sqrt(u**2 + (values * lack) ** 2 + (_U_TEMPERATURE * drift * values) ** 2)
     weights = 1 / (own**2 + (values * u_drift * away) ** 2)
     mean = float(np.sum(weights * moved) / np.sum(weights))
     shift = float(np.sum(weights * away) / np.sum(weights)) * mean * u_drift
