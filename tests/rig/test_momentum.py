@@ -7,7 +7,7 @@ import pytest
 
 import vines
 from vines.rig import Uncertain
-from vines.rig._ball import Cavity, ball_motion
+from vines.rig._ball import Cavity, Course, ball_motion
 from vines.rig._jumps import Jumps
 from vines.rig._momentum import fit_momentum
 from vines.rig._restitution import restitution
@@ -23,6 +23,14 @@ def noisy(jumps, u, rng, shape=()):
     return Jumps(**{
         name: part + u * sizes[name] * rng.normal(size=(*shape, len(part))) for name, part in parts.items()
     })  # fmt: skip
+
+
+KNOWN = {"friction": Uncertain(0.0, 0.01), "tilt": Uncertain(0.0, 1e-5), "touch": Uncertain(0.0, 1e-6)}
+
+
+def straight(side):
+    """Return the course of flights without friction between hard walls."""
+    return Course(np.zeros(len(side) - 1), np.zeros(len(side) - 1), np.zeros(len(side)))
 
 
 @pytest.fixture(scope="module")
@@ -62,10 +70,10 @@ def test_friction_slows_a_flight_from_wall_to_wall():
 def test_mu_from_b_and_b_from_mu(orbit):
     jumps, side, *_ = orbit
     draws = noisy(jumps, 1.0, np.random.default_rng(0), (64,))
-    known = {"friction": Uncertain(0.0, 0.01), "tilt": Uncertain(0.0, 1e-5)}
-    by_gauge = fit_momentum(jumps, draws, side, mu=None, b=Uncertain(B, 1e-7), **known)
+    by_gauge = fit_momentum(jumps, draws, side, straight(side), mu=None, b=Uncertain(B, 1e-7), **KNOWN)
     assert by_gauge.mu.value == pytest.approx(P.mu, rel=1e-5)
-    by_scales = fit_momentum(jumps, draws, side, mu=Uncertain(P.mu, 1e-8), b=Uncertain(1.02 * B, 1e-3), **known)
+    gauged = Uncertain(1.02 * B, 1e-3)
+    by_scales = fit_momentum(jumps, draws, side, straight(side), mu=Uncertain(P.mu, 1e-8), b=gauged, **KNOWN)
     assert by_scales.b.value == pytest.approx(B, rel=2e-4)
     assert by_scales.good.all()
 
@@ -77,8 +85,7 @@ def test_stated_uncertainty_of_mu_is_that_of_the_noise(orbit):
     for _ in range(60):
         seen = noisy(jumps, 1.0, rng)
         draws = noisy(seen, 1.0, rng, (64,))
-        known = {"b": Uncertain(B, 1e-7), "friction": Uncertain(0.0, 0.01), "tilt": Uncertain(0.0, 1e-5)}
-        found.append(fit_momentum(seen, draws, side, mu=None, **known).mu)
+        found.append(fit_momentum(seen, draws, side, straight(side), mu=None, b=Uncertain(B, 1e-7), **KNOWN).mu)
     errors = np.array([(one.value - P.mu) / one.u for one in found])
     assert abs(errors.mean()) < 0.5
     assert 0.6 < errors.std() < 1.3
@@ -95,7 +102,7 @@ def test_restitution_its_exponent_and_scatter_are_unbiased(spread, exponent, n):
         u = rng.uniform(0.005, 0.03, n)
         mean = r * (speed / speed.mean()) ** exponent
         one = restitution(mean + sigma * rng.normal(size=n) + u * rng.normal(size=n), u, speed, side)
-        rows.append((one.r - mean.mean(), one.sigma_r / sigma - 1, one.exponent - exponent, one.u_sigma_r / sigma))
+        rows.append((one.r - r, one.sigma_r / sigma - 1, one.exponent - exponent, one.u_sigma_r / sigma))
         assert one.n == n
     error, relative, power, stated = np.array(rows).T
     for values in (error, relative, power):
