@@ -10,11 +10,13 @@ import numpy.typing as npt
 
 from vines.model import Params
 from vines.rig._cycle import Slots, Track, matching, mean_cycle, slots
+from vines.rig._left_open import left_open
 from vines.rig._match import Candidate
 from vines.rig._motion import Motion
 from vines.rig._pattern import Pattern, Periods, cut_into_periods, find_pattern
 from vines.rig._reconstruction import Reconstruction
 from vines.rig._recording import Uncertain
+from vines.rig._sensitivity import Numbers
 from vines.rig._uncertainty import combined
 
 if TYPE_CHECKING:
@@ -30,9 +32,11 @@ DRAWS = 32
 SETTLE, RECORD = 200, 256
 """Forcing periods."""
 
-_RUBBED = 0.005 * 9.80665
-_LEFT_OUT = {"phase": 1.2e-3, "max_abs_x1": 1e-3, "kinetic_ratio": 1.5e-3}
-"""What a friction of .005 g, which the model does not have, changes [rad, relative, relative]."""
+_STEEPER = 16
+"""Runs of the ensemble that are done again, with the same draws, where r falls faster with speed."""
+
+_FALL = Uncertain(-0.1, 0.1)
+"""Exponent of r ~ |w'|^e where a run's speeds are too much alike to tell: metals show -.05 to -.2."""
 
 _CYCLES = 64
 _SHOWS = 0.5
@@ -115,49 +119,92 @@ def predict(
         Of the draws.
     """
     from vines.attractors import classify_many
-    from vines.dynamics import ensemble
 
-    table = parameter_draws(p, parameter_spread(run) if spread is None else spread, seed=seed)
-    scatter, r0 = _scatter(run, p, seed)
-    twice = {name: np.tile(values, 2) for name, values in table.items()}
-    twice["r"] = np.clip(twice["r"] + r0, 1e-9, 1.0)
-    start = {name: np.full(1, value) for name, value in candidate.start.items()}
-    many = ensemble(twice, start, settle=SETTLE, periods=RECORD, record="impacts", scatter=scatter, threads=1)
-    impacts = many.impacts
-    assert impacts is not None
-    shown: list[_Shown] = []
-    for k, own in enumerate(np.split(impacts, np.searchsorted(impacts["run"], np.arange(1, 2 * DRAWS)))):
-        values = Params(*(float(value) for value in many.parameters[k]))
-        shown.append(_show(_track(own, values, scatter), values, run) if len(own) > 8 else _NOTHING)
+    spread = parameter_spread(run) if spread is None else spread
+    fall = _exponent(run)
+    table = parameter_draws(p, spread, seed=seed)
+    shown = _ensemble(run, p, candidate, {name: np.tile(values, 2) for name, values in table.items()}, fall.value, seed)
+    again = {name: values[:_STEEPER] for name, values in table.items()}
+    steeper = _ensemble(run, p, candidate, again, fall.value - fall.u, seed)
     fractions = np.array([one.fraction for one in shown])
     holding = float(np.mean([one.name == run.pattern.name for one in shown]))
     periodic = float("nan")
     if holding > 0:
-        found = classify_many(table, start, threads=1)
-        periodic = float(np.mean(found.regime == "periodic"))
+        start = {name: np.full(1, value) for name, value in candidate.start.items()}
+        periodic = float(np.mean(classify_many(table, start, threads=1).regime == "periodic"))
     with_it = [one for one in shown if one.phases is not None and one.fraction > _SHOWS]
-    rubbed = run.quantities["friction"].value / _RUBBED
     phases = _phases(shown) if with_it else ()
     largest, ratio = (_spread(np.array([getattr(one, name) for one in shown])) for name in ("largest", "ratio"))
+    middle = Numbers(np.array([one.value for one in phases]), largest.value, ratio.value)
+    still = left_open(run, candidate, spread, middle)
+    turned = _turned(shown[:_STEEPER], steeper, len(phases))
+    known = still.by_parameters or Numbers(np.zeros(len(phases)), 0.0, 0.0)
     return Predicted(
         candidate,
         Uncertain(float(fractions.mean()), float(fractions.std())),
         holding,
         periodic,
-        tuple(combined(one.value, one.u, _LEFT_OUT["phase"] * rubbed) for one in phases),
-        combined(largest.value, largest.u, largest.value * _LEFT_OUT["max_abs_x1"] * rubbed),
-        combined(ratio.value, ratio.u, ratio.value * _LEFT_OUT["kinetic_ratio"] * rubbed),
+        tuple(
+            combined(one.value, max(one.u, own), force, fell)
+            for one, own, force, fell in zip(phases, known.phase, still.by_forces.phase, turned.phase, strict=True)
+        ),
+        combined(largest.value, max(largest.u, known.max_abs_x1), still.by_forces.max_abs_x1, turned.max_abs_x1),
+        combined(ratio.value, max(ratio.u, known.kinetic_ratio), still.by_forces.kinetic_ratio, turned.kinetic_ratio),
         _mean_of([one.cycle for one in with_it]),
         np.concatenate([one.gaps for one in shown]),
     )
 
 
-def _scatter(run: Reconstruction, p: Params, seed: int) -> tuple[Scatter, float]:
+def _ensemble(
+    run: Reconstruction, p: Params, candidate: Candidate, table: dict[str, Floats], exponent: float, seed: int
+) -> list[_Shown]:
+    """Return what runs of the model with scatter show; run k draws the same restitutions whatever the rest is."""
+    from vines.dynamics import ensemble
+
+    scatter, r0 = _scatter(run, p, exponent, seed)
+    table = table | {"r": np.clip(table["r"] + r0, 1e-9, 1.0)}
+    start = {name: np.full(1, value) for name, value in candidate.start.items()}
+    many = ensemble(table, start, settle=SETTLE, periods=RECORD, record="impacts", scatter=scatter, threads=1)
+    impacts = many.impacts
+    assert impacts is not None
+    shown: list[_Shown] = []
+    for k, own in enumerate(np.split(impacts, np.searchsorted(impacts["run"], np.arange(1, len(table["r"]))))):
+        values = Params(*(float(value) for value in many.parameters[k]))
+        shown.append(_show(_track(own, values, scatter), values, run) if len(own) > 8 else _NOTHING)
+    return shown
+
+
+def _exponent(run: Reconstruction) -> Uncertain:
+    """Return the exponent of the restitution's fall with speed: as measured, and as metals are."""
+    own = run.quantities["r_exponent"]
+    if not np.isfinite(own.u):
+        return _FALL
+    share = _FALL.u**2 / (_FALL.u**2 + own.u**2)
+    return Uncertain(_FALL.value + share * (own.value - _FALL.value), float(np.sqrt(share)) * own.u)
+
+
+def _turned(shown: list[_Shown], steeper: list[_Shown], places: int) -> Numbers:
+    """Return what a faster fall of r changes: the mean over pairs of runs with the same draws."""
+
+    def mean(values: list[float]) -> float:
+        fair = [value for value in values if np.isfinite(value)]
+        return float(np.mean(fair)) if fair else 0.0
+
+    pairs = list(zip(shown, steeper, strict=True))
+    both = [
+        np.angle(np.exp(1j * (b.phases - a.phases)))
+        for a, b in pairs
+        if a.phases is not None and b.phases is not None and min(a.fraction, b.fraction) > _SHOWS
+    ]
+    phase = np.mean(both, axis=0) if both else np.zeros(places)
+    return Numbers(phase, mean([b.largest - a.largest for a, b in pairs]), mean([b.ratio - a.ratio for a, b in pairs]))
+
+
+def _scatter(run: Reconstruction, p: Params, exponent: float, seed: int) -> tuple[Scatter, float]:
     """Return the scatter of an ensemble and what must be added to r where it falls with speed."""
     from vines.dynamics import Scatter
 
     q = run.quantities
-    exponent = q["r_exponent"].value if np.isfinite(q["r_exponent"].u) and q["r_exponent"].u < 0.1 else 0.0
     # r (|w'|/w)^e is near w the line r (1 - e) + r e |w'|/w; the ensemble's speeds are dimensionless.
     speed = q["w_before"].value / (q["b"].value * q["omega0"].value)
     slope = -p.r * exponent / speed

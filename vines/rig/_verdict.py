@@ -26,6 +26,9 @@ _SURE = 0.95
 _FAIR = 0.5
 _MEASURES = 3
 
+_VAGUE = {"phase": 0.15, "max_abs_x1": 0.1, "kinetic_ratio": 0.2}
+"""Standard uncertainty of measured and modelled value together beyond which E_n < 1 says nothing [rad, relative]."""
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Likeness:
@@ -109,8 +112,9 @@ def decide(run: Reconstruction, branches: tuple[Likeness, ...]) -> tuple[str, st
     -----
     ``undecidable`` where the data contradict themselves or are too poor, where no pattern holds in 95 % of the periods
     (mixed or chaotic), or where the model's own answer is open within the uncertainties: the pattern shows in some of
-    the ensemble only, or the model is chaotic at some of the draws. ``disagree`` where a clear pattern is none of the
-    model's; ``pattern_only`` where the pattern is but a number is not; else ``agree``.
+    the ensemble only, or the model is chaotic at some of the draws, or a number is known too poorly for agreement to
+    mean something. ``disagree`` where a clear pattern is none of the model's; ``pattern_only`` where the pattern is but
+    a number is not; else ``agree``.
     """
     if not run.accepted:
         return "undecidable", run.reasons
@@ -140,7 +144,19 @@ def decide(run: Reconstruction, branches: tuple[Likeness, ...]) -> tuple[str, st
     listed = f"{best.candidate.name}: " + ", ".join(f"E_n({name}) = {value:.2f}" for name, value in errors.items())
     if not all(np.isfinite(value) for value in errors.values()) or len(errors) < _MEASURES:
         return "undecidable", f"{listed}: a quantity is missing"
-    return ("agree" if max(errors.values()) <= 1 else "pattern_only"), listed
+    if max(errors.values()) > 1:
+        return "pattern_only", listed
+    vague = [name for name, most in _VAGUE.items() if _open(with_it[0], name) > most]
+    if vague:
+        shares = ", ".join(f"{name} to {_open(with_it[0], name):.2g}" for name in vague)
+        return "undecidable", f"{listed}, but scatter and what is not known leave open {shares}: too much to agree"
+    return "agree", listed
+
+
+def _open(one: Likeness, name: str) -> float:
+    """Return the standard uncertainty of measured and modelled value together; relative, of a phase in radians."""
+    both = float(np.hypot(one.measured[name].u, one.model[name].u))
+    return both if name == "phase" else both / abs(one.model[name].value)
 
 
 def order(branches: list[Likeness]) -> tuple[Likeness, ...]:
