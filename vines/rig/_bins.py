@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
@@ -42,6 +42,15 @@ class Bins:
     def response(self, s: complex) -> complex:
         """Return the mean over a block of exp(s t), smoothed, where its middle is t = 0."""
         return sinhc(0.5 * s * self.width) * complex(np.exp(0.5 * (s * self.smooth) ** 2))
+
+    def without(self, times: Floats, reach: float) -> Bins:
+        """Return the blocks with middles farther than `reach` from all times."""
+        if not len(times):
+            return self
+        place = np.searchsorted(np.sort(times), self.t)
+        times = np.concatenate([[-np.inf], np.sort(times), [np.inf]])
+        far = np.minimum(self.t - times[place], times[place + 1] - self.t) > reach
+        return replace(self, t=self.t[far], mean=self.mean[far])
 
 
 def bins_of(channel: Sampled, rate: float = BIN_RATE) -> Bins:

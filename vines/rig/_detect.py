@@ -15,7 +15,7 @@ from vines.rig._recording import Sampled
 from vines.rig._sine_fit import sine_fit
 from vines.rig._split import split_flights
 
-__all__ = ["U_PULSE", "Detected", "detect", "inside"]
+__all__ = ["U_PULSE", "Detected", "detect", "inside", "threshold"]
 
 Floats = npt.NDArray[np.float64]
 
@@ -67,23 +67,23 @@ class Detected:
 
 
 def detect(fitter: Fitter, channel: Sampled, sensor: Sampled) -> Detected:
-    """Find the impacts.
+    """Find the impacts where the displacement is measured.
 
     Parameters
     ----------
     fitter : Fitter
-        Of the channel that is fitted.
+        Of the displacement.
     channel, sensor : Sampled
         That channel, and the one that hears impacts best: an accelerometer if there is one.
     """
-    bins, order, omega = fitter.bins, fitter.order, fitter.omega
+    bins, omega = fitter.bins, fitter.omega
     both, heard_well = sensor is not channel, sensor.role == "lo_acc"
     gain = _gain(bins, sensor, omega) if both else None
     pulses = pulses_of(sensor, 2 if heard_well else 0)
     if gain is not None:
         pulses = replace(pulses, values=pulses.values / (abs(gain) * np.sign(gain.real)))
-    corners = pulses_of(channel, 0) if order == 0 and both else pulses
-    times, dv = _first_look(pulses, bins, fitter.s, omega, order)
+    corners = pulses_of(channel, 0) if both else pulses
+    times, dv = _first_look(pulses, bins, fitter.s, omega)
     u = np.full(len(times), U_PULSE if heard_well else _LOOSE)
     if both:
         times, dv, u = _crosschecked(times, dv, u, corners, bins, fitter.s, omega)
@@ -94,16 +94,12 @@ def detect(fitter: Fitter, channel: Sampled, sensor: Sampled) -> Detected:
     known = float(np.hypot(np.hypot(channel.u_time, sensor.u_time), 2e-6))
     if both:
         delay = _shrunk(_mean_shift(fit), known)[0]
-    elif order == 0:
+    else:
         times = _ascending(fit.jumps.t)
     left = pulses.less(_smooth(fit, pulses, gain, omega, delay))
-    if order == 2:
-        # Beside a missed impact the fitted motion is off, slowly.
-        left = left.sparse()
     times, dv, u = _with_soft_ones(left, times, dv, u, U_PULSE if heard_well else _LOOSE)
     times, dv, u = inside(bins, times, dv, u)
-    if order == 0:
-        times, dv, u = _with_unheard(corners, fitter, times, dv, u, delay)
+    times, dv, u = _with_unheard(corners, fitter, times, dv, u, delay)
     fit = fitter.fit(times + delay, u, dv)
     heard = u <= U_PULSE
     scale = _slope(dv[heard], fit.jumps.dv[heard]) if heard_well else 1.0
@@ -127,7 +123,7 @@ def detect(fitter: Fitter, channel: Sampled, sensor: Sampled) -> Detected:
     return Detected(times, dv, u, candidates, delay, u_delay, drift, gain)
 
 
-def _threshold(pulses: Pulses) -> float:
+def threshold(pulses: Pulses) -> float:
     return max(_SIGMAS * pulses.noise, LEAST / (pulses.smooth * 2.5))
 
 
@@ -142,8 +138,8 @@ def _crosschecked(
 ) -> tuple[Floats, Floats, Floats]:
     """Add impacts that only the displacement shows, and drop knocks, whose jump it should show and does not."""
     sparse = _bare(pulses, bins, s, omega)
-    seen, jumps = find_pulses(sparse, _threshold(sparse))
-    least = 3 * _threshold(sparse) * pulses.smooth * 2.5
+    seen, jumps = find_pulses(sparse, threshold(sparse))
+    least = 3 * threshold(sparse) * pulses.smooth * 2.5
     reach = 1.5 * pulses.smooth
     gap = np.abs(times[:, None] - seen[None, :]) if len(seen) else np.full((len(times), 1), np.inf)
     sign = np.sign(dv)[:, None] == np.sign(jumps)[None, :] if len(seen) else np.zeros((len(times), 1), bool)
@@ -160,7 +156,7 @@ def _crosschecked(
 def _with_soft_ones(left: Pulses, times: Floats, dv: Floats, u: Floats, u_new: float) -> tuple[Floats, Floats, Floats]:
     """Refine the pulses, now that the motion is known, and add those too small to be seen before."""
     heard = u <= u_new
-    found, jumps = find_pulses(left, _threshold(left), times=times[heard], dv=dv[heard])
+    found, jumps = find_pulses(left, threshold(left), times=times[heard], dv=dv[heard])
     times = np.concatenate([found, times[~heard]])
     dv = np.concatenate([jumps, dv[~heard]])
     u = np.concatenate([np.full(len(found), u_new), u[~heard]])
@@ -177,7 +173,7 @@ def _with_unheard(
         fit = fitter.fit(times + delay, u, dv)
         smooth = fit.motion.combination(t, {2: 1.0, 4: 0.5 * pulses.smooth**2})
         left = replace(pulses, values=pulses.values - smooth - pulses.shape(fit.jumps.t, fit.jumps.dv))
-        found, jumps = find_pulses(left, 1.5 * _threshold(left))
+        found, jumps = find_pulses(left, 1.5 * threshold(left))
         away = np.array([np.min(np.abs(times + delay - one), initial=np.inf) for one in found])
         new = away > 3 * pulses.smooth
         if not new.any():
@@ -206,9 +202,9 @@ def _gain(bins: Bins, accelerometer: Sampled, omega: float) -> complex:
     return complex(of_a.harmonics[0] / (-(of_x.omega**2) * of_x.harmonics[0]))
 
 
-def _first_look(pulses: Pulses, bins: Bins, s: complex, omega: float, order: int) -> tuple[Floats, Floats]:
-    sparse = _bare(pulses, bins, s, omega) if order == 0 else pulses.sparse()
-    return find_pulses(sparse, _threshold(sparse))
+def _first_look(pulses: Pulses, bins: Bins, s: complex, omega: float) -> tuple[Floats, Floats]:
+    sparse = _bare(pulses, bins, s, omega)
+    return find_pulses(sparse, threshold(sparse))
 
 
 def _bare(pulses: Pulses, bins: Bins, s: complex, omega: float) -> Pulses:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -14,28 +15,35 @@ from vines.rig._slide import Push
 __all__ = ["KEEP", "LEAST", "Fitter"]
 
 Floats = npt.NDArray[np.float64]
+Forced = tuple[npt.NDArray[np.complex128], Floats]
 
 KEEP = 5.0
 
 LEAST = 2e-4
 """No smaller jump is believed [m/s]."""
 
-_U_AREA = 0.03
-"""Relative standard uncertainty of a jump by the area of its pulse: for what ringing adds."""
-
 _U_SIDEWAYS = 3e-3
 """Sway across the axis, relative to the motion: a tenth of it, seen by a cross-axis sensitivity of some per cent."""
+
+_HELD = 1e-3
+"""How firmly the base holds the forced response where it holds it, relative to it."""
+
+_WAVES = 20
+
+_U_WANDER = 0.05
+"""Wander of the offset of an accelerometer [m/s^2]."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Fitter:
-    """What all fits of a run share."""
+    """What all fits of a run share; `driven` is the forced response that the base asks for, first harmonic [m]."""
 
     bins: Bins
     s: complex
     omega: float
     order: int
-    forced: tuple[npt.NDArray[np.complex128], Floats] | None
+    forced: Forced | None
+    driven: complex | None = None
 
     def fit(
         self,
@@ -46,17 +54,46 @@ class Fitter:
         pushed: Push | None = None,
         extra: tuple[Floats, Floats] | None = None,
     ) -> JumpFit:
-        def once(expected: tuple[Floats, Floats] | None, more: tuple[Floats, Floats] | None, draws: int) -> JumpFit:
+        def once(forced: Forced | None, more: tuple[Floats, Floats] | None, draws: int, **given: Any) -> JumpFit:
             return fit_jumps(
-                self.bins, self.s, self.omega, times, u, dv, order=self.order, draws=draws, forced=self.forced,
-                pushed=pushed, extra=more, expected=expected,
+                self.bins, self.s, self.omega, times, u, dv, order=self.order, draws=draws, forced=forced,
+                pushed=pushed, extra=more, **given,
             )  # fmt: skip
 
         if self.order == 0:
-            return once(None, extra, draws)
-        # Alone, an acceleration hardly tells a train of equal jumps from a forced response; the areas of the pulses do.
-        spread = _U_AREA * np.abs(dv) + LEAST / 2
-        first = once((dv, spread), None, 0)
-        knocks = np.abs(first.jumps.dv - dv) > KEEP * spread
-        sideways = (self.omega * first.motion.at(self.bins.t, 1)[None, :], np.array([_U_SIDEWAYS]))
-        return once((dv, np.where(knocks, np.abs(dv), spread)), sideways, draws)
+            return once(self.forced, extra, draws)
+        # The flights give the jumps; areas of pulses only hold those that have no samples beside them.
+        expected = (dv, np.abs(dv) + LEAST)
+        waves, u_waves = _wander(self.bins)
+        first = once(self._held(), (waves, u_waves), 0, expected=expected)
+        sideways = self.omega * first.motion.at(self.bins.t, 1)
+        more = (np.vstack([sideways, waves]), np.append(_U_SIDEWAYS, u_waves))
+        return once(self.forced, more, draws, expected=expected, fair=first.fair)
+
+    def _held(self) -> Forced | None:
+        """Return the harmonics with the first one as the base asks for it, firmly.
+
+        Without samples of the displacement a forced response and a train of equal jumps are nearly the same motion, so
+        that a few flights with an impact that is missing turn one into the other. With the forced response held, it is
+        seen which flights these are. In the fit that follows it is free, so that base and oscillator can be compared.
+        """
+        if self.driven is None or self.forced is None:
+            return self.forced
+        (c, u) = self.forced
+        return np.append(self.driven, c), np.append(_HELD * abs(self.driven), u)
+
+
+def _wander(bins: Bins) -> tuple[Floats, Floats]:
+    """Return slow waves over the record, and how large each may be: the offset of an accelerometer wanders.
+
+    Where its high-pass is undone noise and knocks are integrated: a random walk, whose part of k half periods falls as
+    1/k.
+    """
+    k = np.arange(1, _WAVES + 1)
+    turn = np.exp(1j * np.pi * (bins.t - bins.t[0]) / (bins.t[-1] - bins.t[0]))
+    waves = np.empty((_WAVES, len(turn)))
+    power = np.ones_like(turn)
+    for row in waves:
+        power = power * turn
+        row[:] = power.real
+    return waves, _U_WANDER / k

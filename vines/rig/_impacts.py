@@ -42,6 +42,9 @@ class Pulses:
         Standard deviation of the Gaussian [s].
     echo : float
         Distance at which half of each pulse shows with the other sign before and after it [s]; 0 for none.
+    ring : float
+        What ringing adds to a pulse, as a multiple of its second derivative [s^2]: modes with participations g_i and
+        frequencies omega_i add sum g_i/omega_i^2 of it where they are far above the smoothing.
     """
 
     start: float
@@ -49,6 +52,7 @@ class Pulses:
     values: Floats
     smooth: float
     echo: float = 0.0
+    ring: float = 0.0
 
     @property
     def t(self) -> Floats:
@@ -72,7 +76,9 @@ class Pulses:
         away = self.start + self.step * index - times[:, None]
         height = (dv / (self.smooth * np.sqrt(2 * np.pi)))[:, None]
         inside = (index >= 0) & (index < len(total))
-        np.add.at(total, index[inside], (height * np.exp(-0.5 * (away / self.smooth) ** 2))[inside])
+        square = (away / self.smooth) ** 2
+        bell = height * np.exp(-0.5 * square) * (1 + self.ring / self.smooth**2 * (square - 1))
+        np.add.at(total, index[inside], bell[inside])
         return total
 
     def sparse(self) -> Pulses:

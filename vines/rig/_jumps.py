@@ -20,14 +20,14 @@ from vines.rig._motion import Motion
 from vines.rig._sine_fit import clumping
 from vines.rig._slide import Push
 
-__all__ = ["JumpFit", "Jumps", "fit_jumps"]
+__all__ = ["TAIL", "JumpFit", "Jumps", "fit_jumps"]
 
 Floats = npt.NDArray[np.float64]
 
 _DISTRUST = 1e-4
 """Weight of the samples of a flight that is not one."""
 
-_TAIL = 4.5
+TAIL = 4.5
 """How far the pulse of an impact reaches into a smoothed acceleration, in standard deviations of the smoothing."""
 
 
@@ -118,6 +118,7 @@ def fit_jumps(
     forced: tuple[npt.NDArray[np.complex128], Floats] | None = None,
     pushed: Push | None = None,
     extra: tuple[Floats, Floats] | None = None,
+    fair: npt.NDArray[np.bool_] | None = None,
     draws: int = 32,
     seed: int = 0,
 ) -> JumpFit:
@@ -147,13 +148,15 @@ def fit_jumps(
     expected : tuple of ndarray, optional
         Velocity jumps known from elsewhere (pulses of the acceleration) and their standard uncertainties [m/s].
     forced : tuple of ndarray, optional
-        Harmonics 2 … of the forced response as the base's harmonics ask for them [m], and their standard uncertainties:
-        a train of equal jumps and a few free harmonics are nearly the same motion.
+        The last harmonics of the forced response as the base's ask for them [m], and their standard uncertainties: a
+        train of equal jumps and a few free harmonics are nearly the same motion.
     pushed : Push, optional
-        What the ball's friction adds to the displacement; an acceleration is taken as it is.
+        What the ball's friction adds.
     extra : tuple of ndarray, optional
         Further signals that may be in the channel, one a row, at the times of `bins`, and the standard uncertainties of
         their sizes about 0.
+    fair : ndarray of bool, shape (K + 1,), optional
+        Flights that are trusted at first, such as by a fit that knew more.
     draws : int
         Draws for the uncertainty.
     seed : int
@@ -169,6 +172,8 @@ def fit_jumps(
     problem.forced_known = forced
     if pushed is not None:
         problem.push(pushed)
+    if fair is not None:
+        problem.trust(fair)
     u_times = np.broadcast_to(np.asarray(u_times, float), problem.times.shape)
     noise = max(_noise(bins), 1e-15)
     scale = noise
@@ -232,7 +237,12 @@ def _read(motion: Motion, pushed: Push) -> tuple[Jumps, Floats]:
 
 def _noise(bins: Bins) -> float:
     """Return the noise of a block mean from fourth differences, which the oscillator's motion hardly reaches."""
-    return float(np.median(np.abs(np.diff(bins.mean, 4))) / 0.6745 / np.sqrt(70.0))
+    binomial = np.array([1.0, -4.0, 6.0, -4.0, 1.0])
+    # Neighbouring values of a smoothed signal are alike, and so is their noise.
+    step = float(np.median(np.diff(bins.t))) / bins.smooth if bins.smooth else np.inf
+    lag = np.subtract.outer(np.arange(5), np.arange(5))
+    alike = np.where(lag == 0, 1.0, np.exp(-0.25 * np.where(lag == 0, 1, lag) ** 2 * step**2))
+    return float(np.median(np.abs(np.diff(bins.mean, 4))) / 0.6745 / np.sqrt(binomial @ alike @ binomial))
 
 
 def _multiply(factor: Floats, vector: Floats) -> Floats:
@@ -265,7 +275,7 @@ class _Problem:
             raise RigError("impact times must ascend and lie inside the record")
         self.starts = np.concatenate([[start], times])
         self.stop = stop
-        reach = guard + 0.5 * bins.width + _TAIL * bins.smooth
+        reach = guard + 0.5 * bins.width + TAIL * bins.smooth
         self.kept = keep = np.ones(len(bins.t), bool)
         low, high = np.searchsorted(bins.t, times - reach), np.searchsorted(bins.t, times + reach)
         for k in range(int((high - low).max(initial=0))):
@@ -298,12 +308,11 @@ class _Problem:
         return self.fair[self.flight]
 
     def push(self, pushed: Push) -> None:
-        """Take a known part of each flight off a displacement."""
-        if self.order == 0:
-            self.pushed = pushed
-            self.y = self.y - pushed.signal[self.kept]
-            self._sum_signal()
-            self._gather()
+        """Take a known part of each flight off the signal."""
+        self.pushed = pushed
+        self.y = self.y - pushed.signal[self.kept]
+        self._sum_signal()
+        self._gather()
 
     def distrust(self, left: Floats, noise: float) -> None:
         """Leave out flights whose residual is far above that of the others: an impact in them is missing."""
@@ -315,8 +324,12 @@ class _Problem:
         if np.mean(fair) < 0.5:
             fair = size <= np.median(size)
         if not np.array_equal(fair, self.fair):
-            self.fair = fair
-            self._gather()
+            self.trust(fair)
+
+    def trust(self, fair: npt.NDArray[np.bool_]) -> None:
+        """Leave out all other flights."""
+        self.fair = fair
+        self._gather()
 
     def _total(self, values: Floats) -> Floats:
         """Return the sum over each flight; flights without samples have none."""
@@ -363,7 +376,7 @@ class _Problem:
         cross, corner, below = self.cross / scale**2, self.corner / scale**2, self.below / scale**2
         if self.forced_known is not None:
             c, u_c = self.forced_known
-            for n, (value, u_n) in enumerate(zip(c, u_c, strict=True), start=1):
+            for n, (value, u_n) in enumerate(zip(c, u_c, strict=True), start=self.harmonics - len(c)):
                 for k, part in ((2 * n, value.real), (2 * n + 1, value.imag)):
                     corner[k, k] += 1 / u_n**2
                     below[k] += part / u_n**2

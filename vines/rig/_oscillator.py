@@ -10,6 +10,7 @@ import numpy.typing as npt
 from vines.errors import RigError
 from vines.rig._bins import Bins, bins_of
 from vines.rig._detect import U_PULSE, Detected, detect, inside
+from vines.rig._detect_alone import detect_alone
 from vines.rig._fitter import KEEP, Fitter
 from vines.rig._impacts import pulses_of
 from vines.rig._jumps import JumpFit
@@ -83,6 +84,7 @@ def measure_response(
     omega: float,
     forced: tuple[npt.NDArray[np.complex128], Floats] | None = None,
     *,
+    driven: complex,
     friction: float = 0.0,
     u_natural: tuple[float, float] = (1e-5, 1e-3),
     impacts: tuple[Floats, Floats] | None = None,
@@ -102,6 +104,8 @@ def measure_response(
         Acceleration of the oscillator by the ball's friction, mu times the ball's deceleration [m/s^2].
     u_natural : tuple of float
         Relative standard uncertainties of omega0 and lam.
+    driven : complex
+        First harmonic of the forced response that the base asks for [m].
     impacts : tuple of ndarray, optional
         Times [s] on the clock of the oscillator's channel and velocity jumps [m/s], if they are known otherwise.
 
@@ -116,10 +120,14 @@ def measure_response(
         raise RigError(f"run {recording.run.run_id!r} has no channel on the oscillator (lo_disp or lo_acc)")
     order = 0 if displacement is not None else 2
     bins = bins_of(channel) if order == 0 else _quiet(channel)
-    fitter = Fitter(bins, s, omega, order, forced)
+    fitter = Fitter(bins, s, omega, order, forced, driven)
     sensor = accelerometer if accelerometer is not None else channel
     if impacts is None:
-        found = detect(fitter, channel, sensor)
+        if order == 0:
+            found = detect(fitter, channel, sensor)
+        else:
+            found, fitter = detect_alone(fitter, channel)
+            bins = fitter.bins
     else:
         times, dv, u = inside(bins, *impacts, np.full(len(impacts[0]), U_PULSE))
         found = Detected(times, dv, u, len(times))
@@ -130,10 +138,11 @@ def measure_response(
         times, dv, u = times[keep], dv[keep], u[keep]
         fit = fitter.fit(times + delay, u, dv)
     pushed = None
-    if order == 0 and len(times) > 1:
-        pushed = _rubbed(fit, bins.t, recording.run.b.value, friction)
-        fitter = _linear(fitter, times + delay, u, dv, pushed, u_natural)
-        bins = fitter.bins
+    if len(times) > 1:
+        pushed = _rubbed(fit, bins.t, recording.run.b.value, friction, order)
+        if order == 0:
+            fitter = _linear(fitter, times + delay, u, dv, pushed, u_natural)
+            bins = fitter.bins
     fit = fitter.fit(times + delay, u, dv, draws=32, pushed=pushed)
     late, u_late = (
         _share(delay, found.u_delay, channel.u_time, sensor.u_time) if found.gain is not None else (0.0, channel.u_time)
@@ -158,11 +167,11 @@ def _quiet(accelerometer: Sampled) -> Bins:
     return Bins(t[fair], pulses.values[::stride][fair], 0.0, pulses.smooth)
 
 
-def _rubbed(fit: JumpFit, samples: Floats, b: float, friction: float) -> Push:
+def _rubbed(fit: JumpFit, samples: Floats, b: float, friction: float, order: int) -> Push:
     """Return what the friction of a ball that flies between the impacts of a first fit adds to the displacement."""
     jumps, s = fit.jumps, fit.motion.s
     found = slide(fit.motion, jumps.x + np.sign(jumps.dv) * b)
-    return push(found, fit.motion.starts[1:], samples, s, friction / abs(s) ** 2)
+    return push(found, fit.motion.starts[1:], samples, s, friction / abs(s) ** 2, order)
 
 
 def _credible(fit: JumpFit, u: Floats) -> npt.NDArray[np.bool_]:

@@ -85,7 +85,8 @@ def reconstruct(
     mu = run.m.value / run.M.value
     response = measure_response(
         recording, root, omega, forced,
-        friction=mu * friction.value, u_natural=(omega0.u / omega0.value, lam.u / lam.value), impacts=impacts,
+        friction=mu * friction.value, u_natural=(omega0.u / omega0.value, lam.u / lam.value),
+        driven=complex(base.e[0] / _asked(np.ones(1, complex), root, omega)[0]), impacts=impacts,
     )  # fmt: skip
     if len(response.fit.jumps.t) < 6:
         raise RigError(

@@ -83,7 +83,7 @@ class Push:
     Attributes
     ----------
     signal : ndarray, shape (n,)
-        At the times of the samples [m].
+        At the times of the samples [m], or its second derivative.
     start, end, speed : ndarray, shape (K + 1,)
         Position at the start, position and velocity at the end of each flight [m, m/s]; it starts without velocity.
     """
@@ -94,7 +94,7 @@ class Push:
     speed: Floats
 
 
-def push(found: Slide, t: Floats, samples: Floats, s: complex, size: float) -> Push:
+def push(found: Slide, t: Floats, samples: Floats, s: complex, size: float, order: int = 0) -> Push:
     """Return what the friction of the ball, a known force on the oscillator, adds to x1.
 
     Parameters
@@ -103,11 +103,13 @@ def push(found: Slide, t: Floats, samples: Floats, s: complex, size: float) -> P
     t : ndarray, shape (K,)
         Times of the impacts [s].
     samples : ndarray, shape (n,)
-        Times at which the displacement is wanted [s].
+        Times at which it is wanted [s].
     s : complex
         Of the free oscillation [1/s].
     size : float
         Static displacement by the force [m].
+    order : {0, 2}
+        Derivative of x1 that is wanted.
 
     Notes
     -----
@@ -129,5 +131,7 @@ def push(found: Slide, t: Floats, samples: Floats, s: complex, size: float) -> P
     width = np.diff(t)[own] / cells
     cell = np.minimum((when / width).astype(np.intp), cells - 1)
     signal = np.zeros(len(samples))
-    signal[inside] = still[own, cell] + (q[own, cell] * np.exp(s * (when - cell * width))).real
+    signal[inside] = (s**order * q[own, cell] * np.exp(s * (when - cell * width))).real
+    if order == 0:
+        signal[inside] += still[own, cell]
     return Push(signal, start, end, speed)
