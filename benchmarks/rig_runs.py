@@ -168,9 +168,11 @@ def true_values(truth: dict[str, Any]) -> dict[str, float]:
     scatter = r - s["r"] * (w / s["r_speed"]) ** -s["r_exponent"]
     # The softest impacts are put at the largest restitution that the contact knows: that is no scatter.
     drawn = (r > LEAST) & (r < MOST)
+    # The straight lines before and after a contact meet at the centroid of its force, the ball this deep in the wall.
+    b = s["b"] + float(np.sum(w * np.array(truth["impacts"]["lag"])) / len(w))
     return {
         "f": p["f"], "E": p["E"], "phase": p["phase"], "omega0": p["omega0"], "lam": p["lam"], "Omega": p["Omega"],
-        "A": p["A"], "mu": p["mu"], "friction": s["friction"] * 9.80665,
+        "A": p["E"] / b, "b": b, "mu": p["mu"], "friction": s["friction"] * 9.80665,
         "tilt": 9.80665 * float(np.sin(np.radians(s["tilt"]))),
         "r": float(np.sum(r * w) / np.sum(w)), "r_mean": float(np.mean(r)),
         "r_exponent": -s["r_exponent"], "sigma_r": float(np.std(scatter[drawn])), "w_before": float(np.mean(w)),

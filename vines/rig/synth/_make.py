@@ -206,10 +206,12 @@ def _form(s: RigSettings, rng: np.random.Generator) -> RunForm:
     # The roll-down test of the laboratory gives the ball's deceleration to 15 %.
     rubbed = s.friction * 9.80665
     friction = {"value": float(rubbed * (1 + 0.15 * rng.normal())), "u": 0.15 * rubbed}
+    # A sensor on the frame follows the springs' temperature to a tenth of a kelvin.
+    before, after = (float(true + s.u_temperature * rng.normal()) for true in s.temperature)
     return RunForm(
         run_id=s.run_id, start_utc=s.start_utc, protocol=s.protocol, f_cmd=None if still else s.f,
         E_cmd=None if still else s.E, settle=s.settle, M=weighed[0], m=weighed[1], b=gauged, ball=s.ball,
-        temperature_before=s.temperature[0], temperature_after=s.temperature[1], ringdown=s.ringdown,
+        temperature_before=before, temperature_after=after, ringdown=s.ringdown,
         materials={"rig": "synthetic"}, licence="CC0-1.0", more={"friction": friction},
     )  # fmt: skip
 
@@ -233,6 +235,7 @@ def _truth(s: RigSettings, seed: int, motion: Motion, step: float) -> dict[str, 
     }
     impacts = {"t": t[kept].tolist(), **impacts}
     impacts["contact_time"] = (rows["t_end"] - rows["t"])[kept].tolist()
+    impacts["lag"] = (rows["t_mid"] - rows["t"])[kept].tolist()
     impacts["phase"] = ((omega * pace * t[kept] + phase0) % (2 * np.pi)).tolist()
     r = rows["r"][kept]
     v1, v2 = motion.v1[i], motion.v2[i]

@@ -62,9 +62,9 @@ class RigSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_on
         the first to the last channel of a recorder in samples, which the files state.
     recorders : int
         1, or 2 with a copy of the base accelerometer on the second.
-    u_mass, u_b : float
-        Relative standard uncertainty of the weighed masses; standard uncertainty of the gauged b [m]. What ``run.json``
-        states is off by such a draw.
+    u_mass, u_b, u_temperature : float
+        Relative standard uncertainty of the weighed masses; standard uncertainty of the gauged b [m] and of the
+        temperature of the springs [K]. What ``run.json`` states is off by such a draw.
     missed, false : float
         Part of the impacts that the accelerometer does not see; knocks without an impact, in parts of their number.
     dropouts : float
@@ -125,6 +125,7 @@ class RigSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_on
     recorders: Literal[1, 2] = 1
     u_mass: float = 5e-4
     u_b: float = 5e-5
+    u_temperature: float = 0.0
     missed: float = 0.0
     false: float = 0.0
     dropouts: float = 0.0
@@ -215,6 +216,7 @@ def draw_settings(seed: int, **given: object) -> RigSettings:
         "h3": log(0.001, 0.01),
         "sag": even(0.0, 0.2),
         "temperature": (warm, warm + even(-2.0, 2.0) / 20),
+        "u_temperature": 0.1,
         "modes": tuple(
             (even(low, high), even(0.005, 0.02), even(0.2, 0.8))
             for low, high in ((1000.0, 2500.0), (2500.0, 5000.0), (5000.0, 8000.0))
