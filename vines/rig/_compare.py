@@ -9,11 +9,12 @@ from typing import Any
 
 import numpy as np
 
-from vines.errors import OrbitNotFound, ParameterError
+from vines.errors import ParameterError
 from vines.model import Params
 from vines.rig._match import candidates, word_of
 from vines.rig._model import measured_params, parameter_spread, predict
 from vines.rig._reconstruction import Reconstruction
+from vines.rig._sensitivity import sensitivity
 from vines.rig._verdict import Comparison, decide, likeness, order
 
 __all__ = ["Calibration", "calibrate", "compare", "compare_all"]
@@ -106,33 +107,26 @@ def calibrate(measured: Sequence[Comparison]) -> Calibration:
         One Gauss–Newton step with the deterministic orbit's derivatives, held near 1 by what may be wrong with a rig's
         omega0, E and r.
     """
-    from vines.orbits import find_orbit
-
     rows, left, names = [], [], []
     for one in measured:
-        if one.verdict not in ("agree", "pattern_only") or not one.branches[0].predicted.candidate.orbit:
+        if one.verdict not in ("agree", "pattern_only"):
             continue
-        best = one.branches[0]
-        orbit = best.predicted.candidate.orbit
-        assert orbit is not None
-        scale = {
-            name: float(np.hypot(best.measured[name].u, best.model[name].u)) or 1.0 for name in best.errors
-        }  # fmt: skip
-        try:
-            place = int(
-                np.argmin(
-                    np.abs(np.exp(1j * (orbit.phase - one.run.periods.cut)) - np.exp(1j * best.model["phase"].value))
-                )
-            )
-            slopes = {key: _slopes(orbit, key, find_orbit, place) for key in _FREE}
-        except OrbitNotFound:
+        best, orbit = one.branches[0], one.branches[0].predicted.candidate.orbit
+        by = sensitivity(orbit) if orbit is not None and orbit.stable else {}
+        if orbit is None or not by.keys() >= _FREE.keys():
             continue
+        # Omega and A are corrected by factors.
+        unit = {"Omega": orbit.params.Omega, "A": orbit.params.A, "r": 1.0}
+        turns = np.exp(1j * (orbit.phase - one.run.periods.cut)) - np.exp(1j * best.model["phase"].value)
+        place = int(np.argmin(np.abs(turns)))
         for name in ("phase", "max_abs_x1", "kinetic_ratio"):
+            scale = float(np.hypot(best.measured[name].u, best.model[name].u)) or 1.0
             gap = best.measured[name].value - best.model[name].value
             if name == "phase":
                 gap = float((gap + np.pi) % (2 * np.pi) - np.pi)
-            rows.append([slopes[key][name] / scale[name] for key in _FREE])
-            left.append(gap / scale[name])
+            slopes = [by[key].phase[place] if name == "phase" else getattr(by[key], name) for key in _FREE]
+            rows.append([slope * unit[key] / scale for slope, key in zip(slopes, _FREE, strict=True)])
+            left.append(gap / scale)
         names.append(one.run.run.run_id)
     if not rows:
         return Calibration()
@@ -180,21 +174,3 @@ def compare_all(
         return measured, (), found
     again = partial(compare, catalogue=catalogue, calibration=found, seed=seed)
     return measured, tuple(spread(again, runs[1::2])), found
-
-
-def _slopes(orbit: Any, key: str, find: Any, place: int) -> dict[str, float]:
-    """Return derivatives of an orbit's numbers by a correction."""
-    p = orbit.params
-    step = 0.1 * _FREE[key]
-    values = []
-    for sign in (-1, 1):
-        moved = p.replace(**{key: getattr(p, key) + sign * step * (1.0 if key == "r" else getattr(p, key))})
-        other = find(orbit.word, moved, guess=orbit)
-        values.append((float(other.phase[place]), other.measures.max_abs_x1, other.measures.kinetic_ratio))
-    low, high = values
-    turn = float((high[0] - low[0] + np.pi) % (2 * np.pi) - np.pi)
-    return {
-        "phase": turn / (2 * step),
-        "max_abs_x1": (high[1] - low[1]) / (2 * step),
-        "kinetic_ratio": (high[2] - low[2]) / (2 * step),
-    }
