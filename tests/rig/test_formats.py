@@ -69,6 +69,16 @@ def test_same_run_same_bytes_and_damage_is_one_line(tmp_path, form):
         assert said is None or "\n" not in said
 
 
+def test_a_recording_that_was_cut_off_is_refused_and_nothing_else_is_said(tmp_path, capfd):
+    channels = tuple(RawChannel(f"daq/{name}", np.arange(5000.0), "V", 2048.0, 0.0) for name in "ab")
+    write_raw(tmp_path / "a.tdms", "tdms", RawFile("tdms", channels, "2026-01-05T09:00:00Z"))
+    data = (tmp_path / "a.tdms").read_bytes()
+    for cut, words in ((len(data) - 40, "its end is missing"), (len(data) // 3, "its end is missing"), (60, "no chan")):
+        (tmp_path / "a.tdms").write_bytes(data[:cut])
+        assert words in refusal(tmp_path / "a.tdms")
+    assert capfd.readouterr() == ("", "")
+
+
 def strange_files():
     for place in map(Path, site.getsitepackages()):
         for name in ("nptdms", "scipy", "pyuff", "h5py", "soundfile", "pymatreader", "matplotlib"):

@@ -52,7 +52,7 @@ def _show(rows: list[dict[str, Any]]) -> None:
         kind = {None: "", True: " symmetric", False: " asymmetric"}[row["symmetric"]]
         kept = f"{row['holding']:.0%}" if row["holding"] is not None else ""
         for k, (name, what) in enumerate(
-            (("phase", "impact phase [rad]"), ("max_abs_x1", "max|x1|"), ("kinetic_ratio", "K2/K1"))
+            (("phase", "worst impact phase [rad]"), ("max_abs_x1", "max|x1|"), ("kinetic_ratio", "K2/K1"))
         ):
             cells = [
                 " ± ".join(with_uncertainty(row[f"{of}{name}"], row[f"u_{of}{name}"])) if row[f"{of}{name}"] else ""

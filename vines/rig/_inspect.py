@@ -17,6 +17,10 @@ __all__ = ["ChannelFacts", "channel_facts", "draw_file", "spark"]
 _BARS = " ▁▂▃▄▅▆▇█"
 _FLAT = 4
 _MOST_DRAWN = 8
+_COLOUR = "#4477aa"
+_PIECE = 0.3
+"""Length of the piece from the middle [s]: some periods of a rig, in which contacts can be seen."""
+_PIECE_LEAST = 16
 
 
 @dataclass(frozen=True, slots=True)
@@ -116,7 +120,7 @@ def spark(channel: RawChannel, width: int = 48) -> str:
 
 
 def draw_file(file: RawFile, title: str) -> Any:
-    """Return a figure of a file: a panel a channel, the envelope of its samples against time.
+    """Return a figure of a file: a row a channel, the envelope of all samples and a short piece from the middle.
 
     Parameters
     ----------
@@ -128,25 +132,35 @@ def draw_file(file: RawFile, title: str) -> Any:
     from matplotlib.figure import Figure
 
     shown = file.channels[:_MOST_DRAWN]
+    facts = [channel_facts(each) for each in shown]
+    timed = all(each.rate for each in facts)
+    longest = max(each.samples / (each.rate or 1.0) for each in facts)
     figure = Figure(figsize=(7.0, 0.6 + 1.15 * len(shown)), layout="constrained")
-    axes = figure.subplots(len(shown), 1, squeeze=False)[:, 0]
-    for axis, channel in zip(axes, shown, strict=True):
-        values = np.asarray(channel.values, np.float64)
-        facts = channel_facts(channel)
+    axes = figure.subplots(len(shown), 2, squeeze=False, sharex="col" if timed else False, width_ratios=(1.7, 1.0))
+    for (whole, piece), channel, fact in zip(axes, shown, facts, strict=True):
+        values, rate = np.asarray(channel.values, np.float64), fact.rate or 1.0
         parts = min(1200, max(1, len(values) // 2))
         count = len(values) // parts
         cut = values[: count * parts].reshape(parts, count)
-        t = (np.arange(parts) + 0.5) * count / (facts.rate or 1.0)
         if count > 2:
-            axis.fill_between(t, cut.min(axis=1), cut.max(axis=1), color="#4477aa", linewidth=0.3)
+            t = (np.arange(parts) + 0.5) * count / rate
+            whole.fill_between(t, cut.min(axis=1), cut.max(axis=1), color=_COLOUR, linewidth=0.3)
         else:
-            axis.plot(np.arange(len(values)) / (facts.rate or 1.0), values, color="#4477aa", linewidth=0.7)
-        axis.set_ylabel(f"[{channel.unit}]" if channel.unit else "unit unknown")
-        axis.set_title(channel.name, loc="left", fontsize="small")
-        axis.spines[["top", "right"]].set_visible(False)
-        axis.margins(x=0)
-        axis.label_outer()
-    axes[-1].set_xlabel("time [s]" if all(channel_facts(each).rate for each in shown) else "sample")
+            whole.plot(np.arange(len(values)) / rate, values, color=_COLOUR, linewidth=0.7)
+        length = min(len(values), max(_PIECE_LEAST, round(_PIECE * rate)))
+        first = (len(values) - length) // 2
+        piece.plot((first + np.arange(length)) / rate, values[first : first + length], color=_COLOUR, linewidth=0.7)
+        whole.set_ylabel(f"[{channel.unit}]" if channel.unit else "unit unknown")
+        whole.set_title(channel.name, loc="left", fontsize="small")
+        whole.set_xlim(0, longest if timed else len(values))
+        for axis in (whole, piece):
+            axis.spines[["top", "right"]].set_visible(False)
+            axis.margins(x=0)
+        piece.tick_params(labelleft=False)
+        piece.sharey(whole)
+    figure.align_ylabels(axes[:, 0])
+    for axis in axes[-1]:
+        axis.set_xlabel("time [s]" if timed else "sample")
     left = len(file.channels) - len(shown)
     figure.suptitle(title + (f" (and {left} more channels)" if left else ""), fontsize="medium")
     return figure

@@ -14,7 +14,7 @@ from vines.rig._clock import Clock, align_clocks
 from vines.rig._recording import ROLES, Recording, Sampled
 from vines.rig._run_folder import check_sums, raw_sums, read_folder, run_info
 from vines.rig._run_form import ChannelRow, RunForm
-from vines.rig.formats import RawFile, read_file
+from vines.rig.formats import RawChannel, RawFile, read_file
 
 __all__ = ["Ingested", "assemble", "read_run"]
 
@@ -89,7 +89,7 @@ def assemble(
         If the run can't be used as it is.
     """
     info = run_info(form)
-    calibrated = [calibrate(row, files[row.file].channel(row.field), max_clipped=form.max_clipped) for row in rows]
+    calibrated = [calibrate(row, _field(row, files[row.file]), max_clipped=form.max_clipped) for row in rows]
     clocks = align_clocks(calibrated, max_offset=form.max_offset, ringdown=info.protocol == "ringdown")
     channels = [_on_the_clock(channel, clocks[channel.row.recorder]) for channel in calibrated]
     if not any(channel.role in ("lo_disp", "lo_acc") for channel in channels):
@@ -110,6 +110,14 @@ def assemble(
         sums=dict(sums),
         compared=compared,
     )
+
+
+def _field(row: ChannelRow, file: RawFile) -> RawChannel:
+    """Return what the file holds of a channel."""
+    try:
+        return file.channel(row.field)
+    except RigError as missing:
+        raise RigError(f"{row.name} in channels.tsv: in {row.file} {missing}") from None
 
 
 def _on_the_clock(channel: Calibrated, clock: Clock) -> Sampled:

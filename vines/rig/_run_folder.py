@@ -14,7 +14,7 @@ import msgspec
 
 from vines.errors import FileMissingError, RigError, nearest
 from vines.rig._recording import ROLES, RunInfo, Uncertain
-from vines.rig._run_form import ChannelRow, RunForm
+from vines.rig._run_form import ChannelRow, RunForm, Stated
 
 __all__ = [
     "SUMS",
@@ -155,17 +155,47 @@ def _read_run(path: Path) -> RunForm:
             raise RigError(
                 f"{path}: unknown key {unknown[0]!r}: {nearest(unknown[0], known)}; anything else goes under more"
             )
-        run = msgspec.convert(given, RunForm)
+        if empty := _empty(given):
+            raise RigError(f"{path}: still null: {', '.join(empty)}; README.md of 'vines rig init' says what each is")
+        run = _with_forces(msgspec.convert(given, RunForm))
     except (json.JSONDecodeError, UnicodeDecodeError) as broken:
         raise RigError(f"{path} is not JSON: {broken}") from None
     except msgspec.ValidationError as unfit:
         raise RigError(f"{path}: {unfit}") from None
-    if run.protocol != "ringdown" and (run.f_cmd is None or run.E_cmd is None):
-        raise RigError(f"{path}: f_cmd and E_cmd are null, which is allowed only for protocol ringdown")
     for name, value in (("M", run.M.value), ("m", run.m.value), ("b", run.b.value)):
         if not value > 0:
             raise RigError(f"{path}: {name} is {value:g}, allowed is {name} > 0")
     return run
+
+
+def _with_forces(run: RunForm) -> RunForm:
+    """Return a run whose friction and tilt, under more, are numbers with uncertainties, or not there if null."""
+    more = dict(run.more)
+    for name in ("friction", "tilt"):
+        stated = more.get(name)
+        if stated is None or (isinstance(stated, Mapping) and all(part is None for part in stated.values())):
+            more.pop(name, None)
+            continue
+        try:
+            msgspec.convert(stated, Stated)
+        except msgspec.ValidationError as unfit:
+            wanted = '{"value": ..., "u": ...} in m/s^2, or null if it was not measured'
+            raise msgspec.ValidationError(f"more.{name}: {unfit}; allowed is {wanted}") from None
+    return msgspec.structs.replace(run, more=more)
+
+
+def _empty(form: Mapping[str, Any]) -> list[str]:
+    """Return the keys that are null and must not be."""
+    command = ("f_cmd", "E_cmd")
+    found = []
+    for key, value in form.items():
+        if value is None and key in command and form.get("protocol") != "ringdown":
+            found.append(f"{key} (null for protocol ringdown only)")
+        elif value is None and key not in (*command, "E_meas"):
+            found.append(key)
+        elif key in ("M", "m", "b", "E_meas") and isinstance(value, Mapping):
+            found += [f"{key}.{part}" for part, number in value.items() if number is None]
+    return found
 
 
 def _read_channels(path: Path) -> tuple[ChannelRow, ...]:

@@ -41,7 +41,7 @@ class RunForm(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=T
     temperature_before: Annotated[float, Meta(ge=-50, le=150, description="[deg C] At the springs, before the run")]
     temperature_after: Annotated[float, Meta(ge=-50, le=150, description="[deg C] At the springs, after the run")]
     ringdown: Annotated[tuple[str, ...], Meta(description="run_id of the ring-downs before and after")] = ()
-    E_meas: Annotated[Stated, Meta(description="[m] Base amplitude as another instrument gave it")] | None = None
+    E_meas: Annotated[Stated | None, Meta(description="[m] Base amplitude as another instrument gave it")] = None
     max_clipped: Annotated[
         float, Meta(ge=0, le=1, description="Largest share of clipped or lost samples that a channel may have")
     ] = 0.01

@@ -19,14 +19,22 @@ __all__ = ["ingest_folder", "pipeline_of"]
 
 
 def pipeline_of(folder: Path) -> str:
-    """Return the name of the pipeline under which a folder's runs are kept.
+    """Return the name of the pipeline under which a folder's runs are kept: of its path, as other folders may be alike.
+
+    Parameters
+    ----------
+    folder : Path
+        Its path below the root of the project counts; elsewhere its name.
 
     Examples
     --------
-    >>> pipeline_of(Path("data/Run 12")), pipeline_of(Path("rig_a"))
-    ('rig_run_12', 'rig_a')
+    >>> root = find_root()
+    >>> pipeline_of(root / "march/Run 12"), pipeline_of(root / "rig_a"), pipeline_of(root / "demo/runs")
+    ('rig_march_run_12', 'rig_a', 'rig_demo_runs')
     """
-    name = re.sub(r"[^a-z0-9]+", "_", folder.resolve().name.casefold()).strip("_") or "runs"
+    root, place = find_root().resolve(), folder.resolve()
+    path = place.relative_to(root).as_posix() if place.is_relative_to(root) else place.name
+    name = re.sub(r"[^a-z0-9]+", "_", path.casefold()).strip("_") or "runs"
     return name if name.startswith("rig_") else f"rig_{name}"
 
 

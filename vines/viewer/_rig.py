@@ -40,7 +40,9 @@ def send_rig(rec: rr.RecordingStream, root: str, log: Log) -> None:
     for part, (t, values, name) in _curves(log).items():
         colour = BASE if part.startswith("base") else LINE
         path = f"{root}/{part}/curve"
-        rec.log(path, rr.SeriesLines(colors=colour, widths=1.2, names=name), static=True)
+        # A mean over the samples of a pixel would hide shocks and shrink what swings fast.
+        line = rr.SeriesLines(colors=colour, widths=1.2, names=name, aggregation_policy="MinMax")
+        rec.log(path, line, static=True)
         rec.send_columns(path, indexes=clock.columns(t), columns=rr.Scalars.columns(scalars=values))
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 from pathlib import Path
 from typing import Any
 
@@ -14,13 +15,27 @@ __all__ = ["read", "write"]
 
 
 def read(path: Path) -> RawFile:
-    """Read a file with all its groups; a channel is called ``group/channel``."""
+    """Read a file with all its groups; a channel is called ``group/channel``.
+
+    Raises
+    ------
+    RigError
+        If the recorder or a copy did not write it to its end: how much is missing cannot be told.
+    """
     import nptdms
+    import nptdms.log
+
+    # It would print what is refused below in one line.
+    nptdms.log.log_manager.set_level(logging.ERROR)
 
     channels: list[RawChannel] = []
     other: list[str] = []
     starts: list[np.datetime64 | None] = []
     with nptdms.TdmsFile.read(path) as file:
+        if file.file_status.incomplete_final_segment:
+            raise RigError(
+                "its end is missing, the recorder or a copy was cut off: copy it again or mend the recording"
+            )
         for group in file.groups():
             for each in group.channels():
                 name = f"{group.name}/{each.name}"
