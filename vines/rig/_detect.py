@@ -9,10 +9,11 @@ import numpy.typing as npt
 
 from vines.rig._bins import Bins, bins_of
 from vines.rig._fitter import KEEP, LEAST, Fitter
-from vines.rig._impacts import Pulses, find_pulses, pulses_of
+from vines.rig._impacts import Pulses, find_pulses, pulses_of, refine_pulses
 from vines.rig._jumps import JumpFit
 from vines.rig._recording import Sampled
 from vines.rig._sine_fit import sine_fit
+from vines.rig._slide import Push
 from vines.rig._split import split_flights
 
 __all__ = ["U_PULSE", "Detected", "detect", "inside", "threshold"]
@@ -24,6 +25,9 @@ U_PULSE = 6e-6
 
 _LOOSE = 1e-4
 """The same before the delay between the two sensors is known, and for times from a displacement [s]."""
+
+_FAR_OFF = 1e-3
+"""Standard uncertainty of the times beside a flight that is not one [s]."""
 
 _SIGMAS = 8.0
 
@@ -109,15 +113,22 @@ def detect(fitter: Fitter, channel: Sampled, sensor: Sampled) -> Detected:
     times, dv, u = times[real], dv[real], u[real]
     times, dv, u = _with_silent(fitter, times, dv, u, delay)
     drift = u_delay = 0.0
+    pushed = None
     if both and len(times) > 5:
-        again = fitter.fit(times + delay, np.maximum(u, _LOOSE), dv)
+        again, pushed = fitter.fit_rubbed(times + delay, np.maximum(u, _LOOSE), dv)
+        lost = ~(again.fair[:-1] & again.fair[1:])
+        if lost.any():
+            # A knock beside an impact makes one pulse of both, as far off as a millisecond.
+            wide = np.where(lost, _FAR_OFF, np.maximum(u, _LOOSE))
+            again = fitter.fit(times + delay, wide, _sized(dv, lost), pushed=pushed)
         u = np.where(_misheard(again, dv), 3 * _LOOSE, u)
         seen = _mean_shift(again)
         drift = seen[2]
         shift, u_delay = _shrunk((delay + seen[0], seen[1]), known)
-        times = np.where(u > U_PULSE, again.jumps.t - shift, times)
+        unheard = u > U_PULSE
+        times, dv = np.where(unheard, again.jumps.t - shift, times), np.where(unheard, again.jumps.dv, dv)
         delay = shift
-    times = _settled(fitter, times, dv, u, delay)
+    times = _settled(fitter, times, dv, u, delay, pushed)
     ahead = np.argsort(times, kind="stable")
     times, dv, u = inside(bins, times[ahead], dv[ahead], u[ahead])
     return Detected(times, dv, u, candidates, delay, u_delay, drift, gain)
@@ -157,6 +168,8 @@ def _with_soft_ones(left: Pulses, times: Floats, dv: Floats, u: Floats, u_new: f
     """Refine the pulses, now that the motion is known, and add those too small to be seen before."""
     heard = u <= u_new
     found, jumps = find_pulses(left, threshold(left), times=times[heard], dv=dv[heard])
+    if not left.echo:
+        found, jumps = refine_pulses(left, found, jumps, level=True)
     times = np.concatenate([found, times[~heard]])
     dv = np.concatenate([jumps, dv[~heard]])
     u = np.concatenate([np.full(len(found), u_new), u[~heard]])
@@ -188,7 +201,8 @@ def _with_unheard(
 
 def _with_silent(fitter: Fitter, times: Floats, dv: Floats, u: Floats, delay: float) -> tuple[Floats, Floats, Floats]:
     """Add impacts that only the motion shows."""
-    found, jumps = split_flights(fitter.bins, fitter.fit(times + delay, u, dv, draws=0), fitter.order)
+    fit, pushed = fitter.fit_rubbed(times + delay, u, dv, 0)
+    found, jumps = split_flights(fitter.bins, fit, fitter.order, pushed)
     times = np.concatenate([times, found - delay])
     dv = np.concatenate([dv, jumps])
     u = np.concatenate([u, np.full(len(found), 5 * _LOOSE)])
@@ -254,13 +268,18 @@ def _misheard(fit: JumpFit, pulse: Floats) -> npt.NDArray[np.bool_]:
     return (late | other) & (dv > KEEP * fit.u_dv)
 
 
-def _settled(fitter: Fitter, times: Floats, dv: Floats, u: Floats, delay: float) -> Floats:
+def _sized(dv: Floats, unsure: npt.NDArray[np.bool_]) -> Floats:
+    """Return sizes of jumps by which their times may move, where pulses are not sure no smaller than usual."""
+    return np.where(unsure, np.maximum(np.abs(dv), np.median(np.abs(dv))), dv)
+
+
+def _settled(fitter: Fitter, times: Floats, dv: Floats, u: Floats, delay: float, pushed: Push | None) -> Floats:
     """Move the impacts that only the displacement shows until they come to rest: a far step is not a small one."""
     unheard = u > U_PULSE
     for _ in range(_MOVES):
         if not unheard.any() or np.any(np.diff(times) <= 0):
             break
-        shift = fitter.fit(times + delay, u, dv).shift
+        shift = fitter.fit(times + delay, u, dv, draws=0, pushed=pushed).shift
         times = np.where(unheard, times + shift, times)
         if np.max(np.abs(shift[unheard])) < _AT_REST:
             break

@@ -9,8 +9,8 @@ import numpy as np
 import numpy.typing as npt
 
 from vines.rig._bins import Bins
-from vines.rig._jumps import JumpFit, fit_jumps
-from vines.rig._slide import Push
+from vines.rig._jumps import JumpFit, fit_jumps, noise_of
+from vines.rig._slide import Push, push, slide
 
 __all__ = ["KEEP", "LEAST", "Fitter"]
 
@@ -21,6 +21,9 @@ KEEP = 5.0
 
 LEAST = 2e-4
 """No smaller jump is believed [m/s]."""
+
+_RUBS = 0.2
+"""Least static displacement by friction that matters while impacts are sought, relative to the noise of a mean."""
 
 _U_SIDEWAYS = 3e-3
 """Sway across the axis, relative to the motion: a tenth of it, seen by a cross-axis sensitivity of some per cent."""
@@ -36,7 +39,25 @@ _U_WANDER = 0.05
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Fitter:
-    """What all fits of a run share; `driven` is the forced response that the base asks for, first harmonic [m]."""
+    """What all fits of a run share.
+
+    Attributes
+    ----------
+    bins : Bins
+        Of the channel.
+    s, omega : complex, float
+        Of the free oscillation and of the forcing [1/s].
+    order : {0, 2}
+        Derivative of x1 that the channel measures.
+    forced : tuple of ndarray or None
+        As of `fit_jumps`.
+    driven : complex, optional
+        First harmonic of the forced response that the base asks for [m].
+    b : float
+        Half length of the cavity [m].
+    friction : float
+        Acceleration of the oscillator by the ball's friction, mu times the ball's deceleration [m/s^2].
+    """
 
     bins: Bins
     s: complex
@@ -44,6 +65,8 @@ class Fitter:
     order: int
     forced: Forced | None
     driven: complex | None = None
+    b: float = 0.0
+    friction: float = 0.0
 
     def fit(
         self,
@@ -81,6 +104,23 @@ class Fitter:
             return self.forced
         (c, u) = self.forced
         return np.append(self.driven, c), np.append(_HELD * abs(self.driven), u)
+
+    def rubbed(self, fit: JumpFit, times: Floats) -> Push | None:
+        """Return what the friction of a ball that flies between the impacts of a fit adds to the displacement."""
+        if len(times) < 2:
+            return None
+        found = slide(fit.motion, fit.jumps.x + np.sign(fit.jumps.dv) * self.b)
+        return push(found, times, self.bins.t, self.s, self.friction / abs(self.s) ** 2, self.order)
+
+    def fit_rubbed(self, times: Floats, u: Floats, dv: Floats, draws: int = 8) -> tuple[JumpFit, Push | None]:
+        """Fit with the ball's friction, if its size matters beside the noise, and say what that adds.
+
+        Friction that turns in a slow flight bends it by micrometres: enough to say that a pulse came late.
+        """
+        if self.order == 2 or self.friction / abs(self.s) ** 2 < _RUBS * noise_of(self.bins):
+            return self.fit(times, u, dv, draws), None
+        pushed = self.rubbed(self.fit(times, u, dv, 0), times)
+        return self.fit(times, u, dv, draws, pushed), pushed
 
 
 def _wander(bins: Bins) -> tuple[Floats, Floats]:

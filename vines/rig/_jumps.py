@@ -20,7 +20,7 @@ from vines.rig._motion import Motion
 from vines.rig._sine_fit import clumping
 from vines.rig._slide import Push
 
-__all__ = ["TAIL", "JumpFit", "Jumps", "fit_jumps"]
+__all__ = ["TAIL", "JumpFit", "Jumps", "fit_jumps", "noise_of"]
 
 Floats = npt.NDArray[np.float64]
 
@@ -175,7 +175,7 @@ def fit_jumps(
     if fair is not None:
         problem.trust(fair)
     u_times = np.broadcast_to(np.asarray(u_times, float), problem.times.shape)
-    noise = max(_noise(bins), 1e-15)
+    noise = max(noise_of(bins), 1e-15)
     scale = noise
     # Sizes are given, never those of the fit: a jump fitted too small would tighten its own condition and run away.
     u_gap = np.maximum(np.abs(sizes), 1e-4) * u_times
@@ -191,7 +191,7 @@ def fit_jumps(
     left = problem.left(z, linear)
     motion = problem.motion(z, linear)
     trusted = left[problem.trusted]
-    jumps, shift = _read(motion, problem.pushed)
+    jumps, shift = _read(motion, problem.pushed, problem.fair)
     rng = np.random.default_rng(seed)
     drawn, first = [], []
     lower = np.linalg.cholesky(schur)
@@ -199,7 +199,7 @@ def fit_jumps(
         move = np.linalg.solve(lower.T, rng.normal(size=len(linear)))
         noise_z = cho_solve_banded((factor, True), _multiply(factor, rng.normal(size=factor.shape[1])))
         other = problem.motion(z + noise_z - border @ move, linear + move)
-        drawn.append(_read(other, problem.pushed)[0])
+        drawn.append(_read(other, problem.pushed, problem.fair)[0])
         first.append(other.c[0])
     together = Jumps(*(np.array([getattr(one, name) for one in drawn]) for name in ("t", "x", "v_before", "v_after")))
     return JumpFit(
@@ -220,14 +220,16 @@ def fit_jumps(
     )
 
 
-def _read(motion: Motion, pushed: Push) -> tuple[Jumps, Floats]:
+def _read(motion: Motion, pushed: Push, fair: npt.NDArray[np.bool_]) -> tuple[Jumps, Floats]:
     """Return the state at each impact at its refined time, and the shift of the time."""
     x, v_before = motion.before() + pushed.end[:-1], motion.before(1) + pushed.speed[:-1]
     v_after = motion.after(1)
     gap = motion.after() + pushed.start[1:] - x
     dv = v_after - v_before
-    # x_after(t) - x_before(t) = gap + dv (t - t_k) vanishes at the true time; far moves mean that dv is no jump at all.
-    shift = np.where(np.abs(dv) > 1e-6, -gap / np.where(dv == 0, 1.0, dv), 0.0)
+    # x_after(t) - x_before(t) = gap + dv (t - t_k) vanishes at the true time; far moves mean that dv is no jump at all,
+    # and a flight that is not one says nothing.
+    told = (np.abs(dv) > 1e-6) & fair[:-1] & fair[1:]
+    shift = np.where(told, -gap / np.where(dv == 0, 1.0, dv), 0.0)
     shift = np.clip(shift, -1e-3, 1e-3)
     x = x + v_before * shift
     turn = 0.5 * (motion.before(2) + motion.after(2))
@@ -235,7 +237,7 @@ def _read(motion: Motion, pushed: Push) -> tuple[Jumps, Floats]:
     return moved, shift
 
 
-def _noise(bins: Bins) -> float:
+def noise_of(bins: Bins) -> float:
     """Return the noise of a block mean from fourth differences, which the oscillator's motion hardly reaches."""
     binomial = np.array([1.0, -4.0, 6.0, -4.0, 1.0])
     # Neighbouring values of a smoothed signal are alike, and so is their noise.

@@ -12,11 +12,11 @@ from vines.rig._bins import Bins, bins_of
 from vines.rig._detect import U_PULSE, Detected, detect, inside
 from vines.rig._detect_alone import detect_alone
 from vines.rig._fitter import KEEP, Fitter
-from vines.rig._impacts import pulses_of
+from vines.rig._impacts import SMOOTH, pulses_of
 from vines.rig._jumps import JumpFit
 from vines.rig._linearity import bends, straightened
 from vines.rig._recording import Recording, Sampled
-from vines.rig._slide import Push, push, slide
+from vines.rig._slide import Push
 
 __all__ = ["Response", "measure_response"]
 
@@ -27,6 +27,11 @@ _EVERY = 6.25e-4
 
 _TWIN = 8e-3
 """Impacts nearer than this, with opposite jumps, may be one and a false one beside it [s]."""
+
+_AT_WALL = 0.2
+"""How far from the wall, relative to b, a ball may seem to be at a soft impact."""
+
+_ROUNDS = 5
 
 _EXPLAINS = 0.998
 """Most that is left of the residual, without noise taken off, where the sensor's linearity is believed."""
@@ -120,7 +125,7 @@ def measure_response(
         raise RigError(f"run {recording.run.run_id!r} has no channel on the oscillator (lo_disp or lo_acc)")
     order = 0 if displacement is not None else 2
     bins = bins_of(channel) if order == 0 else _quiet(channel)
-    fitter = Fitter(bins, s, omega, order, forced, driven)
+    fitter = Fitter(bins, s, omega, order, forced, driven, recording.run.b.value, friction)
     sensor = accelerometer if accelerometer is not None else channel
     if impacts is None:
         if order == 0:
@@ -132,17 +137,17 @@ def measure_response(
         times, dv, u = inside(bins, *impacts, np.full(len(impacts[0]), U_PULSE))
         found = Detected(times, dv, u, len(times))
     times, dv, u, delay = found.t, found.dv, found.u, found.delay
-    fit = fitter.fit(times + delay, u, dv)
-    keep = _credible(fit, u)
-    if not keep.all():
+    fit, _ = fitter.fit_rubbed(times + delay, u, dv)
+    for _ in range(_ROUNDS):
+        keep = _credible(fit, dv, u, fitter)
+        if keep.all():
+            break
         times, dv, u = times[keep], dv[keep], u[keep]
-        fit = fitter.fit(times + delay, u, dv)
-    pushed = None
-    if len(times) > 1:
-        pushed = _rubbed(fit, bins.t, recording.run.b.value, friction, order)
-        if order == 0:
-            fitter = _linear(fitter, times + delay, u, dv, pushed, u_natural)
-            bins = fitter.bins
+        fit, _ = fitter.fit_rubbed(times + delay, u, dv)
+    pushed = fitter.rubbed(fit, times + delay)
+    if pushed is not None and order == 0:
+        fitter = _linear(fitter, times + delay, u, dv, pushed, u_natural)
+        bins = fitter.bins
     fit = fitter.fit(times + delay, u, dv, draws=32, pushed=pushed)
     late, u_late = (
         _share(delay, found.u_delay, channel.u_time, sensor.u_time) if found.gain is not None else (0.0, channel.u_time)
@@ -167,21 +172,50 @@ def _quiet(accelerometer: Sampled) -> Bins:
     return Bins(t[fair], pulses.values[::stride][fair], 0.0, pulses.smooth)
 
 
-def _rubbed(fit: JumpFit, samples: Floats, b: float, friction: float, order: int) -> Push:
-    """Return what the friction of a ball that flies between the impacts of a first fit adds to the displacement."""
-    jumps, s = fit.jumps, fit.motion.s
-    found = slide(fit.motion, jumps.x + np.sign(jumps.dv) * b)
-    return push(found, fit.motion.starts[1:], samples, s, friction / abs(s) ** 2, order)
+def _credible(fit: JumpFit, pulse: Floats, u: Floats, fitter: Fitter) -> npt.NDArray[np.bool_]:
+    """Say which impacts to keep; of several near each other, the least credible one goes first.
 
-
-def _credible(fit: JumpFit, u: Floats) -> npt.NDArray[np.bool_]:
-    """Say which impacts to keep: of two in one place, with jumps that cancel, not the one that was heard less well."""
+    An impact whose jump the motion shows stays, but of two in one place, with jumps that cancel, not the one that was
+    heard less well. One that was heard only stays if the motion does not deny its pulse, if it is not what a far
+    larger one beside it left, and if the ball was at the wall then: it changes the ball's flight hardly. Beside a
+    flight that is not one nothing can be said.
+    """
     dv, t = fit.jumps.dv, fit.motion.starts[1:]
-    keep = (np.abs(dv) > KEEP * fit.u_dv) | (u <= U_PULSE)
+    heard = u <= U_PULSE
+    shown = np.abs(dv) > KEEP * fit.u_dv
+    denied = np.abs(dv - pulse) > KEEP * fit.u_dv
+    blind = ~(fit.fair[:-1] & fit.fair[1:])
+    soft = ~denied & ~_beside(t, dv, pulse) & (_off_the_wall(fit, fitter.b) < _AT_WALL * fitter.b)
+    # An acceleration has weighed pulses and flights against each other before.
+    keep = shown | (heard & (blind | soft | (fitter.order == 2)))
+    # In a cluster a false impact spoils the jumps of its neighbours.
+    worth = np.abs(dv) / fit.u_dv
+    for k in np.flatnonzero(~keep):
+        around = np.abs(t - t[k]) < _TWIN
+        keep[k] = np.min(worth[around & ~keep], initial=np.inf) < worth[k]
     near = np.flatnonzero((np.diff(t) < _TWIN) & (dv[:-1] * dv[1:] < 0))
     worse = np.where(u[near] > u[near + 1], near, near + 1)
     keep[worse[(u[worse] > U_PULSE)]] = False
     return keep
+
+
+def _beside(t: Floats, dv: Floats, pulse: Floats) -> npt.NDArray[np.bool_]:
+    """Say which pulses are small ones beside a large one: more likely what is left of that."""
+    small = np.zeros(len(t), bool)
+    for k, other in ((slice(1, None), slice(None, -1)), (slice(None, -1), slice(1, None))):
+        small[k] |= (np.diff(t) < 4 * SMOOTH) & (np.abs(pulse[k]) < 0.2 * np.abs(dv[other]))
+    return small
+
+
+def _off_the_wall(fit: JumpFit, b: float) -> Floats:
+    """Return how far from the wall a ball would be that flies straight from the impact before to the one after [m]."""
+    jumps, t = fit.jumps, fit.motion.starts[1:]
+    x2 = jumps.x + np.sign(jumps.dv) * b
+    off = np.zeros(len(t))
+    if len(t) > 2:
+        share = (t[1:-1] - t[:-2]) / (t[2:] - t[:-2])
+        off[1:-1] = np.abs(x2[1:-1] - x2[:-2] - share * (x2[2:] - x2[:-2]))
+    return off
 
 
 def _linear(

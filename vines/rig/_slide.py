@@ -86,6 +86,7 @@ class Push:
         At the times of the samples [m], or its second derivative.
     start, end, speed : ndarray, shape (K + 1,)
         Position at the start, position and velocity at the end of each flight [m, m/s]; it starts without velocity.
+        Before the first impact and after the last one it is taken to slide the other way than on the flight beside.
     """
 
     signal: Floats
@@ -123,14 +124,16 @@ def push(found: Slide, t: Floats, samples: Floats, s: complex, size: float, orde
     for i in range(1, cells):
         q[:, i] = q[:, i - 1] * step + (still[:, i - 1] - still[:, i]) * complex(1.0, s.real / s.imag)
     last = q[:, -1] * step
-    start, end, speed = (np.zeros(count + 2) for _ in range(3))
-    start[1:-1], end[1:-1], speed[1:-1] = still[:, 0], still[:, -1] + last.real, (s * last).real
+    first, final = -still[0, 0], -still[-1, -1]
+    start = np.concatenate([[first], still[:, 0], [final]])
+    end = np.concatenate([[first], still[:, -1] + last.real, [final]])
+    speed = np.concatenate([[0.0], (s * last).real, [0.0]])
     flight = np.searchsorted(t, samples, side="right") - 1
+    signal = np.where(flight < 0, first, final) if order == 0 else np.zeros(len(samples))
     inside = (flight >= 0) & (flight < count)
     own, when = flight[inside], samples[inside] - t[flight[inside]]
     width = np.diff(t)[own] / cells
     cell = np.minimum((when / width).astype(np.intp), cells - 1)
-    signal = np.zeros(len(samples))
     signal[inside] = (s**order * q[own, cell] * np.exp(s * (when - cell * width))).real
     if order == 0:
         signal[inside] += still[own, cell]

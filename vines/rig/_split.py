@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import numpy.typing as npt
 
 from vines.rig._bins import Bins
 from vines.rig._jumps import JumpFit
+from vines.rig._slide import Push
 
 __all__ = ["split_flights"]
 
@@ -21,7 +24,7 @@ _BETTER = 0.2
 _LEAST = 12
 
 
-def split_flights(bins: Bins, fit: JumpFit, order: int) -> tuple[Floats, Floats]:
+def split_flights(bins: Bins, fit: JumpFit, order: int, pushed: Push | None = None) -> tuple[Floats, Floats]:
     """Return times and velocity jumps of the impacts that flights with a large residual ask for, one in each at most.
 
     Parameters
@@ -32,6 +35,8 @@ def split_flights(bins: Bins, fit: JumpFit, order: int) -> tuple[Floats, Floats]
         Of it.
     order : {0, 2}
         Derivative of x1 that the channel measures.
+    pushed : Push, optional
+        What was taken off the signal before it was fitted.
 
     Returns
     -------
@@ -43,6 +48,8 @@ def split_flights(bins: Bins, fit: JumpFit, order: int) -> tuple[Floats, Floats]
     In each such flight the signal less the forced response is fitted by a free oscillation and a kink
     dv Im exp(s (t - tau))/gamma after tau, for each tau of a grid; the best one counts.
     """
+    if pushed is not None:
+        bins = replace(bins, mean=bins.mean - pushed.signal)
     starts = fit.motion.starts
     flight = np.searchsorted(starts, fit.left_t, side="right") - 1
     count = np.maximum(np.bincount(flight, minlength=len(starts)), 1)
