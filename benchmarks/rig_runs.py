@@ -11,6 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 import vines
+from vines.attractors import settle_from
 from vines.errors import VinesError
 from vines.rig import Comparison, Reconstruction, compare, reconstruct, ring_down
 from vines.rig._run_form import ChannelRow, Stated
@@ -181,9 +182,14 @@ def true_values(truth: dict[str, Any]) -> dict[str, float]:
 
 
 def regime_of(truth: dict[str, Any]) -> str:
-    """Return what the model does at the true parameters, from the usual start."""
-    p = truth["parameters"]
-    found = vines.settle(vines.Params(**{k: p[k] for k in ("mu", "A", "Omega", "lam")}, r=min(p["r"], 1.0)))
+    """Return what the model without scatter does at the true parameters, from the last impact of the run."""
+    p, impacts, scale = truth["parameters"], truth["impacts"], truth["parameters"]["b"] * truth["parameters"]["omega0"]
+    params = vines.Params(**{k: p[k] for k in ("mu", "A", "Omega", "lam")}, r=min(p["r"], 1.0))
+    x1, side, phase = (float(impacts[name][-1]) for name in ("x1", "side", "phase"))
+    v1, w = (float(impacts[name][-1]) / scale for name in ("v1", "w_dot"))
+    gain = (1 + params.r) * w / (1 + params.mu)
+    start = {"x1": x1 / p["b"], "v1": v1 - params.mu * gain, "x2": x1 / p["b"] - side, "v2": v1 - w + gain}
+    found = settle_from(params, start | {"phase": phase})
     return f"{found.name}" if found.regime == "periodic" else found.regime
 
 
