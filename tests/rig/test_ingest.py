@@ -200,6 +200,9 @@ def test_ingest_keeps_raw_files_and_a_second_time_does_nothing(run, project):
     assert read_run(kept.parent.parent).recording.sha256
     (log,) = project.data.glob("results/*/*.mcap")
     assert set(logs.read(log).sensors) == {"base_disp", "base_acc", "lo_disp", "lo_acc"}
+    seen = project.vines("view", "rig_run_1.ingest", "--save", project.root / "run.rrd")
+    assert "wrote" in seen.stdout
+    assert (project.root / "run.rrd").stat().st_size > 100_000
     before = sorted(path.stat().st_mtime_ns for path in project.data.glob("results/*"))
     again = project.vines("rig", "ingest", run)
     assert "nothing to do" in again.stdout

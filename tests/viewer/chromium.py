@@ -97,7 +97,7 @@ class Browser:
         data = self.call("Page.captureScreenshot", session=self._session, format="png")["data"]
         return base64.b64decode(data)
 
-    def at_rest(self, seconds=90.0):
+    def at_rest(self, seconds=180.0):
         """Return a picture once there is something to see and two in a row are equal."""
         deadline = time.monotonic() + seconds
         before = b""

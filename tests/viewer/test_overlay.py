@@ -1,43 +1,24 @@
 """Runs laid over each other, and what sensors measured: in the recording, and drawn by the viewer."""
 
-import os
+import signal
+import subprocess
+import sys
+import tempfile
 
-import numpy as np
+import matplotlib.image
 import pytest
 
+from tests.viewer.chromium import chromium
+from tests.viewer.conftest import write
 from tests.viewer.test_recording import chunks
 from vines import viewer
+from vines.dynamics import simulate
 from vines.errors import ViewerError
-from vines.logs import Sensor, read, write_rig
-from vines.schema import numpy_dtype
+from vines.logs import read
+from vines.model import Params
 from vines.viewer._program import headless
 from vines.viewer._show import _at_rest
-
-
-@pytest.fixture(scope="module")
-def rig(tmp_path_factory):
-    """Return the log of one sensor and of the base."""
-    samples = np.zeros(400, numpy_dtype("vines.v1.SensorSample"))
-    samples["t"] = np.arange(400) / 100.0
-    samples["value"], samples["valid"] = 1e-3 * np.sin(55.0 * samples["t"]), 1
-    base = np.zeros(400, numpy_dtype("vines.v1.BaseMotion"))
-    base["t"], base["displacement"] = samples["t"], 1e-4 * np.sin(55.0 * samples["t"])
-    base["velocity"] = base["acceleration"] = np.nan
-    about = {"quantity": "displacement", "unit": "m", "sign": "positive to the right", "rate": "100"}
-    path = tmp_path_factory.mktemp("rig") / "run.mcap"
-    sensors = {"lo_disp": Sensor(samples, about)}
-    return write_rig(path, sensors=sensors, base=base, provenance={}, parameters={"M [kg]": 3.8}, name="run_1")
-
-
-@pytest.fixture(scope="module")
-def other(settled, tmp_path_factory):
-    """Return a second run with the same forcing."""
-    from tests.viewer.conftest import write
-    from vines.dynamics import simulate
-    from vines.model import Params
-
-    run = simulate(Params(mu=0.01, A=0.019, Omega=1.0, r=0.65), periods=8)
-    return write(tmp_path_factory.mktemp("other") / "model.mcap", run)
+from vines.viewer._style import BASE, LINE, OVERLAID
 
 
 def test_every_curve_of_both_runs_is_there(settled, other, tmp_path):
@@ -50,10 +31,6 @@ def test_every_curve_of_both_runs_is_there(settled, other, tmp_path):
 
 
 def test_what_cannot_be_laid_over_each_other_is_refused(settled, rig, tmp_path):
-    from tests.viewer.conftest import write
-    from vines.dynamics import simulate
-    from vines.model import Params
-
     faster = write(tmp_path / "faster.mcap", simulate(Params(mu=0.01, A=0.02, Omega=1.1, r=0.65), periods=4))
     for logs, words in (
         ([settled], "2 to 4 runs over each other, 1 were named"),
@@ -63,18 +40,6 @@ def test_what_cannot_be_laid_over_each_other_is_refused(settled, rig, tmp_path):
         with pytest.raises(ViewerError, match=words):
             viewer.save_rrd(logs, tmp_path / "no.rrd", overlay=True)
     assert not (tmp_path / "no.rrd").exists()
-
-
-@pytest.fixture(scope="module")
-def vulkan(settled, tmp_path_factory):
-    """Skip, aloud, where there is no Vulkan; never on a CI machine, which must have one."""
-    try:
-        with headless(viewer.save_rrd([settled], tmp_path_factory.mktemp("vulkan") / "run.rrd"), (400, 300)):
-            pass
-    except ViewerError as missing:
-        if "no graphics adapter" in str(missing) and not os.environ.get("CI"):
-            pytest.skip(f"the viewer cannot draw on this machine: {missing}")
-        raise
 
 
 @pytest.mark.usefixtures("vulkan")
@@ -88,3 +53,35 @@ def test_the_viewer_draws_both(settled, other, rig, tmp_path):
     assert [report for view in views for report in view.reports] == []
     picture = viewer.screenshot([rig], tmp_path / "rig.png", size=(800, 500))
     assert picture.stat().st_size > 20_000
+
+
+def shown_in_a_browser(program, tmp_path, *arguments):
+    """Run ``vines view --web``, open its page, end it with Ctrl-C; return the picture and what the page asked for."""
+    command = [sys.executable, "-m", "vines.cli", "view", *map(str, arguments), "--web"]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, cwd=tmp_path) as server:
+        try:
+            url = server.stdout.readline().split()[1]
+            with tempfile.TemporaryDirectory() as folder, chromium(program, folder) as browser:
+                browser.open(url)
+                picture = browser.at_rest()
+                asked = browser.asked()
+        finally:
+            server.send_signal(signal.SIGINT)
+            said = server.communicate(timeout=30)[1]
+    assert "Traceback" not in said
+    assert [address for address in asked if not address.startswith(("http://127.0.0.1:", "data:", "blob:"))] == []
+    (tmp_path / "page.png").write_bytes(picture)
+    return (matplotlib.image.imread(tmp_path / "page.png")[..., :3] * 255).round()
+
+
+def test_two_runs_over_each_other_in_a_browser(settled, other, tmp_path, browser_program):
+    drawn = shown_in_a_browser(browser_program, tmp_path, settled, other, "--overlay")
+    for colour in OVERLAID[:2]:
+        assert (abs(drawn - colour[:3]).max(axis=-1) < 30).sum() > 300
+
+
+@pytest.mark.full
+def test_sensors_of_a_rig_in_a_browser(rig, tmp_path, browser_program):
+    drawn = shown_in_a_browser(browser_program, tmp_path, rig)
+    for colour in (LINE, BASE):
+        assert (abs(drawn - colour[:3]).max(axis=-1) < 40).sum() > 300

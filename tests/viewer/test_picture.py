@@ -1,6 +1,5 @@
 """The viewer itself, without a window: its views draw, its picture shows something, its failures are told."""
 
-import os
 import sys
 
 import matplotlib.image
@@ -13,6 +12,8 @@ from vines.errors import ViewerError
 from vines.viewer._program import headless
 from vines.viewer._show import _at_rest
 
+pytestmark = pytest.mark.usefixtures("vulkan")
+
 
 def viewers():
     """Return the viewers among our child processes; a test worker has others, such as multiprocessing's tracker."""
@@ -22,18 +23,6 @@ def viewers():
 @pytest.fixture(scope="module")
 def recording(settled, tmp_path_factory):
     return viewer.save_rrd([settled], tmp_path_factory.mktemp("viewer") / "run.rrd")
-
-
-@pytest.fixture(scope="module", autouse=True)
-def vulkan(recording):
-    """Skip, aloud, where there is no Vulkan; never on a CI machine, which must have one."""
-    try:
-        with headless(recording, (400, 300)):
-            pass
-    except ViewerError as missing:
-        if "no graphics adapter" in str(missing) and not os.environ.get("CI"):
-            pytest.skip(f"the viewer cannot draw on this machine: {missing}")
-        raise
 
 
 def test_views_draw_without_errors(recording):

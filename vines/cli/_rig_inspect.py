@@ -36,9 +36,8 @@ def command(file: Path, png: Path | None, as_json: bool) -> None:
         return
     from vines.cli._layout import print_rows
 
-    click.echo(
-        f"{file.name}: {found.form}, {len(facts)} channels" + (f", started {found.started}" if found.started else "")
-    )
+    count = f"{len(facts)} channel{'s' if len(facts) > 1 else ''}"
+    click.echo(f"{file.name}: {found.form}, {count}" + (f", started {found.started}" if found.started else ""))
     rows = [
         [
             each.name,
