@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 from scipy.signal import bilinear, lfilter
 
 from vines.rig import Sampled
-from vines.rig._impacts import SMOOTH, filled, find_pulses, pulses_of
+from vines.rig._impacts import SMOOTH, filled, find_pulses, pulses_of, refine_pulses
 
 RATE, FINE = 51200.0, 16
 MODES = ((1300.0, 0.01), (2900.0, 0.008), (6100.0, 0.006))
@@ -88,3 +88,15 @@ def test_a_dropout_is_bridged_by_a_cubic():
     valid[1000:1040] = valid[2500:2503] = False
     spoilt = np.where(valid, values, 99.0)
     np.testing.assert_allclose(filled(Sampled("a", "lo_acc", RATE, 0.0, spoilt, valid)), values, rtol=1e-9)
+
+
+def test_a_sloping_background_does_not_shift_a_small_pulse():
+    """Harmonics that a displacement sensor adds are large in the acceleration: a slope under a small pulse."""
+    middle, area = 0.2003, 2e-3
+    pulses = pulses_of(heard([middle], [area], [2e-4], [0.0] * len(MODES)))
+    sloping = pulses.less(-(0.1 + 60.0 * (pulses.t - middle)))
+    plain, _ = refine_pulses(sloping, np.array([middle]), np.array([area]))
+    level, dv = refine_pulses(sloping, np.array([middle]), np.array([area]), level=True)
+    assert abs(plain[0] - middle) > 1e-5
+    assert level[0] == pytest.approx(middle, abs=1e-6)
+    assert dv[0] == pytest.approx(area, rel=6e-3)

@@ -18,10 +18,15 @@ def ringdown():
 
 
 @pytest.fixture(scope="module")
-def dwell(ringdown):
-    """Return a reconstructed run of twelve seconds and its truth."""
-    recording, truth = simulate_rig(RigSettings(duration=12.0, settle=30.0, sigma_r=0.01), 7)
-    return reconstruct(recording, [ringdown]), truth
+def recorded():
+    """Return a recorded run of twelve seconds and its truth."""
+    return simulate_rig(RigSettings(duration=12.0, settle=30.0, sigma_r=0.01), 7)
+
+
+@pytest.fixture(scope="module")
+def dwell(recorded, ringdown):
+    """Return it reconstructed, and its truth."""
+    return reconstruct(recorded[0], [ringdown]), recorded[1]
 
 
 def test_a_ring_down_gives_omega0_to_a_part_in_ten_thousand_and_lam(ringdown):
@@ -56,3 +61,34 @@ def test_a_ring_down_is_not_reconstructed(ringdown):
     settings = RigSettings(run_id="free", protocol="ringdown", ball=False, E=0.0, duration=2.0, settle=0.0)
     with pytest.raises(RigError, match="has no ball in it"):
         reconstruct(simulate_rig(settings, 2)[0], [ringdown])
+
+
+def test_a_run_of_which_a_tenth_of_the_impacts_was_not_seen_is_not_accepted(dwell, recorded, ringdown):
+    found, _ = dwell
+    kept = np.random.default_rng(3).random(len(found.impacts)) > 0.1
+    seen = found.impacts[kept]
+    again = reconstruct(recorded[0], [ringdown], impacts=(seen["t"], seen["v1_after"] - seen["v1"]))
+    assert not again.accepted
+    assert "suspect_impacts" in {finding.name for finding in again.findings if not finding.passed}
+
+
+def test_soft_impacts_contradict_nothing(ringdown):
+    """A heavy ball in chaos: impacts from .05 to 1.4 m/s, and slow flights in which its friction turns."""
+    settings = RigSettings(
+        duration=12.0, settle=30.0, E=0.015 * 0.0457, m=3.807 * 0.08, sigma_r=0.006, r=0.68, r_exponent=0.16,
+        friction=0.004,
+    )  # fmt: skip
+    recording, truth = simulate_rig(settings, 4)
+    found = reconstruct(recording, [ringdown])
+    assert found.accepted, found.reasons
+    speed, r = np.abs(truth["impacts"]["w_dot"]), np.array(truth["impacts"]["r"])
+    assert np.ptp(np.log(speed)) > 2
+    q = found.quantities
+    assert q["r"].value == pytest.approx(np.sum(r * speed) / np.sum(speed), abs=0.002)
+    assert q["r_mean"].value == pytest.approx(np.mean(r), abs=0.003)
+    assert q["r"].value == pytest.approx(q["w_after"].value / q["w_before"].value, abs=0.002)
+    assert q["sigma_r"].value == pytest.approx(settings.sigma_r, rel=0.2)
+    assert q["mu_momentum"].value == pytest.approx(0.08, rel=0.005)
+    t = np.array(truth["impacts"]["t"])
+    away = np.min(np.abs(found.impacts["t"][:, None] - t), axis=1)
+    assert np.sqrt(np.mean(away**2)) < 1e-5

@@ -31,6 +31,9 @@ _TWIN = 8e-3
 _AT_WALL = 0.2
 """How far from the wall, relative to b, a ball may seem to be at a soft impact."""
 
+_DENIED = 0.2
+"""Largest part of the impacts that the motion may deny."""
+
 _ROUNDS = 5
 
 _EXPLAINS = 0.998
@@ -138,7 +141,7 @@ def measure_response(
         found = Detected(times, dv, u, len(times))
     times, dv, u, delay = found.t, found.dv, found.u, found.delay
     fit, _ = fitter.fit_rubbed(times + delay, u, dv)
-    for _ in range(_ROUNDS):
+    for _ in range(_ROUNDS if impacts is None else 0):
         keep = _credible(fit, dv, u, fitter)
         if keep.all():
             break
@@ -178,7 +181,7 @@ def _credible(fit: JumpFit, pulse: Floats, u: Floats, fitter: Fitter) -> npt.NDA
     An impact whose jump the motion shows stays, but of two in one place, with jumps that cancel, not the one that was
     heard less well. One that was heard only stays if the motion does not deny its pulse, if it is not what a far
     larger one beside it left, and if the ball was at the wall then: it changes the ball's flight hardly. Beside a
-    flight that is not one nothing can be said.
+    flight that is not one nothing can be said; and where many are denied, it is the fit that is wrong.
     """
     dv, t = fit.jumps.dv, fit.motion.starts[1:]
     heard = u <= U_PULSE
@@ -188,6 +191,8 @@ def _credible(fit: JumpFit, pulse: Floats, u: Floats, fitter: Fitter) -> npt.NDA
     soft = ~denied & ~_beside(t, dv, pulse) & (_off_the_wall(fit, fitter.b) < _AT_WALL * fitter.b)
     # An acceleration has weighed pulses and flights against each other before.
     keep = shown | (heard & (blind | soft | (fitter.order == 2)))
+    if np.mean(~keep) > _DENIED:
+        return np.ones(len(t), bool)
     # In a cluster a false impact spoils the jumps of its neighbours.
     worth = np.abs(dv) / fit.u_dv
     for k in np.flatnonzero(~keep):
