@@ -29,6 +29,9 @@ _LOOSE = 1e-4
 _FAR_OFF = 1e-3
 """Standard uncertainty of the times beside a flight that is not one [s]."""
 
+_ALIKE = 0.05
+"""By how much, in parts of a jump, a pulse may differ that has nothing beside it."""
+
 _SIGMAS = 8.0
 
 _STEADY = 1.5e-6
@@ -259,13 +262,16 @@ def inside(bins: Bins, times: Floats, dv: Floats, u: Floats) -> tuple[Floats, Fl
 
 
 def _misheard(fit: JumpFit, pulse: Floats) -> npt.NDArray[np.bool_]:
-    """Say which pulses are not those of their impacts but of what rings after one that the sensor missed."""
+    """Say which pulses are not those of their impacts but of what rings after one that the sensor missed, or of both.
+
+    A pulse of the right size came at the right time, whatever a long flight says, which small errors of omega0 bend.
+    """
     middle = float(np.median(fit.shift))
     u_shift = np.hypot(fit.draws.t.std(axis=0), U_PULSE)
     late = np.abs(fit.shift - middle) > KEEP * u_shift
     dv = np.abs(fit.jumps.dv)
-    other = np.abs(fit.jumps.dv - pulse) > 0.3 * dv + KEEP * fit.u_dv
-    return (late | other) & (dv > KEEP * fit.u_dv)
+    apart = np.abs(fit.jumps.dv - pulse) - KEEP * fit.u_dv
+    return ((late & (apart > _ALIKE * dv)) | (apart > 0.3 * dv)) & (dv > KEEP * fit.u_dv)
 
 
 def _sized(dv: Floats, unsure: npt.NDArray[np.bool_]) -> Floats:
