@@ -225,7 +225,7 @@ def test_reconstruct_by_hand_gives_the_row_and_writes_derived(rehearsed, campaig
     assert (derived / "rig_impacts.parquet").is_file()
     shown = rehearsed.vines("rig", "reconstruct", campaign / "01_up", "--ringdown", campaign / "00_ringdown").stdout
     assert "omega0 and lam by 00_ringdown\n" in shown
-    assert "Mean coefficient of restitution" in shown
+    assert "Coefficient of restitution" in shown
 
 
 def test_reconstruct_refuses_in_one_line(campaign, tmp_path, monkeypatch):

@@ -13,6 +13,14 @@ from vines.stages.audit._rows import Floats, Rows
 __all__ = ["comparison_defects", "cycle_defects", "reconstruction_defects", "rig_impact_defects"]
 
 
+_IN_CONTACT = 1e-4
+"""Longest time from the touch of the ball to the centroid of the force [s]: a contact lasts .2 ms at most."""
+
+_TURNING = 0.05
+"""A quarter of the largest deceleration of the ball by friction, .02 g: if its sense turns in the middle of a flight,
+the mean velocity is off by that times the duration [m/s^2]."""
+
+
 def reconstruction_defects(rows: Rows) -> Iterator[Defect]:
     """Yield the checks of rows of the table ``reconstructions``."""
     done = rows.text("status") == "ok"
@@ -45,15 +53,17 @@ def rig_impact_defects(rows: Rows) -> Iterator[Defect]:
     yield Defect("side", "+1 or -1", 0.0, _inf(np.abs(side) != 1))
     run = rows.codes("run_id")[0]
     same = np.concatenate([[False], run[1:] == run[:-1]]) if len(rows) else np.zeros(0, dtype=bool)
-    half = side * (rows["x1"] - rows["x2"])
-    off = np.where(same, relative(half, np.concatenate([half[:1], half[:-1]])), np.nan)
-    yield Defect("walls", "side (x1 - x2) = b, the same in all impacts of a run", 1e-9, off)
+    half, speed = side * (rows["x1"] - rows["x2"]), np.abs(rows["w_dot"])
+    usual = _medians(half, run)
+    off = np.abs(half - usual) / np.fmax(speed, _medians(speed, run))
+    says = "side (x1 - x2) = b in all impacts of a run, but for how deep the ball goes in: in .1 ms at its speed [s]"
+    yield Defect("walls", says, _IN_CONTACT, np.where(half > 0, off, np.inf))
     step = _inf(~(np.diff(rows["t"], prepend=np.nan) > 0) | (np.diff(rows["index"], prepend=np.nan) != 1))
     yield Defect("order", "times rise, one number after the other", 0.0, np.where(same, step, np.nan))
-    mean = 0.5 * (rows["v2"][1:] + rows["v2_after"][:-1])
-    flown = np.concatenate([[np.nan], np.diff(rows["x2"]) - mean * np.diff(rows["t"])]) if len(rows) else mean
-    says = "the ball flies from wall to wall at the mean of its velocities [m]"
-    yield Defect("flights", says, 1e-9, np.where(same, np.abs(flown), np.nan))
+    mean, time = 0.5 * (rows["v2"][1:] + rows["v2_after"][:-1]), np.diff(rows["t"])
+    flown = np.concatenate([[np.nan], (np.diff(rows["x2"]) - mean * time) / time**2]) if len(rows) else mean
+    says = "the ball flies from wall to wall at the mean of its velocities, but for friction that turns [m/s^2]"
+    yield Defect("flights", says, _TURNING, np.where(same, np.abs(flown), np.nan))
 
 
 def comparison_defects(rows: Rows) -> Iterator[Defect]:
@@ -97,6 +107,15 @@ def _miscounted(rows: Rows) -> npt.NDArray[np.bool_]:
     n, m = (np.array(["".join(word).count(end) for word in words]) for end in "LR")
     p = np.array([max(len(word), 1) for word in words])
     return (rows["n"] != n) | (rows["m"] != m) | (rows["p"] != p)
+
+
+def _medians(values: Floats, run: npt.NDArray[np.intp]) -> Floats:
+    """Return for each row the median over its run; what is not known counts for nothing."""
+    found = np.full(len(values), np.nan)
+    for each in np.unique(run):
+        own = values[run == each]
+        found[run == each] = np.median(own[np.isfinite(own)]) if np.isfinite(own).any() else np.nan
+    return found
 
 
 def _inf(wrong: npt.NDArray[np.bool_]) -> Floats:
