@@ -11,6 +11,7 @@ from vines.rig._bins import Bins, bins_of
 from vines.rig._fitter import KEEP, LEAST, Fitter
 from vines.rig._impacts import Pulses, find_pulses, pulses_of, refine_pulses
 from vines.rig._jumps import JumpFit
+from vines.rig._linearity import straight
 from vines.rig._recording import Sampled
 from vines.rig._sine_fit import sine_fit
 from vines.rig._slide import Push
@@ -107,6 +108,8 @@ def detect(fitter: Fitter, channel: Sampled, sensor: Sampled) -> Detected:
     times, dv, u = _with_soft_ones(left, times, dv, u, U_PULSE if heard_well else _LOOSE)
     times, dv, u = inside(bins, times, dv, u)
     times, dv, u = _with_unheard(corners, fitter, times, dv, u, delay)
+    # What is an impact is judged by its jump, and what the sensor adds to the motion can hide the jumps of a train.
+    fitter = straight(fitter, times + delay, u, dv)
     fit = fitter.fit(times + delay, u, dv)
     heard = u <= U_PULSE
     scale = _slope(dv[heard], fit.jumps.dv[heard]) if heard_well else 1.0

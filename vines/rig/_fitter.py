@@ -57,6 +57,8 @@ class Fitter:
         Half length of the cavity [m].
     friction : float
         Acceleration of the oscillator by the ball's friction, mu times the ball's deceleration [m/s^2].
+    u_natural : tuple of float
+        Relative standard uncertainties of omega0 and lam.
     """
 
     bins: Bins
@@ -67,6 +69,7 @@ class Fitter:
     driven: complex | None = None
     b: float = 0.0
     friction: float = 0.0
+    u_natural: tuple[float, float] = (1e-5, 1e-3)
 
     def fit(
         self,

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
@@ -14,7 +14,7 @@ from vines.rig._detect_alone import detect_alone
 from vines.rig._fitter import KEEP, Fitter
 from vines.rig._impacts import SMOOTH, pulses_of
 from vines.rig._jumps import JumpFit
-from vines.rig._linearity import bends, straightened
+from vines.rig._linearity import straight
 from vines.rig._recording import Recording, Sampled
 from vines.rig._slide import Push
 
@@ -35,12 +35,6 @@ _DENIED = 0.2
 """Largest part of the impacts that the motion may deny."""
 
 _ROUNDS = 5
-
-_EXPLAINS = 0.998
-"""Most that is left of the residual, without noise taken off, where the sensor's linearity is believed."""
-
-_HARMONICS = 1e-5
-"""Standard uncertainty of the forced harmonics by the base's own, relative to the motion."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -128,7 +122,7 @@ def measure_response(
         raise RigError(f"run {recording.run.run_id!r} has no channel on the oscillator (lo_disp or lo_acc)")
     order = 0 if displacement is not None else 2
     bins = bins_of(channel) if order == 0 else _quiet(channel)
-    fitter = Fitter(bins, s, omega, order, forced, driven, recording.run.b.value, friction)
+    fitter = Fitter(bins, s, omega, order, forced, driven, recording.run.b.value, friction, u_natural)
     sensor = accelerometer if accelerometer is not None else channel
     if impacts is None:
         if order == 0:
@@ -149,7 +143,7 @@ def measure_response(
         fit, _ = fitter.fit_rubbed(times + delay, u, dv)
     pushed = fitter.rubbed(fit, times + delay)
     if pushed is not None and order == 0:
-        fitter = _linear(fitter, times + delay, u, dv, pushed, u_natural)
+        fitter = straight(fitter, times + delay, u, dv, pushed)
         bins = fitter.bins
     fit = fitter.fit(times + delay, u, dv, draws=32, pushed=pushed)
     late, u_late = (
@@ -221,27 +215,6 @@ def _off_the_wall(fit: JumpFit, b: float) -> Floats:
         share = (t[1:-1] - t[:-2]) / (t[2:] - t[:-2])
         off[1:-1] = np.abs(x2[1:-1] - x2[:-2] - share * (x2[2:] - x2[:-2]))
     return off
-
-
-def _linear(
-    fitter: Fitter, times: Floats, u: Floats, dv: Floats, pushed: Push, u_natural: tuple[float, float]
-) -> Fitter:
-    """Return the fitter with the displacement less what its sensor adds, if that explains a part of what is left.
-
-    Harmonics that the base does not have are the sensor's then: without that, they and jumps that repeat would say the
-    same.
-    """
-    fit = fitter.fit(times, u, dv, pushed=pushed)
-    columns, sizes = bends(fitter.bins, fit.motion, *u_natural)
-    strict = fitter
-    if fitter.forced is not None:
-        c, u_c = fitter.forced
-        known = 0.03 * np.abs(c) + _HARMONICS * float(np.abs(fitter.bins.mean).max())
-        strict = replace(fitter, forced=(c, np.minimum(u_c, known)))
-    bent = strict.fit(times, u, dv, pushed=pushed, extra=(columns, sizes))
-    if bent.residual > _EXPLAINS * fit.residual:
-        return fitter
-    return replace(strict, bins=straightened(fitter.bins, columns, bent.extra))
 
 
 def _share(delay: float, u_delay: float, u_channel: float, u_sensor: float) -> tuple[float, float]:
