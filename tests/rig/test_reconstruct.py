@@ -92,3 +92,16 @@ def test_soft_impacts_contradict_nothing(ringdown):
     t = np.array(truth["impacts"]["t"])
     away = np.min(np.abs(found.impacts["t"][:, None] - t), axis=1)
     assert np.sqrt(np.mean(away**2)) < 1e-5
+
+
+def test_a_sensor_that_is_not_linear_hides_no_train_of_soft_impacts(ringdown):
+    settings = RigSettings(
+        duration=12.0, settle=30.0, E=0.015 * 0.0228, m=0.03807, r=0.65, r_speed=1.2, sigma_r=0.005, r_exponent=0.06,
+        friction=0.002, contact_time=1.8e-4, laser_noise=6.5e-6, laser_linearity=-7e-4, missed=0.03, false=0.1,
+    )  # fmt: skip
+    recording, truth = simulate_rig(settings, 11)
+    found = reconstruct(recording, [ringdown])
+    assert truth["pattern"]["name"] in ("2:1", "1:2")
+    assert found.pattern.name == truth["pattern"]["name"]
+    assert found.accepted, found.reasons
+    assert found.quantities["r_mean"].value == pytest.approx(np.mean(truth["impacts"]["r"]), abs=0.005)
