@@ -13,7 +13,10 @@ from vines.rig._run_form import ChannelRow
 from vines.rig._units import si_factor, volts_per_unit
 from vines.rig.formats._raw import RawChannel
 
-__all__ = ["Calibrated", "calibrate", "even_rate"]
+__all__ = ["U_CORNER", "Calibrated", "calibrate", "even_rate"]
+
+U_CORNER = 0.01
+"""Relative standard uncertainty of the corner of a high-pass: of a calibrated conditioner, about a per cent."""
 
 _RATE_AGREES = 2e-5
 """Relative difference between a stated rate and that of a file that is taken for rounding: UFF58 keeps six digits."""

@@ -17,7 +17,7 @@ from vines.rig._sine_fit import sine_fit
 from vines.rig._slide import Push
 from vines.rig._split import split_flights
 
-__all__ = ["U_PULSE", "Detected", "detect", "inside", "threshold"]
+__all__ = ["SIGMAS", "U_PULSE", "Detected", "detect", "inside", "threshold"]
 
 Floats = npt.NDArray[np.float64]
 
@@ -33,7 +33,8 @@ _FAR_OFF = 1e-3
 _ALIKE = 0.05
 """By how much, in parts of a jump, a pulse may differ that has nothing beside it."""
 
-_SIGMAS = 8.0
+SIGMAS = 8.0
+"""What stands out of noise."""
 
 _STEADY = 1.5e-6
 """Standard uncertainty, at least, of a change of the delay between two sensors [s]."""
@@ -141,7 +142,7 @@ def detect(fitter: Fitter, channel: Sampled, sensor: Sampled) -> Detected:
 
 
 def threshold(pulses: Pulses) -> float:
-    return max(_SIGMAS * pulses.noise, LEAST / (pulses.smooth * 2.5))
+    return max(SIGMAS * pulses.noise, LEAST / (pulses.smooth * 2.5))
 
 
 def _ascending(times: Floats) -> Floats:

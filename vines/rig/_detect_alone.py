@@ -14,7 +14,7 @@ import numpy as np
 import numpy.typing as npt
 
 from vines.rig._bins import Bins
-from vines.rig._detect import U_PULSE, Detected, threshold
+from vines.rig._detect import SIGMAS, U_PULSE, Detected, threshold
 from vines.rig._fitter import KEEP, LEAST, Fitter
 from vines.rig._impacts import SMOOTH, Pulses, find_pulses, pulses_of, refine_pulses
 from vines.rig._jumps import TAIL
@@ -49,6 +49,8 @@ _MANY = 6
 
 _UNLIKE = 6.0
 """A choice of pulses that is farther from what the flights see than so many standard deviations is none."""
+
+_TWICE = 1e-5
 
 _SAME = 1e-4
 """A pulse nearer than this to an impact that the motion shows is its pulse [s]."""
@@ -115,9 +117,10 @@ def detect_alone(fitter: Fitter, channel: Sampled) -> tuple[Detected, Fitter]:
     knocks, now = np.zeros(0), fitter
     for turn in range(_ROUNDS):
         before = train
-        train = _heard(now, pulses, train)
-        train, knocks = _judged(fitter, train)
-        now = replace(fitter, bins=fitter.bins.without(knocks, TAIL * fitter.bins.smooth))
+        train, bumps = _heard(now, pulses, train)
+        cleared = fitter.bins.without(bumps, TAIL * pulses.smooth)
+        train, knocks = _judged(replace(fitter, bins=cleared), train)
+        now = replace(fitter, bins=cleared.without(knocks, TAIL * pulses.smooth))
         train = _with_silent(now, train)
         if turn and len(train.t) == len(before.t) and np.all(np.abs(train.t - before.t) < _SAME):
             break
@@ -138,12 +141,16 @@ def _trimmed(bins: Bins, t: Floats) -> Bins:
 
 
 def _within(bins: Bins, train: _Train) -> _Train:
-    """Return a train without what is beside the ends of the record."""
+    """Return a train without what is twice or beside the ends of the record."""
+    train = train.only(np.append(True, np.diff(train.t) > _TWICE))
     return train.only((train.t > bins.t[0] + _EDGE / 2) & (train.t < bins.t[-1] - _EDGE / 2))
 
 
-def _heard(fitter: Fitter, pulses: Pulses, train: _Train) -> _Train:
-    """Refine the pulses, now that the motion is known, and add those too small to be seen before."""
+def _heard(fitter: Fitter, pulses: Pulses, train: _Train) -> tuple[_Train, Floats]:
+    """Refine the pulses, now that the motion is known, and add those too small to be seen before.
+
+    What else stands out, such as the end of a knock's ringing, is too small for an impact; its times are returned, too.
+    """
     motion = fitter.fit(train.t, train.u, train.dv, draws=0).motion
     left = pulses.less(motion.combination(pulses.t, {2: 1.0, 4: 0.5 * pulses.smooth**2}))
     heard, silent = train.only(train.heard), train.only(~train.heard)
@@ -159,7 +166,8 @@ def _heard(fitter: Fitter, pulses: Pulses, train: _Train) -> _Train:
     alone = np.min(np.abs(t[:, None] - silent.t[None, :]), axis=1, initial=np.inf) > 2 * pulses.smooth
     alone &= np.abs(dv) > LEAST
     heard = _Train(t[alone], dv[alone], np.full(int(alone.sum()), U_PULSE))
-    return _within(fitter.bins, heard.joined(silent))
+    rest = sparse.values - sparse.shape(t, dv)
+    return _within(fitter.bins, heard.joined(silent)), pulses.t[np.abs(rest) > SIGMAS * sparse.noise]
 
 
 def _with_ringing(left: Pulses, t: Floats, dv: Floats) -> Pulses:
@@ -175,6 +183,7 @@ def _with_ringing(left: Pulses, t: Floats, dv: Floats) -> Pulses:
 
 def _judged(fitter: Fitter, train: _Train) -> tuple[_Train, Floats]:
     """Return the impacts, and the times of pulses that are not those of impacts."""
+    train = _within(fitter.bins, train)
     fit = fitter.fit(train.t, train.u, train.dv)
     size, u_dv = np.abs(fit.jumps.dv), fit.u_dv
     jumped = (size > KEEP * u_dv) & (size > LEAST)
@@ -223,6 +232,7 @@ def _explains(t: Floats, area: Floats, total: float, moment: float, u: float) ->
 
 def _with_silent(fitter: Fitter, train: _Train) -> _Train:
     """Add impacts that only the motion shows, and move them until they come to rest."""
+    train = _within(fitter.bins, train)
     fit = fitter.fit(train.t, train.u, train.dv, draws=0)
     found, jumps = split_flights(fitter.bins, fit, fitter.order)
     train = train.joined(_Train(found, jumps, np.full(len(found), _U_SILENT))).merged()
@@ -232,7 +242,7 @@ def _with_silent(fitter: Fitter, train: _Train) -> _Train:
             break
         fit = fitter.fit(train.t, train.u, train.dv, draws=0)
         moved = np.where(silent, train.t + fit.shift, train.t)
-        train = _Train(moved, np.where(silent, fit.jumps.dv, train.dv), train.u).merged()
+        train = _within(fitter.bins, _Train(moved, np.where(silent, fit.jumps.dv, train.dv), train.u).merged())
         if np.max(np.abs(fit.shift[silent])) < _AT_REST:
             break
     return _within(fitter.bins, train)

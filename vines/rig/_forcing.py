@@ -89,7 +89,8 @@ def measure_base(recording: Recording, *, harmonics: int = 3) -> Base:
     E = abs(e[0])
     relative = fit.u_amplitude / abs(fit.harmonics[0])
     # The fit's phase is best in the middle of the record; the clock's alignment adds to it.
-    u_phase = float(np.hypot(fit.u_phase, fit.omega * channel.u_time))
+    # That of a first-order high-pass changes by its corner over the frequency.
+    u_phase = float(np.hypot.reduce([fit.u_phase, fit.omega * channel.u_time, channel.u_high_pass / fit.f]))
     second = recording.role("base_acc") if channel.role == "base_disp" else None
     other = None
     if second is not None:

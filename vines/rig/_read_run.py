@@ -9,7 +9,7 @@ from pathlib import Path
 
 from vines.errors import RigError
 from vines.rig._agreement import check_agreement
-from vines.rig._calibrate import Calibrated, calibrate
+from vines.rig._calibrate import U_CORNER, Calibrated, calibrate
 from vines.rig._clock import Clock, align_clocks
 from vines.rig._recording import ROLES, Recording, Sampled
 from vines.rig._run_folder import check_sums, raw_sums, read_folder, run_info
@@ -148,5 +148,6 @@ def _on_the_clock(channel: Calibrated, clock: Clock) -> Sampled:
         valid=channel.valid,
         u_gain=row.u_sensitivity,
         u_time=(clock.u**2 + row.u_delay**2) ** 0.5,
+        u_high_pass=U_CORNER * row.high_pass,
         about={key: text for key, text in told.items() if text},
     )

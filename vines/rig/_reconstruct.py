@@ -155,6 +155,7 @@ def _tuned(
             seed=seed,
             forced=forced,
             pushed=response.pushed,
+            fair=fit.fair,
         )
         return complex(_asked(other.motion.c[:1], moved, omega)[0] * turn)
 
@@ -265,8 +266,8 @@ def _assembled(
         slots=found,
         impacts=_rows(response, ball, side, phase, number),
         track=track,
-        residual=fit.residual,
-        noise=fit.noise,
+        residual=fit.residual / abs(fit.motion.s) ** response.order,
+        noise=fit.noise / abs(fit.motion.s) ** response.order,
         pruned=response.pruned,
         findings=judge(recording, base, response, tuning, ball),
         base_harmonics=base.e,

@@ -90,7 +90,8 @@ class Reconstruction:
     track : Track
         Motion in SI units.
     residual, noise : float
-        Root mean square of what the fit leaves, and of the channel's noise, as block means [m or m/s^2].
+        Root mean square of what the fit leaves, and of the channel's noise, as block means [m]; those of an
+        acceleration are divided by omega0^2.
     pruned : int
         Pulses that were no impacts.
     findings : tuple of Finding

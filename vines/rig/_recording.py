@@ -57,6 +57,8 @@ class Sampled:
         Standard uncertainty of the alignment [s].
     about : mapping of str to str
         Sensor, serial number, sensitivity, file, field and the like, for the log.
+    u_high_pass : float
+        Standard uncertainty of the corner of the high-pass that was undone [Hz].
     """
 
     name: str
@@ -68,6 +70,7 @@ class Sampled:
     u_gain: float = 0.0
     u_time: float = 0.0
     about: Mapping[str, str] = field(default_factory=dict)
+    u_high_pass: float = 0.0
 
     @property
     def times(self) -> npt.NDArray[np.float64]:
