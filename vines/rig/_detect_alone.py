@@ -20,6 +20,7 @@ from vines.rig._impacts import SMOOTH, Pulses, find_pulses, pulses_of, refine_pu
 from vines.rig._jumps import TAIL
 from vines.rig._recording import Sampled
 from vines.rig._split import split_flights
+from vines.rig._unravel import unclear, unravel
 
 __all__ = ["detect_alone"]
 
@@ -119,9 +120,12 @@ def detect_alone(fitter: Fitter, channel: Sampled) -> tuple[Detected, Fitter]:
         before = train
         train, bumps = _heard(now, pulses, train)
         cleared = fitter.bins.without(bumps, TAIL * pulses.smooth)
+        heard = train.only(train.heard)
         train, knocks = _judged(replace(fitter, bins=cleared), train)
         now = replace(fitter, bins=cleared.without(knocks, TAIL * pulses.smooth))
         train = _with_silent(now, train)
+        train, knocks = _unravelled(now, train, heard)
+        now = replace(fitter, bins=cleared.without(knocks, TAIL * pulses.smooth))
         if turn and len(train.t) == len(before.t) and np.all(np.abs(train.t - before.t) < _SAME):
             break
     size = np.abs(now.fit(train.t, train.u, train.dv, draws=0).jumps.dv)
@@ -167,7 +171,7 @@ def _heard(fitter: Fitter, pulses: Pulses, train: _Train) -> tuple[_Train, Float
     alone &= np.abs(dv) > LEAST
     heard = _Train(t[alone], dv[alone], np.full(int(alone.sum()), U_PULSE))
     rest = sparse.values - sparse.shape(t, dv)
-    return _within(fitter.bins, heard.joined(silent)), pulses.t[np.abs(rest) > SIGMAS * sparse.noise]
+    return _within(fitter.bins, heard.joined(silent)), pulses.t[np.abs(rest) > 2 * SIGMAS * sparse.noise]
 
 
 def _with_ringing(left: Pulses, t: Floats, dv: Floats) -> Pulses:
@@ -230,12 +234,36 @@ def _explains(t: Floats, area: Floats, total: float, moment: float, u: float) ->
     return chosen if chosen is not None or abs(total) > max(LEAST, u) else np.zeros(0, np.intp)
 
 
+def _unravelled(fitter: Fitter, train: _Train, heard: _Train) -> tuple[_Train, Floats]:
+    """Decide by trying what is unclear yet; return all impacts, and the times of pulses that are none."""
+    train = _within(fitter.bins, train)
+    fit = fitter.fit(train.t, train.u, train.dv, draws=0)
+    edges = np.append(fit.motion.starts, fit.motion.stop)
+    for stretch in unclear(fit):
+        low, high = edges[stretch[0]], edges[min(stretch[1] + 3, len(edges) - 1)]
+        few = heard.only((heard.t > low + _TWICE) & (heard.t < high - _TWICE))
+        found = unravel(fitter.bins, fit, stretch, few.t, few.dv, fitter.order)
+        if found is not None:
+            chosen, silent = few.only(found[0]), found[1]
+            new = _Train(silent, np.full(len(silent), np.median(np.abs(train.dv))), np.full(len(silent), _U_SILENT))
+            outside = train.only((train.t < low + _TWICE) | (train.t > high - _TWICE))
+            train = outside.joined(chosen).joined(new)
+    train = _settled(fitter, train)
+    apart = np.abs(heard.t[:, None] - train.t[None, :])
+    return train, heard.t[np.min(apart, axis=1, initial=np.inf) > _TWICE]
+
+
 def _with_silent(fitter: Fitter, train: _Train) -> _Train:
-    """Add impacts that only the motion shows, and move them until they come to rest."""
+    """Add impacts that only the motion shows."""
     train = _within(fitter.bins, train)
     fit = fitter.fit(train.t, train.u, train.dv, draws=0)
     found, jumps = split_flights(fitter.bins, fit, fitter.order)
-    train = train.joined(_Train(found, jumps, np.full(len(found), _U_SILENT))).merged()
+    return _settled(fitter, train.joined(_Train(found, jumps, np.full(len(found), _U_SILENT))))
+
+
+def _settled(fitter: Fitter, train: _Train) -> _Train:
+    """Move impacts that only the motion shows until they come to rest."""
+    train = _within(fitter.bins, train.merged())
     for _ in range(_MOVES):
         silent = ~train.heard
         if not silent.any():
