@@ -15,6 +15,9 @@ __all__ = ["unclear", "unravel"]
 Floats = npt.NDArray[np.float64]
 Places = npt.NDArray[np.intp]
 
+_CLEAR = 0.8
+"""Least share of flights that must be clear."""
+
 _GRID = 1e-3
 """Distance of the times at which an impact without a pulse is tried [s]."""
 
@@ -32,7 +35,12 @@ _GOOD = 9.0
 
 
 def unclear(fit: JumpFit) -> list[tuple[int, int]]:
-    """Return first and last impact of the stretches of flights that are not those of one flight."""
+    """Return first and last impact of the stretches of flights that are not those of one flight.
+
+    None where these are many: then something else is wrong, or the rest of the run is not yet explained either.
+    """
+    if np.mean(fit.fair) < _CLEAR:
+        return []
     unfair = np.flatnonzero(~fit.fair[1:-1]) + 1
     groups = np.split(unfair, np.flatnonzero(np.diff(unfair) > 2) + 1)
     return [(int(few[0]) - 1, int(few[-1])) for few in groups if len(few)]
