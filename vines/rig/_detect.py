@@ -142,6 +142,7 @@ def detect(fitter: Fitter, channel: Sampled, sensor: Sampled) -> Detected:
 
 
 def threshold(pulses: Pulses) -> float:
+    """Return the least height of the pulse of an impact [m/s^2]."""
     return max(SIGMAS * pulses.noise, LEAST / (pulses.smooth * 2.5))
 
 
