@@ -38,6 +38,7 @@ from vines.rig._cycle import slots
 from vines.rig._jumps import Jumps
 from vines.rig._motion import Motion
 from vines.rig._pattern import cut_into_periods
+from vines.rig._rebound import mean_restitution
 
 Floats = npt.NDArray[np.float64]
 
@@ -110,7 +111,8 @@ def population(rig: Rig, run: Run, begin: float, found: Reconstruction) -> dict[
     long = np.r_[False, (time[:-1] > SHORT) & (time[1:] > SHORT), False]
     w, w_after = rows[:, V1] - rows[:, V2], rows[:, V1_AFTER] - rows[:, V2_AFTER]
     jumps = Jumps(rows[:, T], rows[:, X1], rows[:, V1], rows[:, V1_AFTER])
-    plain = ball_motion(jumps, rows[:, SIDE], Cavity(b, 0.0, p["tilt"])).r
+    plain = ball_motion(jumps, rows[:, SIDE], Cavity(b, 0.0, p["tilt"]))
+    own = np.abs(w[long]) / np.abs(w[long]).mean()
     motion = _after(run.motion, begin)
     times, values = motion.peaks()
     number = np.floor((times - times[0]) * omega / (2 * np.pi)).astype(int)
@@ -123,7 +125,9 @@ def population(rig: Rig, run: Run, begin: float, found: Reconstruction) -> dict[
     true = {
         "f": omega / 2 / np.pi, "E": p["E"], "phase": start, "omega0": p["omega0"], "lam": p["lam"], "Omega": p["Omega"],
         "A": p["E"] / b, "mu": p["mu"], "mu_momentum": p["mu"], "b": b, "friction": p["friction"],
-        "tilt": p["tilt"], "r": float((-w_after / w)[long].mean()), "r_effective": float(plain[long[1:-1]].mean()),
+        "tilt": p["tilt"], "r": float(np.abs(w_after[long]).mean() / np.abs(w[long]).mean()),
+        "r_mean": float((-w_after / w)[long].mean()),
+        "r_effective": mean_restitution(plain, long[1:-1]) / float(np.mean(own ** (1 - p["exponent"]))),
         "sigma_r": p["sigma_r"], "r_exponent": -p["exponent"], "max_abs_x1": float(top[1:-1].mean()) / b,
         "kinetic_ratio": p["mu"] * square / v1, "w_before": float(np.abs(w)[long].mean()),
         "w_after": float(np.abs(w_after)[long].mean()),
