@@ -72,8 +72,8 @@ def judge(
             "unit or clock of base or oscillator is wrong, or omega0 is",
             fault=True,
         ),
-        _mass(ball.alone, ball.weighed.value, response.channel.u_gain),
-        _gauge(ball.length(), ball.gauge),
+        _mass(ball.alone, ball.weighed.value),
+        _gauge(ball.length(), ball.gauge, ball.u_gain),
         Finding(
             "restitution", 0.0 < ball.law.r < 1.0,
             f"the restitution is {ball.law.r:.3f}, possible is 0 to 1: a sign or unit is wrong, or impacts are "
@@ -129,8 +129,8 @@ def _u_gain(recording: Recording, role: str) -> float:
     return channel.u_gain if channel is not None else 0.0
 
 
-def _mass(alone: MomentumFit, mu: float, u_gain: float) -> Finding:
-    u = float(np.hypot(alone.mu.u, alone.mu.value * np.hypot(u_gain, U_JUMP)))
+def _mass(alone: MomentumFit, mu: float) -> Finding:
+    u = float(np.hypot(alone.mu.u, alone.mu.value * U_JUMP))
     far = abs(alone.mu.value - mu) / u
     return Finding(
         "mass_ratio",
@@ -141,8 +141,8 @@ def _mass(alone: MomentumFit, mu: float, u_gain: float) -> Finding:
     )
 
 
-def _gauge(found: Uncertain, gauge: Uncertain) -> Finding:
-    far = abs(found.value - gauge.value) / gauge.u
+def _gauge(found: Uncertain, gauge: Uncertain, u_gain: float) -> Finding:
+    far = abs(found.value - gauge.value) / float(np.hypot(gauge.u, u_gain * gauge.value))
     return Finding(
         "cavity",
         far <= _FAR,

@@ -72,6 +72,8 @@ class Rebounds:
         Fitted to the measured ones.
     weighed, gauge : Uncertain
         mu weighed; b by gauge, contact included [m].
+    u_gain : float
+        Relative standard uncertainty of the oscillator's sensor.
     """
 
     alone: MomentumFit
@@ -86,14 +88,30 @@ class Rebounds:
     law: Restitution
     weighed: Uncertain
     gauge: Uncertain
+    u_gain: float
 
     def length(self) -> Uncertain:
         """Return b for instantaneous impacts: in a contact that lasts the ball turns so much beyond where it touches.
 
-        Straight lines before and after a contact meet at the centroid of its force, whatever its law.
+        Straight lines before and after a contact meet at the centroid of its force, whatever its law. In metres of the
+        oscillator's sensor: momentum compares the walls' distance with what that sensor sees.
         """
         found, speed = self.joint, float(np.median(self.course.deep))
         return combined(found.b.value + speed * found.touch.value, found.spread({"b": 1.0, "touch": speed}))
+
+    def calibrated(self) -> tuple[Uncertain, Uncertain]:
+        """Return that b in metres, and the gain of the oscillator's sensor.
+
+        The sensor sees gain times b; of what it sees beside the gauge each takes its share.
+        """
+        seen, gauge = self.length(), self.gauge
+        u_b = gauge.u / gauge.value
+        both = np.hypot(u_b, self.u_gain)
+        share = float(u_b / both) ** 2
+        apart, left = seen.value / gauge.value - 1, float(u_b * self.u_gain / both)
+        b, gain = gauge.value * (1 + share * apart), 1 + (1 - share) * apart
+        u_seen = seen.u / seen.value
+        return combined(b, b * share * u_seen, b * left), combined(gain, (1 - share) * u_seen, left)
 
 
 def measure_rebounds(recording: Recording, response: Response, side: Floats) -> Rebounds:
@@ -119,9 +137,11 @@ def measure_rebounds(recording: Recording, response: Response, side: Floats) -> 
     long = (time[:-1] > _SHORT) & (time[1:] > _SHORT)
     mu = run.m.value / run.M.value
     weighed = combined(mu, mu * run.m.u / run.m.value, mu * run.M.u / run.M.value)
-    # The jumps are in the units of the channel, so its calibration stands between them and the masses.
-    known = combined(mu, weighed.u, mu * max(response.channel.u_gain, 1e-4))
-    b = combined(run.b.value, max(run.b.u, 1e-6))
+    # Jumps are differences of slopes, of which the sensor's linearity makes more than of a motion.
+    known = combined(mu, weighed.u, mu * LINEARITY)
+    # All in metres of the oscillator's sensor, whose calibration stands between it and the gauge.
+    u_gain = response.channel.u_gain
+    b = combined(run.b.value, max(run.b.u, 1e-6), run.b.value * u_gain)
     course = _course(response, side, b.value)
     alone, joint = (
         fit_momentum(
@@ -149,9 +169,9 @@ def measure_rebounds(recording: Recording, response: Response, side: Floats) -> 
     speed = float(np.median(np.abs(motion.w_before[measured])))
     counted = fair & ~contradicts & (np.hypot(u_before, u_after) < _DIM * speed)
     counted = counted | measured
-    gauge = combined(b.value + speed * _CENTROID.value, b.u, speed * _CENTROID.u)
+    gauge = combined(b.value + speed * _CENTROID.value, max(run.b.u, 1e-6), speed * _CENTROID.u)
     return Rebounds(
-        alone, joint, course, motion, u_r, long, contradicts, counted, measured, law, weighed, gauge
+        alone, joint, course, motion, u_r, long, contradicts, counted, measured, law, weighed, gauge, u_gain
     )  # fmt: skip
 
 
@@ -205,7 +225,7 @@ def uncalibrated(found: Rebounds, response: Response, side: Floats) -> dict[str,
         return mean_restitution(ball_motion(moved, side, within, found.course), found.counted)
 
     here = mean(jumps, cavity)
-    gain = 1 + float(np.hypot(response.channel.u_gain, LINEARITY))
+    gain = 1 + LINEARITY
     scaled = replace(jumps, x=jumps.x * gain, v_before=jumps.v_before * gain, v_after=jumps.v_after * gain)
     late = 1e-6
     turn = 0.5 * (response.fit.motion.before(2) + response.fit.motion.after(2))

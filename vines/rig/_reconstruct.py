@@ -29,7 +29,7 @@ from vines.rig._rebound import (
 from vines.rig._reconstruction import IMPACT, Reconstruction
 from vines.rig._recording import Recording, Uncertain
 from vines.rig._ring_down import RingDown, natural
-from vines.rig._uncertainty import combined, mean_over_periods, period_weights
+from vines.rig._uncertainty import combined, mean_over_periods, standard_error
 
 __all__ = ["reconstruct"]
 
@@ -181,7 +181,6 @@ def _assembled(
     complete = len(periods.words)
     if complete < 8:
         raise RigError(f"run {run.run_id!r} holds {complete} whole forcing periods, a reconstruction needs 8")
-    weights = period_weights(complete, seed=seed)
     number = periods.number - periods.first
     inner = number[1:-1]
     inside = (inner >= 0) & (inner < complete)
@@ -189,13 +188,14 @@ def _assembled(
     speed = np.abs(ball.motion.w_before)
 
     def mean(values: Floats, which: npt.NDArray[np.bool_], size: Floats | None = None) -> Uncertain:
-        return mean_over_periods(values[which], inner[which], weights, None if size is None else size[which])
+        return mean_over_periods(values[which], inner[which], complete, None if size is None else size[which])
 
     def scaled(speed: Uncertain) -> Uncertain:
-        return combined(speed.value, speed.u, speed.value * gain, speed.value * joint.b.u / joint.b.value)
+        seen = ball.length()
+        return combined(speed.value / gain.value, speed.u, speed.value * gain.u, speed.value * seen.u / seen.value)
 
     joint, law = ball.joint, ball.law
-    gain = response.channel.u_gain
+    b, gain = ball.calibrated()
     left_open = uncalibrated(ball, response, side)
     u_mean = mean(ball.motion.r, use, speed).u
     r = combined(mean_restitution(ball.motion, ball.counted), u_mean, *left_open.values())
@@ -211,8 +211,6 @@ def _assembled(
     r_effective = combined(
         mean_restitution(frictionless, ball.counted) / bent, u_mean, r.value * u_bent, *left_open.values()
     )
-    length = ball.length()
-    b = combined(length.value, length.u, LINEARITY * length.value)
     period = 2 * np.pi / base.fit.omega
     # Momentum sees a tilt by what it adds to the jumps of a period, as little as what a sensor is off from linear.
     u_jumps = LINEARITY * float(np.mean(np.abs(fit.jumps.dv))) / (ball.weighed.value * period)
@@ -220,7 +218,8 @@ def _assembled(
     quantities = {
         "f": base.f,
         "E": tuning.E,
-        "phase": Uncertain(base.phase.value + tuning.phase, base.phase.u),
+        # Known best in the middle of the record, stated for the start of the clock.
+        "phase": combined(base.phase.value + tuning.phase, base.phase.u, 2 * np.pi * base.f.u * base.fit.middle),
         "omega0": tuning.omega0,
         "lam": tuning.lam,
         "Omega": combined(
@@ -230,7 +229,7 @@ def _assembled(
         ),
         "A": combined(tuning.E.value / b.value, tuning.E.u / b.value, tuning.E.value / b.value * b.u / b.value),
         "mu": ball.weighed,
-        "mu_momentum": combined(ball.alone.mu.value, ball.alone.mu.u, ball.alone.mu.value * np.hypot(gain, U_JUMP)),
+        "mu_momentum": combined(ball.alone.mu.value, ball.alone.mu.u, ball.alone.mu.value * U_JUMP),
         "b": b,
         "friction": joint.friction,
         "tilt": combined(joint.tilt.value, joint.tilt.u, min(u_jumps, TILT.u)),
@@ -240,19 +239,19 @@ def _assembled(
         "r_exponent": Uncertain(law.exponent, law.u_exponent),
         "sigma_r": Uncertain(law.sigma_r, law.u_sigma_r),
         "impacts_per_period": mean_over_periods(
-            np.array([float(len(w)) for w in periods.words]), np.arange(complete), weights
+            np.array([float(len(w)) for w in periods.words]), np.arange(complete), complete
         ),
         "w_before": scaled(mean(speed, use)),
         "w_after": scaled(mean(np.abs(ball.motion.w_after), use)),
     }
     begin = (periods.cut + 2 * np.pi * (periods.first + np.arange(complete + 1)) - phase[0]) / omega + fit.jumps.t[0]
-    quantities |= _energies(response, ball, b, begin, weights)
+    quantities |= _energies(response, ball, begin)
     found = slots(periods, pattern, phase, side)
     if found is not None:
         first = np.exp(1j * found.phase[:, 0])
         angle = float(np.angle(first.mean()))
         away = np.angle(first * np.exp(-1j * angle))
-        spread = mean_over_periods(away, found.period, weights).u
+        spread = mean_over_periods(away, found.period, complete).u
         quantities["impact_phase"] = combined(
             (angle + periods.cut) % (2 * np.pi), spread, base.phase.u, omega * response.u_late
         )
@@ -274,43 +273,45 @@ def _assembled(
     )
 
 
-def _energies(response: Response, ball: Rebounds, b: Uncertain, begin: Floats, weights: Floats) -> dict[str, Uncertain]:
-    """Return max|x1| a period and K2/K1; `begin` are the limits of the periods on the channel's clock."""
-    motion, jumps = response.fit.motion, response.fit.jumps
+def _energies(response: Response, ball: Rebounds, begin: Floats) -> dict[str, Uncertain]:
+    """Return max|x1| a period and K2/K1; `begin` are the limits of the periods on the channel's clock.
+
+    Both are ratios of what one sensor sees, so that its gain falls out.
+    """
+    motion, jumps, seen = response.fit.motion, response.fit.jumps, ball.length()
     times, values = motion.peaks()
     period = np.searchsorted(begin, times, side="right") - 1
     count = len(begin) - 1
     top = np.zeros(count)
     inside = (period >= 0) & (period < count)
     np.maximum.at(top, period[inside], values[inside])
-    seen = top > 0
-    largest = mean_over_periods(top[seen], np.flatnonzero(seen), weights)
+    shown = top > 0
+    largest = mean_over_periods(top[shown], np.flatnonzero(shown), count)
     v1 = float(motion.mean_square_velocity(jumps.t[[0, -1]])[0])
     time = np.diff(jumps.t)
-    mean_v2 = np.diff(ball.motion.x2) / time
+    v2 = np.diff(ball.motion.x2) / time
     # Constant deceleration adds its own variance, (a dt)^2/12.
-    square = mean_v2**2 + (ball.joint.friction.value * time) ** 2 / 12
+    square = v2**2 + (ball.joint.friction.value * time) ** 2 / 12
     flight = np.clip(np.searchsorted(begin, jumps.t[:-1], side="right") - 1, 0, count - 1)
-    v2 = float(np.sum(square * time) / np.sum(time))
-    sums, lengths = np.bincount(flight, square * time, count), np.bincount(flight, time, count)
-    draws = (weights @ sums) / (weights @ lengths)
-    u_v2 = float(np.std(draws))
+    mean = float(np.average(square, weights=time))
+    away = np.bincount(flight, (square - mean) * time, count) / (mean * float(np.mean(np.diff(begin))))
     of_v1 = motion.mean_square_velocity(begin)
-    u_v1 = float(np.std(weights @ of_v1 / len(of_v1)))
-    ratio = ball.weighed.value * v2 / v1
-    gain = response.channel.u_gain
+    ratio = ball.weighed.value * mean / v1
+    # v2 is that of the walls, by b, and that of the oscillator at the impacts.
+    by_b = 2 * float(np.sum(v2 * (v2 - np.diff(jumps.x) / time) * time) / np.sum(square * time))
     return {
         "max_abs_x1": combined(
-            largest.value / b.value,
-            largest.u / b.value,
-            largest.value / b.value * gain,
-            largest.value * b.u / b.value**2,
+            largest.value / seen.value,
+            largest.u / seen.value,
+            largest.value * seen.u / seen.value**2,
         ),
         "kinetic_ratio": combined(
-            ratio, ratio * u_v2 / v2, ratio * u_v1 / v1, ratio * ball.weighed.u / ball.weighed.value,
-            2 * ratio * gain, 2 * ratio * b.u / b.value,
+            ratio,
+            ratio * standard_error(away - of_v1 / v1),
+            ratio * ball.weighed.u / ball.weighed.value,
+            ratio * by_b * seen.u / seen.value,
         ),
-    }  # fmt: skip
+    }
 
 
 def _rows(

@@ -14,7 +14,7 @@ from vines.rig._model import Predicted, reshaped
 from vines.rig._pattern import HOLDS
 from vines.rig._reconstruction import Reconstruction
 from vines.rig._recording import Uncertain
-from vines.rig._uncertainty import error_ratio, mean_over_periods, period_weights
+from vines.rig._uncertainty import error_ratio, mean_over_periods
 
 __all__ = ["VERDICTS", "Comparison", "Likeness", "decide", "likeness", "order"]
 
@@ -171,8 +171,7 @@ def _measured_phases(run: Reconstruction, found: Slots) -> list[Uncertain]:
     p = run.pattern.p
     mean = reshaped(run.pattern, found)
     away = np.angle(np.exp(1j * (found.phase - mean) / p)) * p
-    weights = period_weights(len(run.periods.words))
-    spread = [mean_over_periods(column, found.period, weights).u for column in away.T]
+    spread = [mean_over_periods(column, found.period, len(run.periods.words)).u for column in away.T]
     # The alignment of clocks, common to all places, is what the first place's uncertainty has beyond its spread.
     common = max(run.quantities["impact_phase"].u ** 2 - spread[0] ** 2, 0.0)
     return [Uncertain(float(m), float(np.hypot(u, np.sqrt(common)))) for m, u in zip(mean, spread, strict=True)]
