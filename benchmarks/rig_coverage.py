@@ -107,13 +107,14 @@ def memory(rig: Rig, rows: Floats) -> float:
     """Return after how many periods a run forgets, in parts of a record.
 
     That is by how much means over as many periods as a record has scatter more than those of independent periods: of
-    the impacts' number, of their speeds, and of left less right, which tells mirror images of a motion apart.
+    the impacts' number, of their speeds, of how far out they are, and of their mean place, which tells mirror images of a
+    motion apart.
     """
     number = np.floor((rows[:, T] - rows[0, T]) * rig.omega / (2 * np.pi)).astype(int)
     w = rows[:, V1] - rows[:, V2]
     length = int(LENGTH * rig.omega / (2 * np.pi))
     longest = 0.0
-    for values in (np.ones(len(rows)), np.abs(w), w):
+    for values in (np.ones(len(rows)), np.abs(w), rows[:, X1] ** 2, rows[:, X1]):
         series = np.bincount(number, values)[1:-1]
         windows = series[: len(series) // length * length].reshape(-1, length).mean(axis=1)
         if np.var(series) > 1e-12 * np.mean(series**2):

@@ -78,7 +78,7 @@ def test_uncertainty_between_and_beyond_two_ring_downs(temperature):
     rng, ratios = np.random.default_rng(4), []
     for _ in range(600):
         drift = rng.normal(STIFFNESS_DRIFT, U_STIFFNESS_DRIFT)
-        away = ((19.0, 0.1), (24.0, 0.1), (temperature, 0.0))
+        away = ((19.0, 0.1), (24.0, 0.1), (temperature, 0.1))
         true = [OMEGA0 * (1 + drift * (at + error * rng.normal() - 20)) for at, error in away]
         pair = tuple(
             RingDown("a", Uncertain(value, 1e-5), Uncertain(LAM, 1e-6), at, 0.0)

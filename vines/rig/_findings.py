@@ -11,7 +11,7 @@ from vines.rig._rebound import Rebounds
 from vines.rig._reconstruction import Finding
 from vines.rig._recording import Recording, Uncertain
 
-__all__ = ["MOST_RESIDUAL", "MOST_SILENT", "MOST_SUSPECT", "U_JUMP", "judge"]
+__all__ = ["MOST_RESIDUAL", "MOST_SILENT", "MOST_SUSPECT", "judge"]
 
 MOST_RESIDUAL = 1e-3
 """Most that the fit may leave beyond noise, relative to the rms of the motion: a missed impact leaves more."""
@@ -22,8 +22,8 @@ MOST_SUSPECT = 0.05
 MOST_SILENT = 0.5
 """Largest fraction of impacts that are too soft to tell a restitution: a mean over fewer is no mean of the run."""
 
-U_JUMP = 6e-3
-"""Relative standard uncertainty of velocity jumps by the linearity of a displacement sensor: differences of slopes."""
+_JUMPS = 6e-3
+"""How far momentum may be off by soft impacts and a sensor's linearity, relative: no contradiction yet."""
 
 _FAR = 4.5
 """Standard deviations beyond which two measurements of one number contradict each other."""
@@ -130,7 +130,7 @@ def _u_gain(recording: Recording, role: str) -> float:
 
 
 def _mass(alone: MomentumFit, mu: float) -> Finding:
-    u = float(np.hypot(alone.mu.u, alone.mu.value * U_JUMP))
+    u = float(np.hypot(alone.mu.u, alone.mu.value * _JUMPS))
     far = abs(alone.mu.value - mu) / u
     return Finding(
         "mass_ratio",

@@ -11,7 +11,7 @@ import numpy.typing as npt
 from vines.errors import RigError
 from vines.rig._ball import ball_motion
 from vines.rig._cycle import Track, slots
-from vines.rig._findings import U_JUMP, judge
+from vines.rig._findings import judge
 from vines.rig._forcing import Base, Tuning, measure_base, tune
 from vines.rig._jumps import fit_jumps
 from vines.rig._oscillator import Response, measure_response
@@ -229,7 +229,7 @@ def _assembled(
         ),
         "A": combined(tuning.E.value / b.value, tuning.E.u / b.value, tuning.E.value / b.value * b.u / b.value),
         "mu": ball.weighed,
-        "mu_momentum": combined(ball.alone.mu.value, ball.alone.mu.u, ball.alone.mu.value * U_JUMP),
+        "mu_momentum": combined(ball.alone.mu.value, ball.alone.mu.u, ball.alone.mu.value * LINEARITY),
         "b": b,
         "friction": joint.friction,
         "tilt": combined(joint.tilt.value, joint.tilt.u, min(u_jumps, TILT.u)),

@@ -133,7 +133,7 @@ def natural(ringdowns: tuple[RingDown, ...], temperature: float) -> tuple[Uncert
     >>> cold = RingDown("a", Uncertain(55.4, 1e-4), Uncertain(0.012, 1e-5), 20.0, 0.001)
     >>> omega0, lam = natural((cold,), 21.0)
     >>> round(omega0.value, 5), round(omega0.u, 5)
-    (55.39169, 0.00289)
+    (55.39169, 0.00301)
     """
     if not ringdowns:
         raise RigError("no ring-down is at hand; omega0 must be known to .01 %: record one before and after the sweep")
@@ -160,7 +160,9 @@ def natural(ringdowns: tuple[RingDown, ...], temperature: float) -> tuple[Uncert
     mean = float(np.sum(weights * moved) / np.sum(weights))
     shift = float(np.sum(weights * away) / np.sum(weights)) * mean * u_drift
     spread = float(np.sqrt(np.sum(weights * (moved - mean) ** 2) / np.sum(weights)))
-    u_mean = float(np.sqrt(1 / np.sum(1 / own**2) + shift**2 + (spread if len(at) > 1 else 0.0) ** 2))
+    # The run's own temperature is read no better than theirs.
+    read = _U_TEMPERATURE * drift * mean
+    u_mean = float(np.sqrt(1 / np.sum(1 / own**2) + shift**2 + read**2 + (spread if len(at) > 1 else 0.0) ** 2))
     by = 1 / u_lam**2
     lam_mean = float(np.sum(by * lam) / np.sum(by))
     # What is wrong with the sensor is wrong in every ring-down, so their number makes lam no better.
