@@ -107,8 +107,8 @@ def memory(rig: Rig, rows: Floats) -> float:
     """Return after how many periods a run forgets, in parts of a record.
 
     That is by how much means over as many periods as a record has scatter more than those of independent periods: of
-    the impacts' number, of their speeds, of how far out they are, and of their mean place, which tells mirror images of a
-    motion apart.
+    the impacts' number, of their speeds, of how far out they are, and of their mean place, which tells mirror images of
+    a motion apart.
     """
     number = np.floor((rows[:, T] - rows[0, T]) * rig.omega / (2 * np.pi)).astype(int)
     w = rows[:, V1] - rows[:, V2]
