@@ -14,7 +14,6 @@ from vines.rig._jumps import JumpFit
 from vines.rig._linearity import straight
 from vines.rig._recording import Sampled
 from vines.rig._sine_fit import sine_fit
-from vines.rig._slide import Push
 from vines.rig._split import split_flights
 
 __all__ = ["SIGMAS", "U_PULSE", "Detected", "detect", "inside", "threshold"]
@@ -31,7 +30,12 @@ _FAR_OFF = 1e-3
 """Standard uncertainty of the times beside a flight that is not one [s]."""
 
 _ALIKE = 0.05
-"""By how much, in parts of a jump, a pulse may differ that has nothing beside it."""
+"""By how much, in parts of a jump, a pulse may differ that has nothing beside it: more moves it by 50 us and more."""
+
+_WARMS = 3e-5
+"""Relative standard uncertainty of omega0 at any time of the record: a fifth of a kelvin."""
+
+_PASSES = 2
 
 SIGMAS = 8.0
 """What stands out of noise."""
@@ -118,24 +122,21 @@ def detect(fitter: Fitter, channel: Sampled, sensor: Sampled) -> Detected:
     real = _real(fit, dv, heard)
     candidates = len(times)
     times, dv, u = times[real], dv[real], u[real]
-    times, dv, u = _with_silent(fitter, times, dv, u, delay)
     drift = u_delay = 0.0
-    pushed = None
-    if both and len(times) > 5:
-        again, pushed = fitter.fit_rubbed(times + delay, np.maximum(u, _LOOSE), dv)
-        lost = ~(again.fair[:-1] & again.fair[1:])
-        if lost.any():
-            # A knock beside an impact makes one pulse of both, as far off as a millisecond.
-            wide = np.where(lost, _FAR_OFF, np.maximum(u, _LOOSE))
-            again = fitter.fit(times + delay, wide, _sized(dv, lost), pushed=pushed)
-        u = np.where(_misheard(again, dv), 3 * _LOOSE, u)
-        seen = _mean_shift(again)
-        drift = seen[2]
-        shift, u_delay = _shrunk((delay + seen[0], seen[1]), known)
-        unheard = u > U_PULSE
-        times, dv = np.where(unheard, again.jumps.t - shift, times), np.where(unheard, again.jumps.dv, dv)
-        delay = shift
-    times = _settled(fitter, times, dv, u, delay, pushed)
+    for _ in range(_PASSES):
+        if both and len(times) > 5:
+            times, dv, u, seen = _checked(fitter, times, dv, u, delay)
+            drift = seen[2]
+            shift, u_delay = _shrunk((delay + seen[0], seen[1]), known)
+            times = np.where(u > U_PULSE, times + delay - shift, times)
+            delay = shift
+            ahead = np.argsort(times, kind="stable")
+            times, dv, u = inside(bins, times[ahead], dv[ahead], u[ahead])
+        count = len(times)
+        times, dv, u = _with_silent(fitter, times, dv, u, delay)
+        if len(times) == count:
+            break
+    times = _settled(fitter, times, dv, u, delay)
     ahead = np.argsort(times, kind="stable")
     times, dv, u = inside(bins, times[ahead], dv[ahead], u[ahead])
     return Detected(times, dv, u, candidates, delay, u_delay, drift, gain)
@@ -266,17 +267,36 @@ def inside(bins: Bins, times: Floats, dv: Floats, u: Floats) -> tuple[Floats, Fl
     return times[keep], dv[keep], u[keep]
 
 
+def _checked(
+    fitter: Fitter, times: Floats, dv: Floats, u: Floats, delay: float
+) -> tuple[Floats, Floats, Floats, tuple[float, float, float]]:
+    """Let go of the times that pulses got wrong, and return the mean shift of the others as of `_mean_shift`."""
+    loose = np.maximum(u, _LOOSE)
+    fit, pushed = fitter.fit_rubbed(times + delay, loose, dv)
+    lost = ~(fit.fair[:-1] & fit.fair[1:])
+    if lost.any():
+        # A knock beside an impact makes one pulse of both, as far off as a millisecond.
+        fit = fitter.fit(times + delay, np.where(lost, _FAR_OFF, loose), _sized(dv, lost), pushed=pushed)
+    u = np.where(_misheard(fit, dv), 3 * _LOOSE, u)
+    free = u > U_PULSE
+    times, dv = np.where(free, fit.jumps.t - delay, times), np.where(free, fit.jumps.dv, dv)
+    return times, dv, u, _mean_shift(fit)
+
+
 def _misheard(fit: JumpFit, pulse: Floats) -> npt.NDArray[np.bool_]:
     """Say which pulses are not those of their impacts but of what rings after one that the sensor missed, or of both.
 
-    A pulse of the right size came at the right time, whatever a long flight says, which small errors of omega0 bend.
+    Not more is asked of a flight than omega0 is known to within the record, which bends long ones.
     """
     middle = float(np.median(fit.shift))
-    u_shift = np.hypot(fit.draws.t.std(axis=0), U_PULSE)
+    motion, dv = fit.motion, np.abs(fit.jumps.dv)
+    length = np.diff(np.append(motion.starts, motion.stop))
+    bent = _WARMS * abs(motion.s) * length * np.abs(motion.z)
+    u_gap = np.hypot(bent[:-1], bent[1:])
+    u_shift = np.sqrt(fit.draws.t.var(axis=0) + U_PULSE**2 + (u_gap / np.maximum(dv, 1e-6)) ** 2)
     late = np.abs(fit.shift - middle) > KEEP * u_shift
-    dv = np.abs(fit.jumps.dv)
-    apart = np.abs(fit.jumps.dv - pulse) - KEEP * fit.u_dv
-    return ((late & (apart > _ALIKE * dv)) | (apart > 0.3 * dv)) & (dv > KEEP * fit.u_dv)
+    other = np.abs(fit.jumps.dv - pulse) > _ALIKE * dv + KEEP * fit.u_dv
+    return (late | other) & (dv > KEEP * fit.u_dv)
 
 
 def _sized(dv: Floats, unsure: npt.NDArray[np.bool_]) -> Floats:
@@ -284,11 +304,14 @@ def _sized(dv: Floats, unsure: npt.NDArray[np.bool_]) -> Floats:
     return np.where(unsure, np.maximum(np.abs(dv), np.median(np.abs(dv))), dv)
 
 
-def _settled(fitter: Fitter, times: Floats, dv: Floats, u: Floats, delay: float, pushed: Push | None) -> Floats:
+def _settled(fitter: Fitter, times: Floats, dv: Floats, u: Floats, delay: float) -> Floats:
     """Move the impacts that only the displacement shows until they come to rest: a far step is not a small one."""
     unheard = u > U_PULSE
+    if not unheard.any():
+        return times
+    _, pushed = fitter.fit_rubbed(times + delay, u, dv, 0)
     for _ in range(_MOVES):
-        if not unheard.any() or np.any(np.diff(times) <= 0):
+        if np.any(np.diff(times) <= 0):
             break
         shift = fitter.fit(times + delay, u, dv, draws=0, pushed=pushed).shift
         times = np.where(unheard, times + shift, times)
