@@ -18,6 +18,9 @@ Floats = npt.NDArray[np.float64]
 _GRID = 1e-3
 """Distance of the times at which an impact is tried [s]."""
 
+_COARSE = 4
+"""First in steps so many times as long: what is left changes within some ten milliseconds."""
+
 _BETTER = 0.2
 """Largest part of the residual that may be left if a flight is split."""
 
@@ -70,14 +73,18 @@ def _kink(bins: Bins, fit: JumpFit, order: int, t: Floats, start: float) -> tupl
     free = bins.response(s) * s**order * np.exp(s * (t - start))
     two = np.stack([free.real, -free.imag], axis=1)
     alone = float(np.sum((y - two @ np.linalg.lstsq(two, y, rcond=None)[0]) ** 2))
-    best = (np.inf, 0.0, 0.0)
-    for tau in np.arange(t[_LEAST // 2], t[-_LEAST // 2], _GRID):
+
+    def tried(tau: float) -> tuple[float, float, float]:
         after = np.where(t > tau, (s**order * np.exp(s * (t - tau))).imag / s.imag, 0.0)
         # Around the impact itself the smoothed signal is neither.
         fair = np.abs(t - tau) > 4.5 * bins.smooth + bins.width
         columns = np.column_stack([two, after])[fair]
         linear = np.linalg.lstsq(columns, y[fair], rcond=None)[0]
         left = float(np.sum((y[fair] - columns @ linear) ** 2)) * len(t) / max(np.count_nonzero(fair), 1)
-        if left < best[0]:
-            best = (left, float(tau), float(linear[2]))
-    return (best[1], best[2]) if best[0] < _BETTER**2 * alone else None
+        return left, tau, float(linear[2])
+
+    low, high = t[_LEAST // 2], t[-_LEAST // 2]
+    best = min(map(tried, np.arange(low, high, _COARSE * _GRID)), default=(np.inf, 0.0, 0.0))
+    near = best[1] + _GRID * np.arange(1 - _COARSE, _COARSE)
+    best = min([best, *map(tried, near[(near >= low) & (near < high)])])
+    return (float(best[1]), best[2]) if best[0] < _BETTER**2 * alone else None
