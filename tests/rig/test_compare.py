@@ -6,39 +6,16 @@ import msgspec
 import numpy as np
 import pytest
 
+from tests.rig.conftest import DWELL
 from vines.errors import RigError
 from vines.model import Params, Word
-from vines.rig import Finding, compare, reconstruct, ring_down
-from vines.rig._compare import Calibration, calibrate
+from vines.rig import Finding, compare, reconstruct
 from vines.rig._match import candidates, same_pattern
 from vines.rig._pattern import cut_into_periods, find_pattern
 from vines.rig._recording import Uncertain
 from vines.rig._run_form import Stated
 from vines.rig._uncertainty import error_ratio
-from vines.rig.synth import RigSettings, raw_run, read_raw, simulate_rig
-
-DWELL = RigSettings(duration=12.0, settle=30.0, sigma_r=0.01)
-
-
-@pytest.fixture(scope="module")
-def ringdown():
-    """Return omega0 and lam as ten seconds without the ball give them."""
-    settings = RigSettings(
-        run_id="free", protocol="ringdown", ball=False, E=0.0, duration=10.0, settle=0.0, start=(0.004, 0.0, 0.0, 0.0)
-    )
-    return ring_down(simulate_rig(settings, 1)[0])
-
-
-@pytest.fixture(scope="module")
-def raw():
-    """Return a raw run of twelve seconds, not to be changed."""
-    return raw_run(DWELL, 7)
-
-
-@pytest.fixture(scope="module")
-def dwell(raw, ringdown):
-    """Return it reconstructed."""
-    return reconstruct(read_raw(raw), [ringdown])
+from vines.rig.synth import raw_run, read_raw
 
 
 @pytest.fixture(scope="module")
@@ -133,20 +110,6 @@ def test_a_long_word_is_followed_from_the_catalogue():
     assert (first.name, first.branch_id, first.source) == ("2:2/2T", "b1", "catalogue")
     assert first.orbit is not None
     assert np.allclose(np.sort(first.orbit.t), np.sort(doubled.t), atol=1e-8)
-
-
-def test_calibration_finds_a_gain_that_is_wrong(told):
-    off = told.params.replace(A=told.params.A * 1.02)
-    quantities = dict(told.run.quantities)
-    quantities["A"] = Uncertain(off.A, quantities["A"].u)
-    wrong = compare(replace(told.run, quantities=quantities))
-    found = calibrate([wrong])
-    assert found.runs == ("synthetic",)
-    # Omega and r may be moved, too, and make part of the correction.
-    right = compare(wrong.run, calibration=found)
-    assert right.basis == "calibrated"
-    assert max(right.branches[0].errors.values()) < max(wrong.branches[0].errors.values())
-    assert Calibration().on(off) == off
 
 
 def test_e_n_is_half_the_distance_in_combined_uncertainties():

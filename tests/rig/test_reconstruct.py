@@ -4,29 +4,8 @@ import numpy as np
 import pytest
 
 from vines.errors import RigError
-from vines.rig import reconstruct, ring_down
-from vines.rig.synth import RigSettings, simulate_rig
-
-
-@pytest.fixture(scope="module")
-def ringdown():
-    """Return omega0 and lam as ten seconds without the ball give them."""
-    settings = RigSettings(
-        run_id="free", protocol="ringdown", ball=False, E=0.0, duration=10.0, settle=0.0, start=(0.004, 0.0, 0.0, 0.0)
-    )
-    return ring_down(simulate_rig(settings, 1)[0])
-
-
-@pytest.fixture(scope="module")
-def recorded():
-    """Return a recorded run of twelve seconds and its truth."""
-    return simulate_rig(RigSettings(duration=12.0, settle=30.0, sigma_r=0.01), 7)
-
-
-@pytest.fixture(scope="module")
-def dwell(recorded, ringdown):
-    """Return it reconstructed, and its truth."""
-    return reconstruct(recorded[0], [ringdown]), recorded[1]
+from vines.rig import reconstruct
+from vines.rig.synth import RigSettings, read_raw, simulate_rig
 
 
 def test_a_ring_down_gives_omega0_to_a_part_in_ten_thousand_and_lam(ringdown):
@@ -34,8 +13,8 @@ def test_a_ring_down_gives_omega0_to_a_part_in_ten_thousand_and_lam(ringdown):
     assert ringdown.lam.value == pytest.approx(2.53 / np.sqrt(11680.0 * 3.807), rel=1e-3)
 
 
-def test_restitution_its_scatter_and_the_mass_ratio_come_within_the_targets(dwell):
-    found, truth = dwell
+def test_restitution_its_scatter_and_the_mass_ratio_come_within_the_targets(dwell, raw):
+    found, truth = dwell, raw.truth
     assert found.accepted, found.reasons
     assert found.quantities["r"].value == pytest.approx(truth["settings"]["r"], abs=0.005)
     assert found.quantities["sigma_r"].value == pytest.approx(truth["settings"]["sigma_r"], rel=0.2)
@@ -43,8 +22,8 @@ def test_restitution_its_scatter_and_the_mass_ratio_come_within_the_targets(dwel
     assert found.quantities["mu_momentum"].value == pytest.approx(0.032 / 3.807, rel=0.01)
 
 
-def test_impacts_are_found_where_they_were(dwell):
-    found, truth = dwell
+def test_impacts_are_found_where_they_were(dwell, raw):
+    found, truth = dwell, raw.truth
     true = np.array(truth["impacts"]["t"])
     true = true[(true > found.impacts["t"][0] - 1e-3) & (true < found.impacts["t"][-1] + 1e-3)]
     assert len(true) == len(found.impacts)
@@ -53,8 +32,7 @@ def test_impacts_are_found_where_they_were(dwell):
 
 
 def test_the_pattern_of_a_dwell_on_1_to_1_is_1_to_1(dwell):
-    found, _ = dwell
-    assert (found.pattern.name, found.pattern.p, found.pattern.fraction) == ("1:1", 1, 1.0)
+    assert (dwell.pattern.name, dwell.pattern.p, dwell.pattern.fraction) == ("1:1", 1, 1.0)
 
 
 def test_a_ring_down_is_not_reconstructed(ringdown):
@@ -63,11 +41,10 @@ def test_a_ring_down_is_not_reconstructed(ringdown):
         reconstruct(simulate_rig(settings, 2)[0], [ringdown])
 
 
-def test_a_run_of_which_a_tenth_of_the_impacts_was_not_seen_is_not_accepted(dwell, recorded, ringdown):
-    found, _ = dwell
-    kept = np.random.default_rng(3).random(len(found.impacts)) > 0.1
-    seen = found.impacts[kept]
-    again = reconstruct(recorded[0], [ringdown], impacts=(seen["t"], seen["v1_after"] - seen["v1"]))
+def test_a_run_of_which_a_tenth_of_the_impacts_was_not_seen_is_not_accepted(dwell, raw, ringdown):
+    kept = np.random.default_rng(3).random(len(dwell.impacts)) > 0.1
+    seen = dwell.impacts[kept]
+    again = reconstruct(read_raw(raw), [ringdown], impacts=(seen["t"], seen["v1_after"] - seen["v1"]))
     assert not again.accepted
     assert "suspect_impacts" in {finding.name for finding in again.findings if not finding.passed}
 
