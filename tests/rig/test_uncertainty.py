@@ -11,7 +11,7 @@ from vines.rig._uncertainty import block_length, mean_over_periods, standard_err
 
 def autoregression(rng, n, rho):
     """Return x_k = rho x_(k-1) + normal noise; its mean has the standard error 1/((1 - rho) sqrt n)."""
-    return lfilter([1.0], [1.0, -rho], rng.normal(size=n + 400))[400:]
+    return np.asarray(lfilter([1.0], [1.0, -rho], rng.normal(size=n + 400)))[400:]
 
 
 @pytest.mark.parametrize("rho", [0.5, 0.8, -0.5])
@@ -46,7 +46,7 @@ def test_intervals_of_a_record_of_a_minute_hold_the_mean(rho, least):
 
 
 def test_a_weighted_mean_over_uneven_periods_has_the_error_of_a_ratio():
-    # Two values in even periods, one in odd ones, weighted: against 4000 records of the same kind.
+    # Two values in even periods, one in odd ones, weighted: against 1000 records of the same kind.
     rng = np.random.default_rng(6)
     period = np.repeat(np.arange(200), np.where(np.arange(200) % 2, 1, 2))
     means, stated = [], []
