@@ -45,6 +45,9 @@ Floats = npt.NDArray[np.float64]
 SETTLE, LONG = 200, 10_000
 """Forcing periods: before the record, and of the long run that stands for the truth."""
 
+SLOW = 0.05
+"""A record of a run that forgets more slowly holds less than twenty independent stretches of it, which tell no mean."""
+
 SHORT = 2e-3
 """Flights below this are chatter [s]: no restitution is taken beside one, in the record as in the long run."""
 
@@ -61,6 +64,8 @@ class Outcome:
     pattern : str
     found, u, true : dict
         Estimates, standard uncertainties and true values by quantity.
+    slow : float
+        See `memory`.
     """
 
     seed: int
@@ -88,6 +93,9 @@ def one(seed: int) -> Outcome:
         return Outcome(seed, "no impacts")
     if np.mean(np.diff(after[:, T]) < SHORT) > 1e-3:
         return Outcome(seed, "chatter, of which no mean is taken")
+    slow = memory(rig, after)
+    if slow > SLOW:
+        return Outcome(seed, "hops between coexisting motions or wanders: a record tells no mean", slow=slow)
     recording, free, impacts = recorded(rig, run, begin, rng)
     try:
         found = reconstruct(recording, free, impacts=impacts)
@@ -99,7 +107,7 @@ def one(seed: int) -> Outcome:
     got = {n: found.quantities[n] for n in true if n in found.quantities and 0 < found.quantities[n].u < np.inf}
     return Outcome(
         seed, "", found.pattern.name, {n: q.value for n, q in got.items()}, {n: q.u for n, q in got.items()},
-        {n: true[n] for n in got}, memory(rig, after),
+        {n: true[n] for n in got}, slow,
     )  # fmt: skip
 
 

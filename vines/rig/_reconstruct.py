@@ -214,6 +214,8 @@ def _assembled(
     period = 2 * np.pi / base.fit.omega
     # Momentum sees a tilt by what it adds to the jumps of a period, as little as what a sensor is off from linear.
     u_jumps = LINEARITY * float(np.mean(np.abs(fit.jumps.dv))) / (ball.weighed.value * period)
+    # That counts by the share that momentum has beside what was stated.
+    share = 1 - min(joint.tilt.u / stated(run.more.get("tilt"), TILT).u, 1.0) ** 2
     omega = base.fit.omega
     quantities = {
         "f": base.f,
@@ -232,7 +234,7 @@ def _assembled(
         "mu_momentum": combined(ball.alone.mu.value, ball.alone.mu.u, ball.alone.mu.value * LINEARITY),
         "b": b,
         "friction": joint.friction,
-        "tilt": combined(joint.tilt.value, joint.tilt.u, min(u_jumps, TILT.u)),
+        "tilt": combined(joint.tilt.value, joint.tilt.u, share * min(u_jumps, TILT.u)),
         "r": r,
         "r_mean": r_mean,
         "r_effective": r_effective,

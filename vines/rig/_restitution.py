@@ -19,7 +19,7 @@ _VARIED = 0.05
 _TOLD = 2.0
 """Least standard deviation of log speed, relative to the noise, at which the scatter is freed from the speed's part."""
 
-_UNEVEN = 3e-3
+_UNEVEN = 2e-3
 """Standard uncertainty of the restitution of slow impacts against that of fast ones, by the sensor's linearity."""
 
 
