@@ -27,6 +27,9 @@ Floats = npt.NDArray[np.float64]
 _DISTRUST = 1e-4
 """Weight of the samples of a flight that is not one."""
 
+_WIDEST = 2e-3
+"""No more is left out beside an impact [s]."""
+
 TAIL = 4.5
 """How far the pulse of an impact reaches into a smoothed acceleration, in standard deviations of the smoothing."""
 
@@ -168,13 +171,15 @@ def fit_jumps(
         If the record holds too few samples for so many impacts.
     """
     more = (np.zeros((0, len(bins.t))), np.zeros(0)) if extra is None else extra
-    problem = _Problem(bins, s, omega, np.asarray(times, float), order, harmonics, guard, more)
+    u_times = np.broadcast_to(np.asarray(u_times, float), np.shape(times))
+    # Samples on the wrong side of an impact whose time is not known belong to the other flight.
+    guards = np.maximum(guard, np.minimum(2 * u_times, _WIDEST)) if order == 0 else np.full(len(u_times), guard)
+    problem = _Problem(bins, s, omega, np.asarray(times, float), order, harmonics, guards, more)
     problem.forced_known = forced
     if pushed is not None:
         problem.push(pushed)
     if fair is not None:
         problem.trust(fair)
-    u_times = np.broadcast_to(np.asarray(u_times, float), problem.times.shape)
     noise = max(noise_of(bins), 1e-15)
     scale = noise
     # Sizes are given, never those of the fit: a jump fitted too small would tighten its own condition and run away.
@@ -266,7 +271,7 @@ class _Problem:
         times: Floats,
         order: int,
         harmonics: int,
-        guard: float,
+        guard: Floats,
         extra: tuple[Floats, Floats],
     ) -> None:
         self.s, self.omega, self.order, self.harmonics = s, omega, order, harmonics
