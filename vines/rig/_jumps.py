@@ -24,6 +24,9 @@ __all__ = ["TAIL", "JumpFit", "Jumps", "fit_jumps", "noise_of"]
 
 Floats = npt.NDArray[np.float64]
 
+_SWAP = 1e-3
+"""Relative step of the forced response."""
+
 _DISTRUST = 1e-4
 """Weight of the samples of a flight that is not one."""
 
@@ -56,6 +59,24 @@ class Jumps:
         """Velocity jumps [m/s]."""
         return self.v_after - self.v_before
 
+    def less(self, other: Jumps, step: float) -> Jumps:
+        """Return the difference from another set over a step."""
+        return Jumps(
+            (self.t - other.t) / step,
+            (self.x - other.x) / step,
+            (self.v_before - other.v_before) / step,
+            (self.v_after - other.v_after) / step,
+        )
+
+    def moved(self, slopes: Jumps, by: tuple[float, ...]) -> Jumps:
+        """Return the jumps after steps along derivatives, of shape (n, K) for n steps."""
+        return Jumps(
+            self.t + np.tensordot(by, slopes.t, 1),
+            self.x + np.tensordot(by, slopes.x, 1),
+            self.v_before + np.tensordot(by, slopes.v_before, 1),
+            self.v_after + np.tensordot(by, slopes.v_after, 1),
+        )
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class JumpFit:
@@ -71,6 +92,9 @@ class JumpFit:
         The same, drawn from the distribution that noise of the signal leaves for them; shape (draws, K).
     first : ndarray of complex, shape (draws,)
         Draws of the first harmonic of the forced response [m].
+    swap : Jumps
+        Derivative of the jumps by a relative change of that harmonic, real and imaginary, shape (2, K): a train of
+        jumps and a forced response are so much alike that what a sensor adds may swap one for the other.
     shift : ndarray, shape (K,)
         Refined less given time [s], where the given time's own uncertainty allows it.
     u_dv : ndarray, shape (K,)
@@ -94,6 +118,7 @@ class JumpFit:
     jumps: Jumps
     draws: Jumps
     first: npt.NDArray[np.complex128]
+    swap: Jumps
     shift: Floats
     u_dv: Floats
     residual: float
@@ -206,12 +231,29 @@ def fit_jumps(
         other = problem.motion(z + noise_z - border @ move, linear + move)
         drawn.append(_read(other, problem.pushed, problem.fair)[0])
         first.append(other.c[0])
-    together = Jumps(*(np.array([getattr(one, name) for one in drawn]) for name in ("t", "x", "v_before", "v_after")))
+    together = _stacked(drawn)
+    swapped = []
+    for turn in (1.0, 1j):
+        move = _SWAP * turn * motion.c[0]
+        fixed = np.array([move.real, move.imag])
+        change = np.concatenate([fixed, -np.linalg.solve(schur[2:, 2:], schur[2:, :2] @ fixed)])
+        other = problem.motion(z - border @ change, linear + change)
+        moved = _read(other, problem.pushed, problem.fair)[0]
+        # The times are those that the impacts were heard at.
+        late, turning = moved.t - jumps.t, 0.5 * (motion.before(2) + motion.after(2))
+        moved = Jumps(
+            jumps.t,
+            moved.x - 0.5 * (jumps.v_before + jumps.v_after) * late,
+            moved.v_before - turning * late,
+            moved.v_after - turning * late,
+        )
+        swapped.append(moved.less(jumps, _SWAP))
     return JumpFit(
         motion,
         jumps,
         together,
         np.array(first),
+        _stacked(swapped),
         shift,
         together.dv.std(axis=0) if draws else np.zeros(len(shift)),
         float(np.sqrt(np.mean(trusted**2))),
@@ -223,6 +265,10 @@ def fit_jumps(
         linear[2 * harmonics + 1 :],
         float(linear[2 * harmonics]),
     )
+
+
+def _stacked(several: list[Jumps]) -> Jumps:
+    return Jumps(*(np.array([getattr(one, name) for one in several]) for name in ("t", "x", "v_before", "v_after")))
 
 
 def _read(motion: Motion, pushed: Push, fair: npt.NDArray[np.bool_]) -> tuple[Jumps, Floats]:

@@ -16,11 +16,15 @@ __all__ = ["MomentumFit", "fit_momentum"]
 
 Floats = npt.NDArray[np.float64]
 
-_NAMES = ("mu", "b", "tilt", "touch", "skew", "bow")
+_NAMES = ("mu", "b", "tilt", "touch", "skew", "bow", "swap", "turn")
 _FAR = 5.0
 
 _SKEW = 2e-3
 """How much the gain of the oscillator's sensor may differ along its motion: slope and curvature, of half the range."""
+
+
+_SWAPPED = 4e-3
+"""How much of the forced response a sensor's linearity may swap for jumps that repeat, relative to it."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -31,8 +35,10 @@ class MomentumFit:
     ----------
     mu, b, friction, tilt, touch : Uncertain
         [1], [m], [m/s^2], [m/s^2], [s].
-    covariance : ndarray, shape (6, 6)
-        Of mu, b, tilt, touch and the sensor's slope and curvature.
+    swapped : tuple of float
+        Share of the forced response that was swapped for jumps, real and imaginary part.
+    covariance : ndarray, shape (8, 8)
+        Of mu, b, tilt, touch, the sensor's slope and curvature, and `swapped`.
     misfit, u : ndarray, shape (K - 2,)
         (dv1 + mu dv2)/u at each impact that has two flights, and u [m/s]; large where an impact near it is missed or
         false.
@@ -45,6 +51,7 @@ class MomentumFit:
     friction: Uncertain
     tilt: Uncertain
     touch: Uncertain
+    swapped: tuple[float, float]
     covariance: Floats
     misfit: Floats
     u: Floats
@@ -73,6 +80,7 @@ def fit_momentum(
     friction: Uncertain,
     tilt: Uncertain,
     usable: npt.NDArray[np.bool_] | None = None,
+    swap: Jumps | None = None,
 ) -> MomentumFit:
     """Solve dv1 = -mu (v2_after - v2_before) for mu, b, tilt and touch, with what is known of them beforehand.
 
@@ -93,17 +101,25 @@ def fit_momentum(
         before, so that it is taken as given.
     usable : ndarray of bool, shape (K - 2,), optional
         Impacts to use at most.
+    swap : Jumps, optional
+        As of `JumpFit`; without it jumps and forced response are taken as they were fitted.
 
     Notes
     -----
     Gauss–Newton on the weighted residuals and on the differences from what is known; residuals beyond five times
     their spread are set aside. With sides that only alternate mu and b are nearly degenerate (mu ~ 1/b), so one of
     them must be known: mu weighed gives b, b gauged gives mu. A sensor that is not quite linear has another gain where
-    the ball hits one end than where it hits the other; unaccounted for, that would look like a tilt.
+    the ball hits one end than where it hits the other; unaccounted for, that would look like a tilt. And it swaps a
+    part of the forced response for jumps that repeat: momentum tells how much where impacts are of several kinds.
     """
     value = {"mu": 0.01, "b": b.value, "friction": friction.value, "tilt": tilt.value, "touch": touch.value}
-    value |= {"skew": 0.0, "bow": 0.0}
+    value |= {"skew": 0.0, "bow": 0.0, "swap": 0.0, "turn": 0.0}
     known = {"b": b, "tilt": tilt, "touch": touch, "skew": Uncertain(0.0, _SKEW), "bow": Uncertain(0.0, _SKEW)}
+    known |= {name: Uncertain(0.0, _SWAPPED) for name in ("swap", "turn")}
+
+    def residual(of: Jumps, at: dict[str, float]) -> Floats:
+        return _residual(of if swap is None else of.moved(swap, (at["swap"], at["turn"])), side, at, course)
+
     if mu is not None:
         known["mu"] = mu
     usable = np.ones(len(side) - 2, bool) if usable is None else usable
@@ -115,20 +131,20 @@ def fit_momentum(
         value["mu"] = guess if np.isfinite(guess) and guess != 0 else 0.01
     else:
         value["mu"] = mu.value
-    step = {"mu": 1e-4 * value["mu"], "b": 1e-4 * b.value, "tilt": 1e-3, "touch": 1e-6, "skew": 1e-4, "bow": 1e-4}
+    step = {"mu": 1e-4 * value["mu"], "b": 1e-4 * b.value, "tilt": 1e-3, "touch": 1e-6}
+    step |= dict.fromkeys(("skew", "bow", "swap", "turn"), 1e-4)
     good = usable.copy()
     covariance = np.eye(len(_NAMES))
     u: Any = 1.0
     for _ in range(8):
-        base = _residual(jumps, side, value, course)
-        noise = _residual(draws, side, value, course)
+        base = residual(jumps, value)
+        noise = residual(draws, value)
         u = np.sqrt(np.mean((noise - base) ** 2, axis=0) + (2e-4 * np.abs(jumps.dv[1:-1])) ** 2 + 1e-12)
         scaled = base / u
         spread = max(1.0, float(np.median(np.abs(scaled[good])) / 0.6745)) if good.any() else 1.0
         good = usable & (np.abs(scaled) < _FAR * spread)
         slope = np.stack(
-            [(_residual(jumps, side, value | {n: value[n] + step[n]}, course) - base) / step[n] / u for n in _NAMES],
-            axis=1,
+            [(residual(jumps, value | {n: value[n] + step[n]}) - base) / step[n] / u for n in _NAMES], axis=1
         )[good]
         normal = slope.T @ slope / spread**2
         right = -slope.T @ scaled[good] / spread**2
@@ -143,11 +159,12 @@ def fit_momentum(
             value[name] += float(change[i])
         if np.all(np.abs(change) < 1e-4 * np.sqrt(np.diag(covariance))):
             break
-    base = _residual(jumps, side, value, course) / u
+    base = residual(jumps, value) / u
     found = {name: Uncertain(value[name], float(np.sqrt(covariance[i, i]))) for i, name in enumerate(_NAMES)}
     return MomentumFit(
-        found["mu"], found["b"], friction, found["tilt"], found["touch"], covariance, misfit=base, u=u, good=good
-    )
+        found["mu"], found["b"], friction, found["tilt"], found["touch"], (value["swap"], value["turn"]), covariance,
+        misfit=base, u=u, good=good,
+    )  # fmt: skip
 
 
 def _residual(jumps: Jumps, side: Floats, value: dict[str, float], course: Course) -> Floats:

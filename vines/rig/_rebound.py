@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -56,6 +57,8 @@ class Rebounds:
         With mu by momentum only, and with mu as weighed.
     course : Course
         How the ball slides and how deep it goes into the walls.
+    jumps : Jumps
+        Of the oscillator, after `MomentumFit.swapped`.
     motion : BallMotion
     u_r : ndarray
         Standard uncertainty of each r by the noise of the signal.
@@ -79,6 +82,7 @@ class Rebounds:
     alone: MomentumFit
     joint: MomentumFit
     course: Course
+    jumps: Jumps
     motion: BallMotion
     u_r: Floats
     long: npt.NDArray[np.bool_]
@@ -146,12 +150,13 @@ def measure_rebounds(recording: Recording, response: Response, side: Floats) -> 
     alone, joint = (
         fit_momentum(
             fit.jumps, fit.draws, side, course,
-            mu=given, b=b, touch=_CENTROID, friction=friction, tilt=tilt, usable=long,
+            mu=given, b=b, touch=_CENTROID, friction=friction, tilt=tilt, usable=long, swap=fit.swap,
         )
         for given in (None, known)
     )  # fmt: skip
-    motion = ball_motion(fit.jumps, side, joint.cavity, course)
-    noise = ball_motion(fit.draws, side, joint.cavity, course)
+    jumps = fit.jumps.moved(fit.swap, joint.swapped)
+    motion = ball_motion(jumps, side, joint.cavity, course)
+    noise = ball_motion(fit.draws.moved(fit.swap, joint.swapped), side, joint.cavity, course)
     with np.errstate(invalid="ignore"):
         u_r = np.sqrt(np.nanmean((noise.r - motion.r) ** 2, axis=0))
     u_before, u_after = noise.w_before.std(axis=0), noise.w_after.std(axis=0)
@@ -171,7 +176,7 @@ def measure_rebounds(recording: Recording, response: Response, side: Floats) -> 
     counted = counted | measured
     gauge = combined(b.value + speed * _CENTROID.value, max(run.b.u, 1e-6), speed * _CENTROID.u)
     return Rebounds(
-        alone, joint, course, motion, u_r, long, contradicts, counted, measured, law, weighed, gauge, u_gain
+        alone, joint, course, jumps, motion, u_r, long, contradicts, counted, measured, law, weighed, gauge, u_gain
     )  # fmt: skip
 
 
@@ -217,12 +222,14 @@ def mean_restitution(motion: BallMotion, which: npt.NDArray[np.bool_]) -> float:
     return -float(np.sum((motion.w_after * motion.side)[which]) / np.sum((motion.w_before * motion.side)[which]))
 
 
-def uncalibrated(found: Rebounds, response: Response, side: Floats) -> dict[str, float]:
-    """Return what calibrations and the cavity leave open of the mean restitution, by their cause."""
-    cavity, joint, jumps = found.joint.cavity, found.joint, response.fit.jumps
+def uncalibrated(
+    found: Rebounds, response: Response, side: Floats, what: Callable[[BallMotion], float]
+) -> dict[str, float]:
+    """Return what calibrations and the cavity leave open of a number of the ball's motion, by their cause."""
+    cavity, joint, jumps, swap = found.joint.cavity, found.joint, found.jumps, response.fit.swap
 
     def mean(moved: Jumps, within: Cavity) -> float:
-        return mean_restitution(ball_motion(moved, side, within, found.course), found.counted)
+        return what(ball_motion(moved, side, within, found.course))
 
     here = mean(jumps, cavity)
     gain = 1 + LINEARITY
@@ -239,6 +246,10 @@ def uncalibrated(found: Rebounds, response: Response, side: Floats) -> dict[str,
     slopes = {
         name: (mean(jumps, replace(cavity, **{name: getattr(cavity, name) + size})) - here) / size
         for name, size in step.items()
+    }
+    slopes |= {
+        name: (mean(jumps.moved(swap, by), cavity) - here) / 1e-4
+        for name, by in (("swap", (1e-4, 0.0)), ("turn", (0.0, 1e-4)))
     }
     return {
         "cavity": joint.spread(slopes),

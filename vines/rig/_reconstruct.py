@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from vines.errors import RigError
-from vines.rig._ball import ball_motion
+from vines.rig._ball import BallMotion, ball_motion
 from vines.rig._cycle import Track, slots
 from vines.rig._findings import judge
 from vines.rig._forcing import Base, Tuning, measure_base, tune
@@ -196,13 +196,20 @@ def _assembled(
 
     joint, law = ball.joint, ball.law
     b, gain = ball.calibrated()
-    left_open = uncalibrated(ball, response, side)
+    left_open = uncalibrated(ball, response, side, lambda motion: mean_restitution(motion, ball.counted))
     u_mean = mean(ball.motion.r, use, speed).u
     r = combined(mean_restitution(ball.motion, ball.counted), u_mean, *left_open.values())
     # Of a soft impact the law says more than its own noisy ratio does.
-    each = np.where(ball.measured, ball.motion.r, law.at(np.where(ball.counted, speed, law.speed)))
-    r_mean = combined(float(each[ball.counted].mean()), mean(each, use).u, *left_open.values())
-    frictionless = ball_motion(fit.jumps, side, replace(joint.cavity, friction=0.0), ball.course)
+    soft = law.at(np.where(ball.counted, speed, law.speed))
+
+    def each(motion: BallMotion) -> Floats:
+        return np.where(ball.measured, motion.r, soft)
+
+    left_of_each = uncalibrated(ball, response, side, lambda motion: float(each(motion)[ball.counted].mean()))
+    r_mean = combined(
+        float(each(ball.motion)[ball.counted].mean()), mean(each(ball.motion), use).u, *left_of_each.values()
+    )
+    frictionless = ball_motion(ball.jumps, side, replace(joint.cavity, friction=0.0), ball.course)
     del left_open["friction"]
     # From the ratio of means to the law at the mean speed; the exponent, where it is not known, is between -.2 and 0.
     own = speed[ball.counted] / speed[ball.counted].mean()
@@ -280,7 +287,7 @@ def _energies(response: Response, ball: Rebounds, begin: Floats) -> dict[str, Un
 
     Both are ratios of what one sensor sees, so that its gain falls out.
     """
-    motion, jumps, seen = response.fit.motion, response.fit.jumps, ball.length()
+    motion, jumps, seen = response.fit.motion, ball.jumps, ball.length()
     times, values = motion.peaks()
     period = np.searchsorted(begin, times, side="right") - 1
     count = len(begin) - 1
@@ -319,7 +326,7 @@ def _energies(response: Response, ball: Rebounds, begin: Floats) -> dict[str, Un
 def _rows(
     response: Response, ball: Rebounds, side: Floats, phase: Floats, number: npt.NDArray[np.int64]
 ) -> npt.NDArray[np.void]:
-    jumps = response.fit.jumps
+    jumps = ball.jumps
     rows = np.zeros(len(side), IMPACT)
     for name in ("v2", "v2_after", "w_dot", "w_dot_after", "r", "u_r"):
         rows[name] = np.nan
