@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import json
+import zlib
 from pathlib import Path
 from typing import Any
+from zipfile import BadZipFile
 
 import msgspec
 import numpy as np
@@ -65,5 +67,6 @@ def load_reconstruction(path: Path) -> Reconstruction:
                 return complex(value["re"], value["im"]) if kind is complex else held[f"array_{value['array']:02d}"]
 
             return msgspec.convert(form, Reconstruction, dec_hook=whole)
-    except (OSError, ValueError, KeyError, TypeError) as error:  # msgspec's and json's errors are ValueErrors
+    except (OSError, ValueError, KeyError, TypeError, BadZipFile, zlib.error) as error:
+        # msgspec's and json's errors are ValueErrors.
         raise RigError(f"{path} is no reconstruction of this version of vines: {str(error).splitlines()[0]}") from None
