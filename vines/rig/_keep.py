@@ -60,7 +60,7 @@ def load_reconstruction(path: Path) -> Reconstruction:
         raise FileMissingError(f"{path}: there is no such file; 'vines rig reconstruct RUN' makes one")
 
     try:
-        with np.load(path, allow_pickle=False) as held:
+        with path.open("rb") as file, np.load(file, allow_pickle=False) as held:
             form = json.loads(held[_FORM].tobytes())
 
             def whole(kind: Any, value: Any) -> Any:
