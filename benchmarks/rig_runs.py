@@ -159,7 +159,7 @@ def judged(empty: Scored, found: Reconstruction, told: Comparison, truth: dict[s
     return replace(
         empty, accepted=found.accepted, reasons=found.reasons, verdict=told.verdict, reason=told.reason,
         pattern=found.pattern.name, errors=errors, ratios=ratios, e_n=dict(best.errors) if best else {},
-        impacts=len(own), missed=len(own) - len(near), false=within - len(met),
+        impacts=len(own), missed=len(own) - len(near), false=int(within) - len(met),
     )  # fmt: skip
 
 
