@@ -163,10 +163,11 @@ _BARS = "bars: two standard uncertainties"
 _SIDES = {1: COLOURS["L"], -1: COLOURS["R"], 0: COLOURS["ink"]}
 _MODEL: Any = {
     "linestyle": "none",
-    "marker": "_",
-    "markersize": 9,
+    "marker": "s",
+    "markersize": 8.5,
+    "markerfacecolor": "none",
     "markeredgecolor": COLOURS["mark"],
-    "markeredgewidth": 1.2,
+    "markeredgewidth": 0.9,
 }
 
 
@@ -179,7 +180,7 @@ def _entries(own: RigPoints) -> list[Entry]:
             mark = Line2D([], [], **rig_mark(protocol, COLOURS["ink"], good=True))
             found.append((_WORDS[protocol], (mark,)))
     if not own.good.all():
-        mark = Line2D([], [], **rig_mark("dwell", COLOURS["ink"], good=False))
+        mark = Line2D([], [], **rig_mark(str(own.protocol[~own.good][0]), COLOURS["ink"], good=False))
         found.append(("empty: gates failed, or no pattern holds", (mark,)))
     if np.isfinite(own.model).any():
         found.append(("model at the measured parameters", (Line2D([], [], **_MODEL),)))

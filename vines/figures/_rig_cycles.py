@@ -111,6 +111,7 @@ def _grid(
                 ax.set_ylabel(y_label)
             if k + columns >= len(cycles):
                 ax.set_xlabel(x_label)
+        figure.align_ylabels(axes[:, 0])
         if caption:
             figure.suptitle(caption, fontsize=8.5, x=0.01, ha="left")
         measured: Any = (

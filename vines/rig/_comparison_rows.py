@@ -15,7 +15,8 @@ from vines.rig._verdict import Comparison, Likeness
 
 __all__ = ["comparison_rows", "cycle_rows", "row_id"]
 
-_BINS = 48
+_BINS = (12, 48)
+"""Fewest and most bins of a histogram; between them as many as keep the counts of a run's impacts above their noise."""
 _MEASURES = ("phase", "max_abs_x1", "kinetic_ratio")
 
 
@@ -146,7 +147,8 @@ def _edges(measured: np.ndarray, model: np.ndarray) -> np.ndarray:
     both = np.concatenate([measured, model])
     low, high = np.quantile(both, [0.001, 0.999])
     margin = max(0.05 * (high - low), 1e-3)
-    return np.linspace(max(low - margin, 0.0), high + margin, _BINS + 1)
+    bins = round(min(max(1.5 * math.sqrt(len(measured)), _BINS[0]), _BINS[1]))
+    return np.linspace(max(low - margin, 0.0), high + margin, bins + 1)
 
 
 def _number(value: float | None) -> float | None:

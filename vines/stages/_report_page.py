@@ -224,7 +224,8 @@ def _comparisons(section: Section) -> str:
         if basis == "calibrated":
             first = mine[0]
             factors = f"Omega × {first['calibrated_Omega']:.6f}, A × {first['calibrated_A']:.5f}"
-            told_on = f"Calibrated on {first['calibrated_on']}: {factors}, r + ({first['calibrated_r']:.5f})"
+            added = f"r {'+' if first['calibrated_r'] >= 0 else '−'} {abs(first['calibrated_r']):.5f}"
+            told_on = f"Calibrated on {first['calibrated_on']}: {factors}, {added}"
             note = f"<p>{escape(told_on)}; scored on the other runs only.</p>"
         name = f"{section.name}-{basis}"
         table = _table(name, [(column, "") for column in _COMPARED], [_compared(row) for row in mine])
@@ -239,10 +240,18 @@ _COMPARED = (
 )
 
 
+def _why(row: Mapping[str, Any]) -> str:
+    """Return the reason of a verdict; where it lists every E_n, which have columns of their own, only those above 1."""
+    if row["verdict"] not in ("agree", "pattern_only"):
+        return str(row["reason"])
+    above = [f"E_n({name}) above 1" for name in ("phase", "max_abs_x1", "kinetic_ratio") if row[f"E_n_{name}"] > 1]
+    return ", ".join(above) or "every E_n at most 1"
+
+
 def _compared(row: Mapping[str, Any]) -> str:
     cells = []
     for name in _COMPARED:
-        value = row[name]
+        value = _why(row) if name == "reason" else row[name]
         if name == "verdict":
             cells.append(_verdict(str(value)))
         elif isinstance(value, float):

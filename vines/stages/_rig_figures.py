@@ -182,7 +182,7 @@ def rig_residual(inputs: Mapping[str, Input], options: Any) -> Figure:
         [row["protocol"] for row in runs],
         np.array([row["accepted"] for row in runs], dtype=bool),
         caption=options.title,
-        width=min(options.width, 5.0),
+        width=options.width,
     )
 
 
