@@ -67,12 +67,25 @@ def reconstruct(
     Raises
     ------
     RigError
-        If the run is a ring-down, a channel is missing, no ring-down is at hand, or there are fewer than six impacts.
+        If the run is a ring-down, a channel is missing, no ring-down is at hand, there are fewer than six impacts, or
+        a fit has no solution.
 
     Notes
     -----
     docs/rig.md, "Reconstruct".
     """
+    try:
+        return _reconstructed(recording, ringdowns, impacts, seed)
+    except np.linalg.LinAlgError as error:
+        raise RigError(
+            f"run {recording.run.run_id!r}: a fit has no solution ({error}): samples or impacts are too few, or a "
+            "channel is constant; look at it with 'vines rig inspect'"
+        ) from None
+
+
+def _reconstructed(
+    recording: Recording, ringdowns: Sequence[RingDown], impacts: tuple[Floats, Floats] | None, seed: int
+) -> Reconstruction:
     run = recording.run
     if run.protocol == "ringdown" or not run.ball:
         raise RigError(f"run {run.run_id!r} has no ball in it; a ring-down gives omega0 and lam, see ring_down")

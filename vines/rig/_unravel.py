@@ -30,6 +30,9 @@ _ONE, _SILENT, _LIKE = 8.0, 30.0, 16.0
 _U_AREA = 0.1
 """Relative standard uncertainty of the area of a pulse beside others."""
 
+_TOLD = 1e-9
+"""Least part of a column that the others don't say."""
+
 _GOOD = 9.0
 """Largest chi^2 a sample of a choice that explains a stretch."""
 
@@ -97,6 +100,9 @@ def unravel(
         for some in combinations(range(len(t)), n):
             chosen = np.array(some, np.intp)
             basis, upper = np.linalg.qr(columns[:, np.append([0, 1], chosen + 2)])
+            # A jump after the last sample, or two between neighbouring ones, can't be told.
+            if np.min(np.abs(np.diag(upper))) < _TOLD * np.max(np.abs(upper)):
+                continue
             rest = signal - basis @ (basis.T @ signal)
             jumps = np.linalg.solve(upper, basis.T @ signal)[2:]
             unlike = np.sum(np.minimum(((jumps - area[chosen]) / (_U_AREA * area[chosen])) ** 2, _LIKE))
