@@ -258,7 +258,7 @@ def _assembled(
         "r": r,
         "r_mean": r_mean,
         "r_effective": r_effective,
-        "r_exponent": Uncertain(law.exponent, law.u_exponent),
+        "r_exponent": combined(law.exponent, law.u_exponent, *_uneven(ball, response, side).values()),
         "sigma_r": Uncertain(law.sigma_r, law.u_sigma_r),
         "impacts_per_period": mean_over_periods(
             np.array([float(len(w)) for w in periods.words]), np.arange(complete), complete
@@ -293,6 +293,20 @@ def _assembled(
         findings=judge(recording, base, response, tuning, ball),
         base_harmonics=base.e,
     )
+
+
+def _uneven(ball: Rebounds, response: Response, side: Floats) -> dict[str, float]:
+    """Return what calibrations and the cavity leave open of the exponent: soft impacts move more than hard ones."""
+    if not np.isfinite(ball.law.u_exponent):
+        return {}
+    weights = 1 / (ball.law.sigma_r**2 + ball.u_r[ball.measured] ** 2)
+
+    def slope(motion: BallMotion) -> float:
+        x, r = np.log(np.abs(motion.w_before[ball.measured])), motion.r[ball.measured]
+        away = x - np.average(x, weights=weights)
+        return float(np.sum(weights * away * r) / np.sum(weights * away**2)) / ball.law.r
+
+    return uncalibrated(ball, response, side, slope)
 
 
 def _energies(response: Response, ball: Rebounds, begin: Floats) -> dict[str, Uncertain]:
