@@ -15,6 +15,7 @@ from vines.rig._pattern import cut_into_periods, find_pattern
 from vines.rig._recording import Uncertain
 from vines.rig._run_form import Stated
 from vines.rig._uncertainty import error_ratio
+from vines.rig._verdict import decide, order
 from vines.rig.synth import raw_run, read_raw
 
 
@@ -52,6 +53,27 @@ def test_a_run_whose_numbers_are_not_the_models_does_not_agree(dwell):
     found = compare(replace(dwell, quantities=quantities))
     assert found.verdict == "pattern_only"
     assert "E_n(max_abs_x1)" in found.reason
+
+
+def test_a_model_that_is_chaotic_without_scatter_decides_nothing(told):
+    best = told.branches[0]
+    chaos = replace(best.predicted, candidate=replace(best.predicted.candidate, name="chaotic", regime="chaotic"))
+    other = replace(best, predicted=chaos)
+    verdict, reason = decide(told.run, order([other]))
+    assert (verdict, reason.split(": ")[0]) == (
+        "undecidable",
+        "the model shows 1:1 with scatter only; without, it is chaotic",
+    )
+    assert order([other, best])[0] is best
+
+
+def test_agreement_that_is_only_vague_is_none(told):
+    best = told.branches[0]
+    model = {**best.model, "phase": Uncertain(best.model["phase"].value, 0.3)}
+    vague = replace(best, model=model, errors=dict.fromkeys(best.errors, 0.1))
+    verdict, reason = decide(told.run, (vague,))
+    assert verdict == "undecidable"
+    assert "phase to 0.3" in reason
 
 
 def test_a_pattern_that_the_model_does_not_have_is_a_disagreement(dwell):

@@ -123,7 +123,7 @@ def decide(run: Reconstruction, branches: tuple[Likeness, ...]) -> tuple[str, st
         shares = ", ".join(f"{k} {v:.0%}" for k, v in list(run.pattern.fractions.items())[:3])
         return "undecidable", f"no pattern holds in {HOLDS:.0%} of the periods ({shares}): mixed or chaotic"
     with_it = [one for one in branches if one.matches]
-    open_ones = [one for one in branches if one.predicted.candidate.regime not in ("periodic", "no_impact")]
+    open_ones = [one for one in branches if not _periodic(one.predicted.candidate.regime)]
     if not with_it:
         if open_ones:
             return "undecidable", f"the run shows {shown}, the model is {open_ones[0].predicted.candidate.regime} here"
@@ -138,6 +138,8 @@ def decide(run: Reconstruction, branches: tuple[Likeness, ...]) -> tuple[str, st
             f"with the measured scatter and uncertainties {shown} holds in {best.holding:.0%} of the ensemble: a "
             "bifurcation is too near"
         )
+    if not _periodic(best.candidate.regime):
+        return "undecidable", f"the model shows {shown} with scatter only; without, it is {best.candidate.regime}"
     if best.periodic < _SURE:
         return "undecidable", f"the model without scatter is not periodic at {1 - best.periodic:.0%} of the draws"
     errors = with_it[0].errors
@@ -160,10 +162,17 @@ def _open(one: Likeness, name: str) -> float:
 
 
 def order(branches: list[Likeness]) -> tuple[Likeness, ...]:
-    """Return branches with the measured pattern first, the nearest before the others."""
-    return tuple(
-        sorted(branches, key=lambda one: (not one.matches, one.predicted.holding < _FAIR, max(one.errors.values())))
-    )
+    """Return branches with the measured pattern first, periodic ones before others, then the nearest."""
+
+    def rank(one: Likeness) -> tuple[bool, bool, bool, float]:
+        shown = one.predicted
+        return not one.matches, shown.holding < _FAIR, not _periodic(shown.candidate.regime), max(one.errors.values())
+
+    return tuple(sorted(branches, key=rank))
+
+
+def _periodic(regime: str) -> bool:
+    return regime in ("periodic", "no_impact")
 
 
 def _measured_phases(run: Reconstruction, found: Slots) -> list[Uncertain]:
