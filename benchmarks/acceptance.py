@@ -22,8 +22,8 @@ from benchmarks import start_up
 from vines.places import cache_folder
 
 PAGE = Path(__file__).resolve().parent.parent / "docs" / "acceptance.md"
-FRESH = ("--seeds", "70000")
-"""Seeds of the rig that no method was made with; docs/rig.md has the score that was taken once, on others."""
+SCORED, COVERED = ("--seeds", "3116887", "60"), ("--seeds", "5226617", "500")
+"""Seeds of the rig's score and coverage (docs/rig.md): drawn after the methods were frozen, used for nothing else."""
 CHATTER = {"release": 48.6979167390, "mu": 0.0084, "A": 0.015}
 
 
@@ -171,8 +171,8 @@ SECTIONS = {
     "The paper, from an empty store": paper,
     "The catalogue, beside its peers": benchmark("catalogue"),
     "Reading a run of the rig": benchmark("rig_ingest"),
-    "Sixty synthetic runs of the rig, beside their sealed truth": benchmark("rig", *FRESH, "60"),
-    "Do the rig's 95 % intervals cover?": benchmark("rig_coverage", *FRESH, "500"),
+    "Sixty synthetic runs of the rig, beside their sealed truth": benchmark("rig", *SCORED),
+    "Do the rig's 95 % intervals cover?": benchmark("rig_coverage", *COVERED),
     "Logs, beside mcap's own writer": benchmark("logs"),
     "Pipelines, beside their peers": benchmark("engine"),
     "Tests": tests,
