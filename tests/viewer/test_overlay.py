@@ -74,6 +74,7 @@ def shown_in_a_browser(program, tmp_path, *arguments):
     return (matplotlib.image.imread(tmp_path / "page.png")[..., :3] * 255).round()
 
 
+@pytest.mark.full
 def test_two_runs_over_each_other_in_a_browser(settled, other, tmp_path, browser_program):
     drawn = shown_in_a_browser(browser_program, tmp_path, settled, other, "--overlay")
     for colour in OVERLAID[:2]:
