@@ -22,7 +22,7 @@ from benchmarks import start_up
 from vines.places import cache_folder
 
 PAGE = Path(__file__).resolve().parent.parent / "docs" / "acceptance.md"
-SCORED, COVERED = ("--seeds", "3116887", "60"), ("--seeds", "5226617", "500")
+SCORED, COVERED = ("--seeds", "3116887", "60"), ("--seeds", "6831205", "500")
 """Seeds of the rig's score and coverage (docs/rig.md): drawn after the methods were frozen, used for nothing else."""
 CHATTER = {"release": 48.6979167390, "mu": 0.0084, "A": 0.015}
 

@@ -94,6 +94,8 @@ class Fitter:
             if free.residual < _CLEAN * free.noise:
                 return free
             held = once(self._held(), extra, 0)
+            if np.array_equal(held.fair, free.fair):
+                return free
             again = once(self.forced, extra, draws, fair=held.fair)
             return again if again.residual < free.residual else free
         # The flights give the jumps; areas of pulses only hold those that have no samples beside them.

@@ -45,14 +45,14 @@ def straight(fitter: Fitter, times: Floats, u: Floats, dv: Floats, pushed: Push 
     Harmonics that the base does not have are the sensor's then: without that, they and jumps that repeat would say the
     same. A sensor that is off by .07 % can take two thirds off the jumps of a train of soft impacts at one phase.
     """
-    fit = fitter.fit(times, u, dv, pushed=pushed)
+    fit = fitter.fit(times, u, dv, 0, pushed)
     columns, sizes = _bends(fitter.bins, fit.motion, *fitter.u_natural)
     strict = fitter
     if fitter.forced is not None:
         c, u_c = fitter.forced
         known = 0.03 * np.abs(c) + _HARMONICS * float(np.abs(fitter.bins.mean).max())
         strict = replace(fitter, forced=(c, np.minimum(u_c, known)))
-    bent = strict.fit(times, u, dv, pushed=pushed, extra=(columns, sizes))
+    bent = strict.fit(times, u, dv, 0, pushed, (columns, sizes))
     if bent.residual > _EXPLAINS * fit.residual:
         return fitter
     n = len(_DEGREES)
