@@ -186,7 +186,7 @@ def fit_jumps(
     fair : ndarray of bool, shape (K + 1,), optional
         Flights that are trusted at first, such as by a fit that knew more.
     draws : int
-        Draws for the uncertainty.
+        Draws for the uncertainty; without any, `JumpFit.draws`, `first`, `swap` and `u_dv` tell nothing.
     seed : int
         Of the draws.
 
@@ -233,7 +233,7 @@ def fit_jumps(
         first.append(other.c[0])
     together = _stacked(drawn)
     swapped = []
-    for turn in (1.0, 1j):
+    for turn in (1.0, 1j) if draws else ():
         move = _SWAP * turn * motion.c[0]
         fixed = np.array([move.real, move.imag])
         change = np.concatenate([fixed, -np.linalg.solve(schur[2:, 2:], schur[2:, :2] @ fixed)])

@@ -12,7 +12,7 @@ from vines.model import Params
 from vines.rig._cycle import Slots, Track, matching, mean_cycle, slots
 from vines.rig._left_open import left_open
 from vines.rig._match import Candidate
-from vines.rig._motion import Motion
+from vines.rig._motion import Motion, forced_response, free_part, root
 from vines.rig._pattern import Pattern, Periods, cut_into_periods, find_pattern
 from vines.rig._reconstruction import Reconstruction
 from vines.rig._recording import Uncertain
@@ -236,16 +236,15 @@ def _track(impacts: npt.NDArray[np.void], p: Params, scatter: Scatter) -> Track:
     t = np.asarray(impacts["t"], float)
     keep = np.concatenate([[True], np.diff(t) > 1e-9])
     impacts, t = impacts[keep], t[keep]
-    s = complex(-p.lam / 2, np.sqrt(1 - p.lam**2 / 4))
+    s = root(1.0, p.lam)
     phase0 = float(impacts["phase"][0]) - p.Omega * t[0]
     n = np.array([1.0, 2.0])
     size = p.A * np.array([1.0, scatter.second * np.exp(1j * scatter.second_phase)])
-    damp = 1j * p.lam * n * p.Omega
-    c = -1j * size * (1 + damp) / (1 - (n * p.Omega) ** 2 + damp) * np.exp(1j * n * phase0)
+    c = forced_response(-1j * size, n * p.Omega, s) * np.exp(1j * n * phase0)
     motion = Motion(s, p.Omega, c, t, np.zeros(len(t), complex), float(t[-1]))
     x = impacts["x1"] - motion.forced(t)
     v = impacts["v1_after"] - motion.forced(t, 1)
-    motion = replace(motion, z=x - 1j * (v - s.real * x) / s.imag)
+    motion = replace(motion, z=free_part(x, v, s))
     side = np.asarray(impacts["side"], float)
     return Track(motion, t, side, np.asarray(impacts["x2"], float), p.Omega * t + phase0)
 

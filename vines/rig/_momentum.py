@@ -12,7 +12,7 @@ from vines.rig._ball import Cavity, Course, ball_motion
 from vines.rig._jumps import Jumps
 from vines.rig._recording import Uncertain
 
-__all__ = ["MomentumFit", "fit_momentum"]
+__all__ = ["SWAPPED", "MomentumFit", "fit_momentum"]
 
 Floats = npt.NDArray[np.float64]
 
@@ -23,7 +23,7 @@ _SKEW = 2e-3
 """How much the gain of the oscillator's sensor may differ along its motion: slope and curvature, of half the range."""
 
 
-_SWAPPED = 4e-3
+SWAPPED = 4e-3
 """How much of the forced response a sensor's linearity may swap for jumps that repeat, relative to it."""
 
 
@@ -115,7 +115,7 @@ def fit_momentum(
     value = {"mu": 0.01, "b": b.value, "friction": friction.value, "tilt": tilt.value, "touch": touch.value}
     value |= {"skew": 0.0, "bow": 0.0, "swap": 0.0, "turn": 0.0}
     known = {"b": b, "tilt": tilt, "touch": touch, "skew": Uncertain(0.0, _SKEW), "bow": Uncertain(0.0, _SKEW)}
-    known |= {name: Uncertain(0.0, _SWAPPED) for name in ("swap", "turn")}
+    known |= {name: Uncertain(0.0, SWAPPED) for name in ("swap", "turn")}
 
     def residual(of: Jumps, at: dict[str, float]) -> Floats:
         return _residual(of if swap is None else of.moved(swap, (at["swap"], at["turn"])), side, at, course)

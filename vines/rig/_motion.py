@@ -4,16 +4,33 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
-__all__ = ["Motion"]
+__all__ = ["Motion", "forced_response", "free_part", "root"]
 
 Floats = npt.NDArray[np.float64]
 Complexes = npt.NDArray[np.complex128]
 
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(10)
+
+
+def root(omega0: float, lam: float) -> complex:
+    """Return s of the free oscillation exp(s t), -lam omega0/2 + i gamma [1/s]."""
+    return omega0 * complex(-lam / 2, np.sqrt(1 - lam**2 / 4))
+
+
+def forced_response(e: Any, omega: Any, s: complex) -> Any:
+    """Return the response Re[c exp(i omega t)] to a base motion Re[e exp(i omega t)], spring and damper on the base."""
+    damp = -2j * s.real * omega
+    return e * (abs(s) ** 2 + damp) / (abs(s) ** 2 - omega**2 + damp)
+
+
+def free_part(x: Any, v: Any, s: complex) -> Any:
+    """Return z of the free oscillation Re[z exp(s t)] that begins with displacement x and velocity v."""
+    return x - 1j * (v - s.real * x) / s.imag
 
 
 @dataclass(frozen=True, slots=True, eq=False)

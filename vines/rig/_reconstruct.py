@@ -14,6 +14,8 @@ from vines.rig._cycle import Track, slots
 from vines.rig._findings import judge
 from vines.rig._forcing import Base, Tuning, measure_base, tune
 from vines.rig._jumps import fit_jumps
+from vines.rig._momentum import SWAPPED
+from vines.rig._motion import forced_response, root
 from vines.rig._oscillator import Response, measure_response
 from vines.rig._pattern import Pattern, Periods, cut_into_periods, find_pattern
 from vines.rig._rebound import (
@@ -34,9 +36,6 @@ from vines.rig._uncertainty import combined, mean_over_periods, standard_error
 __all__ = ["reconstruct"]
 
 Floats = npt.NDArray[np.float64]
-
-_FORCED = 4e-3
-"""Relative uncertainty of the forced response by linearity: jumps that repeat and a forced response are much alike."""
 
 
 def reconstruct(
@@ -92,14 +91,14 @@ def _reconstructed(
     base = measure_base(recording)
     omega0, lam = natural(tuple(ringdowns), float(np.mean(run.temperature)))
     omega = base.fit.omega
-    root = _root(omega0.value, lam.value)
-    forced = _harmonics(base, recording, root)
+    s = root(omega0.value, lam.value)
+    forced = _harmonics(base, recording, s)
     friction = stated(run.more.get("friction"), FRICTION)
     mu = run.m.value / run.M.value
     response = measure_response(
-        recording, root, omega, forced,
+        recording, s, omega, forced,
         friction=mu * friction.value, u_natural=(omega0.u / omega0.value, lam.u / lam.value),
-        driven=complex(base.e[0] / _asked(np.ones(1, complex), root, omega)[0]), impacts=impacts,
+        driven=complex(forced_response(base.e[0], omega, s)), impacts=impacts,
     )  # fmt: skip
     if len(response.fit.jumps.t) < 6:
         raise RigError(
@@ -116,27 +115,20 @@ def _reconstructed(
     return _assembled(recording, base, response, side, tuning, phase, periods, pattern, ball, seed)
 
 
-def _root(omega0: float, lam: float) -> complex:
-    return omega0 * complex(-lam / 2, np.sqrt(1 - lam**2 / 4))
-
-
 def _harmonics(base: Base, recording: Recording, s: complex) -> tuple[npt.NDArray[np.complex128], Floats]:
     """Return harmonics 2 to 5 of the forced response by the base's own, and what linearity adds to them."""
     n = np.arange(2, 6)
     e = np.zeros(4, complex)
     e[: len(base.e) - 1] = base.e[1:5]
-    omega = n * base.fit.omega
-    damp = -2j * s.real * omega
-    c = e * (abs(s) ** 2 + damp) / (abs(s) ** 2 - omega**2 + damp)
+    c = forced_response(e, n * base.fit.omega, s)
     channel = recording.role("lo_disp")
     size = float(np.std(channel.values[channel.valid])) if channel is not None else 50 * base.E.value
     return c, 0.03 * np.abs(c) + size * np.array([3e-4, 5e-4, 1e-4, 1e-4])
 
 
 def _asked(c: npt.NDArray[np.complex128], s: complex, omega: float) -> npt.NDArray[np.complex128]:
-    """Return the base motion that a forced response belongs to: c (omega0^2 - omega^2 + i …)/(omega0^2 + i …)."""
-    damp = -2j * s.real * omega
-    return c * (abs(s) ** 2 - omega**2 + damp) / (abs(s) ** 2 + damp)
+    """Return the base motion that a forced response belongs to."""
+    return c / forced_response(1.0, omega, s)
 
 
 def _tuned(
@@ -151,11 +143,11 @@ def _tuned(
 ) -> Tuning:
     """Lay the forced response beside the base; its slopes by omega0 and lam are differences of two more fits."""
     omega, fit = base.fit.omega, response.fit
-    s = _root(omega0.value, lam.value)
+    s = root(omega0.value, lam.value)
     turn = np.exp(1j * omega * response.late)
 
     def again(omega0_: float, lam_: float) -> complex:
-        moved = _root(omega0_, lam_)
+        moved = root(omega0_, lam_)
         other = fit_jumps(
             response.bins,
             moved,
@@ -182,7 +174,7 @@ def _tuned(
     unknown = 4 / np.pi * mu * friction.u / abs(s) ** 2 / base.E.value
     return tune(
         base, omega0, lam, asked, (by_omega0, by_lam),
-        u_gain=response.channel.u_gain, u_time=response.u_late, u_noise=float(np.hypot(unknown, _FORCED)),
+        u_gain=response.channel.u_gain, u_time=response.u_late, u_noise=float(np.hypot(unknown, SWAPPED)),
     )  # fmt: skip
 
 

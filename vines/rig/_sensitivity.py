@@ -10,18 +10,20 @@ import numpy as np
 import numpy.typing as npt
 
 from vines.errors import OrbitNotFound, ParameterError
-from vines.rig._motion import Motion
+from vines.rig._motion import Motion, forced_response, free_part, root
 
 if TYPE_CHECKING:
     from vines.model import Params
     from vines.orbits import Orbit
 
-__all__ = ["CAUSES", "Numbers", "pushed", "sensitivity"]
+__all__ = ["Numbers", "pushed", "sensitivity"]
 
 Floats = npt.NDArray[np.float64]
 
-CAUSES = ("mu", "A", "Omega", "r", "lam", "friction", "tilt")
-"""Parameters, and forces on the ball in units of b omega0^2."""
+_PARAMETERS = ("mu", "A", "Omega", "r", "lam")
+
+_FORCES = ("friction", "tilt")
+"""On the ball, in units of b omega0^2."""
 
 _STEP = 1e-4
 """Relative step of a parameter."""
@@ -48,7 +50,7 @@ class Numbers:
 
 
 def sensitivity(orbit: Orbit) -> Mapping[str, Numbers]:
-    """Return the derivatives of an orbit's numbers by each of `CAUSES` of which there is one.
+    """Return the derivatives of an orbit's numbers by its parameters, where neighbours are found, and by small forces.
 
     Notes
     -----
@@ -56,12 +58,12 @@ def sensitivity(orbit: Orbit) -> Mapping[str, Numbers]:
     right, friction slows its sliding against the cavity and drives the oscillator with mu times the opposite.
     """
     found = {}
-    for name in ("mu", "A", "Omega", "r", "lam"):
+    for name in _PARAMETERS:
         step = _STEP * max(getattr(orbit.params, name), _STEP)
         pair = [_moved(orbit, orbit.params.replace(**{name: getattr(orbit.params, name) + e})) for e in (-step, step)]
         if pair[0] is not None and pair[1] is not None:
             found[name] = _slope(pair[0], pair[1], step)
-    for name in ("friction", "tilt"):
+    for name in _FORCES:
         change = pushed(orbit, name)
         step = 1e-6 / max(float(np.abs(change).max()), 1.0)
         found[name] = _slope(_numbers(orbit, -step * change), _numbers(orbit, step * change), step)
@@ -93,25 +95,17 @@ def _numbers(orbit: Orbit, change: Floats) -> Numbers:
     x2, t = orbit.states[:, 2] + change[:, 2], orbit.t + change[:, 3]
     after = v1 - p.mu * (1 + p.r) / (1 + p.mu) * (v1 - v2)
     stop = float(t[0] + orbit.period)
-    c, s = _forced(p), _root(p)
+    s = root(1.0, p.lam)
+    c = forced_response(-1j * p.A, p.Omega, s)
     x = x2 + orbit.side - np.real(c * np.exp(1j * p.Omega * t))
     v = after - np.real(1j * p.Omega * c * np.exp(1j * p.Omega * t))
-    motion = Motion(s, p.Omega, np.array([c]), t, x - 1j * (v - s.real * x) / s.imag, stop)
+    motion = Motion(s, p.Omega, np.array([c]), t, free_part(x, v, s), stop)
     time = np.diff(t, append=stop)
     ball = np.diff(x2, append=x2[0]) / time
     square = float(motion.mean_square_velocity(np.array([t[0], stop]))[0])
     return Numbers(
         p.Omega * t, float(motion.peaks()[1].max()), p.mu * float(np.sum(ball**2 * time)) / (stop - t[0]) / square
     )
-
-
-def _root(p: Params) -> complex:
-    return complex(-p.lam / 2, np.sqrt(1 - p.lam**2 / 4))
-
-
-def _forced(p: Params) -> complex:
-    damp = 1j * p.lam * p.Omega
-    return -1j * p.A * (1 + damp) / (1 - p.Omega**2 + damp)
 
 
 def pushed(orbit: Orbit, force: str) -> Floats:
@@ -143,9 +137,10 @@ def _arrival(orbit: Orbit, k: int, force: str) -> Floats:
     """Return what a unit of the force in flight k changes of the state at its end."""
     p, impact = orbit.params, cast(Any, orbit.impacts[k])
     v2, stop = float(impact["v2_after"]), float(orbit.flight_times[k])
-    s, c = _root(p), _forced(p) * np.exp(1j * p.Omega * orbit.t[k])
+    s = root(1.0, p.lam)
+    c = forced_response(-1j * p.A, p.Omega, s) * np.exp(1j * p.Omega * orbit.t[k])
     x, v = float(impact["x1"]) - c.real, float(impact["v1_after"]) - (1j * p.Omega * c).real
-    motion = Motion(s, p.Omega, np.array([c]), np.zeros(1), np.array([x - 1j * (v - s.real * x) / s.imag]), stop)
+    motion = Motion(s, p.Omega, np.array([c]), np.zeros(1), np.array([free_part(x, v, s)]), stop)
     h = stop / _STEPS
     tau = np.asarray((np.arange(_STEPS) + 0.5) * h, dtype=np.float64)
     push = np.ones(_STEPS) if force == "tilt" else np.sign(motion.at(tau, 1) - v2)
