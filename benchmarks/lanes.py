@@ -13,11 +13,11 @@ import numpy as np
 
 from vines.dynamics import _lane_fields as f
 from vines.dynamics import ensemble
-from vines.dynamics._jit import WIDE, loop_njit
 from vines.dynamics._lane_measures import measure, renew
 from vines.dynamics._lane_motion import go_to_root, half_turn, small_expm1, step_on
 from vines.dynamics._lane_strike import look, polish, strike
 from vines.dynamics._lanes import certify, choose
+from vines.kernels import WIDE, loop_njit
 from vines.model import Params
 
 ORBIT = Params(mu=0.01, A=0.015)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from vines.dynamics._jit import njit
+from vines.kernels import njit
 
 __all__ = ["rk4_run"]
 

@@ -10,8 +10,18 @@ from vines.attractors import _verdict as v
 from vines.attractors._contacts import repetition
 from vines.dynamics import _advance as col
 from vines.dynamics._flight import derivatives, phasors
-from vines.dynamics._jit import njit
 from vines.dynamics._tangent import flow_basis, jump_basis
+from vines.kernels import (
+    cold_njit,
+    complex_vector,
+    identity,
+    integer_vector,
+    max_abs,
+    new_cube,
+    new_vector,
+    njit,
+    zero_vector,
+)
 from vines.orbits._eigenvalues import eigenvalues_kernel
 from vines.orbits._equations import newton_kernel
 
@@ -35,7 +45,7 @@ DOUBLINGS = 22
 """A transient is predicted up to 2^DOUBLINGS repetitions."""
 
 
-@njit
+@cold_njit
 def nearest_orbit(c, rows, kept, p, lag, scale, tolerance):
     """Solve for the orbit near the last repetition of a run, and carry the distance from it on by its linear map.
 
@@ -69,8 +79,8 @@ def nearest_orbit(c, rows, kept, p, lag, scale, tolerance):
         if rows[i, col.KIND] == col.STICK:
             return nothing
     duration = p * 2.0 * math.pi / c.Omega
-    side = np.empty(lag, dtype=np.int64)
-    guess = np.empty(lag)
+    side = integer_vector(lag)
+    guess = new_vector(lag)
     for k in range(lag):
         row = rows[kept[count - lag + k]]
         side[k] = 1 if row[col.SIDE] > 0.0 else -1
@@ -94,18 +104,18 @@ def nearest_orbit(c, rows, kept, p, lag, scale, tolerance):
         return nothing
 
     # The tangent map of one repetition, from just after the last contact to just after that of the next one.
-    event = np.zeros(col.ROW)
+    event = zero_vector(col.ROW)
     event[col.KIND] = col.IMPACT
-    Y = np.eye(4)
+    Y = identity(4)
     for k in range(lag):
         before = t[k - 1] if k > 0 else t[lag - 1] - duration
         flow_basis(c, 0.0, t[k] - before, Y)
         event[col.X1], event[col.V1], event[col.V2] = states[k, 0], states[k, 1], states[k, 3]
         event[col.PHASE] = c.Omega * t[k] % (2.0 * math.pi)
         jump_basis(c, event, Y)
-    roots = np.empty(4, dtype=np.complex128)
+    roots = complex_vector(4)
     eigenvalues_kernel(Y.astype(np.complex128), roots)
-    largest = np.max(np.abs(roots))
+    largest = max_abs(roots)
     if not largest < 1.0:
         return True, largest, distance, math.inf
 
@@ -116,14 +126,14 @@ def nearest_orbit(c, rows, kept, p, lag, scale, tolerance):
     ur, ui, gr, gi = phasors(c.free, c.Omega, x1, v1, event[col.PHASE])
     _, _, a, _, _ = derivatives(c.free, c.Omega, ur, ui, gr, gi)
     late = guess[lag - 1] - t[lag - 1]
-    away = np.empty(4)
+    away = new_vector(4)
     away[0] = (rows[end, col.X1] - x1 - after1 * late) / scale
     away[1] = (rows[end, col.A_V1] - after1 - (a - c.lam * (after1 - v1)) * late) / scale
     away[2] = (rows[end, col.X2] - (x1 - side[lag - 1]) - after2 * late) / scale
     away[3] = (rows[end, col.A_V2] - after2) / scale
     # The allowance for a state at one instant that goes with the tolerance of the contacts.
     allowed = tolerance * _size(Y, away) / distance if distance > 0.0 else math.inf
-    powers = np.empty((DOUBLINGS, 4, 4))
+    powers = new_cube(DOUBLINGS, 4, 4)
     powers[0] = Y
     for j in range(1, DOUBLINGS):
         powers[j] = powers[j - 1] @ powers[j - 1]
@@ -138,17 +148,17 @@ def nearest_orbit(c, rows, kept, p, lag, scale, tolerance):
     return True, largest, distance, p * repetitions
 
 
-@njit
+@cold_njit
 def _size(Y, away):
     """Return the largest part of a difference now or at one of the next three returns: it may turn as it shrinks."""
-    size = np.max(np.abs(away))
+    size = max_abs(away)
     for _ in range(3):
         away = Y @ away
-        size = max(size, np.max(np.abs(away)))
+        size = max(size, max_abs(away))
     return size
 
 
-@njit
+@cold_njit
 def comes_to_orbit(c, rows, kept, scale, near, tolerance, verdict):
     """Look for a stable periodic orbit that a run is near; if there is one, note how long the run still needs to it.
 
@@ -167,7 +177,7 @@ def comes_to_orbit(c, rows, kept, scale, near, tolerance, verdict):
         NO_ORBIT if none was found, STABLE, or UNSTABLE if only unstable ones are near.
     """
     seen = NO_ORBIT
-    blocks = np.empty(kept.shape[0])
+    blocks = new_vector(kept.shape[0])
     for p in range(1, LARGEST_P + 1):
         lag, filled = repetition(rows, kept, p * 2.0 * math.pi / c.Omega, scale, blocks)
         if filled == 0 or not blocks[filled - 1] < near:

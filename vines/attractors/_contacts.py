@@ -5,19 +5,19 @@ from __future__ import annotations
 import numpy as np
 
 from vines.dynamics._advance import IMPACT, KIND, RUN, SIDE, STICK, TIME, V1, V2, X1
-from vines.dynamics._jit import njit
+from vines.kernels import integer_vector, linked_njit, njit
 
 __all__ = ["contacts", "repetition"]
 
 
-@njit
+@linked_njit
 def contacts(rows, n, start):
     """Return the rows that count as contacts after `start`: impacts, but of a complete chatter only the first.
 
     A run of impacts on one wall that goes on at the end may be a chatter not yet complete, and one that began before
     `start` may have its first impact there: neither gives more than it is sure of.
     """
-    keep = np.empty(n, dtype=np.int64)
+    keep = integer_vector(n)
     count = 0
     for i in range(1, n):
         kind = rows[i, KIND]
@@ -42,7 +42,7 @@ def _same_run(rows, i, j):
     return j == i + 1 and rows[i, SIDE] == rows[j, SIDE]
 
 
-@njit
+@linked_njit
 def repetition(rows, kept, span, scale, blocks):
     """Compare the contacts with those one `span` of time later.
 
@@ -91,7 +91,7 @@ def repetition(rows, kept, span, scale, blocks):
     return lag, filled
 
 
-@njit
+@linked_njit
 def mirror_difference(rows, kept, lag, span, scale):
     """Return how far the last repetition is from its own mirror image (x, t) -> (-x, t + half the span)."""
     if lag % 2 == 1 or kept.shape[0] < lag + lag // 2:

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
-
 from vines.attractors import _verdict as v
 from vines.attractors._approach import LARGEST_P, STABLE, comes_to_orbit, nearest_orbit, note_coming
 from vines.attractors._contacts import contacts, repetition
@@ -13,8 +11,8 @@ from vines.attractors._judge import MAX_P, NEAR, note_decay, note_drift
 from vines.attractors._window import open_window, run_window
 from vines.dynamics import _advance as col
 from vines.dynamics._advance import shift_time
-from vines.dynamics._jit import njit
 from vines.dynamics._tangent import lyapunov_blocks
+from vines.kernels import cold_njit, identity, new_matrix, new_vector, zero_matrix
 
 __all__ = ["follow"]
 
@@ -37,7 +35,7 @@ GROWS = 1.05
 """Factor by which the distance from an orbit must grow over the last stage for a run to be still on its way."""
 
 
-@njit
+@cold_njit
 def follow(c, state, elapsed, periods, watch, cap, tolerance, verdict):
     """Decide what a window left open; `verdict` is that of the window and is filled on.
 
@@ -58,14 +56,14 @@ def follow(c, state, elapsed, periods, watch, cap, tolerance, verdict):
     """
     period = 2.0 * math.pi / c.Omega
     state = state.copy()
-    Y = np.eye(4)
-    grown = np.zeros((sum(LONGER) * BLOCKS, 5))
+    Y = identity(4)
+    grown = zero_matrix(sum(LONGER) * BLOCKS, 5)
     filled = 0
     passed = 0.0
     rate, error = 0.0, math.inf
     length, count = 0.0, 0
     verdict[v.REGIME] = v.UNSETTLED
-    rows = np.empty((int(4.0 * watch) + 64, col.ROW))
+    rows = new_matrix(int(4.0 * watch) + 64, col.ROW)
     for stage in range(len(LONGER)):
         shift_time(state, elapsed)
         length = LONGER[stage] * watch * period
@@ -109,7 +107,7 @@ def follow(c, state, elapsed, periods, watch, cap, tolerance, verdict):
         verdict[v.REASON], verdict[v.VALUE], verdict[v.OTHER] = v.UNDECIDED, rate, error
 
 
-@njit
+@cold_njit
 def _spectrum(grown, verdict):
     """Write the exponents of growth by blocks; return the largest and its error, that of a finite run included."""
     # Growth is booked with the block in which an event falls: a block without one says nothing.
@@ -129,7 +127,7 @@ def _spectrum(grown, verdict):
     return verdict[v.EXPONENTS], error
 
 
-@njit
+@cold_njit
 def _beside_orbit(c, rows, n, length, chaotic, last, tolerance, verdict):
     """Say whether the run comes to a periodic orbit, or is too near one to be on anything else, and note which.
 
@@ -147,7 +145,7 @@ def _beside_orbit(c, rows, n, length, chaotic, last, tolerance, verdict):
     while opening < n and rows[opening, col.TIME] <= quarter:
         opening += 1
     early, late = contacts(rows, opening, 0.0), contacts(rows, n, length - quarter)
-    blocks = np.empty(max(early.shape[0], late.shape[0]))
+    blocks = new_vector(max(early.shape[0], late.shape[0]))
     least = FAR
     undecided = False
     for p in range(1, MAX_P + 1):

@@ -10,8 +10,8 @@ from vines.attractors import _verdict as v
 from vines.attractors._approach import NO_ORBIT, comes_to_orbit, nearest_orbit, note_coming
 from vines.attractors._contacts import contacts, mirror_difference, repetition
 from vines.dynamics import _advance as col
-from vines.dynamics._jit import njit
 from vines.dynamics._tangent import tangent_product
+from vines.kernels import byte_vector, cold_njit, complex_vector, new_vector, njit, zero_integers
 from vines.orbits._eigenvalues import eigenvalues_kernel
 
 __all__ = ["MAX_P", "NEAR", "clear", "judge_window", "note_decay", "note_drift"]
@@ -48,7 +48,7 @@ def clear(verdict):
     verdict[v.EXPONENTS : v.MULTIPLIERS_IM + 4] = math.nan
 
 
-@njit
+@cold_njit
 def judge_window(c, rows, n, periods, tolerance, verdict):
     """Fill a verdict with what a window shows; its regime is OPEN where nothing repeats within the tolerance.
 
@@ -71,7 +71,7 @@ def judge_window(c, rows, n, periods, tolerance, verdict):
         Sides of the contacts in one repetition, in order of time; empty if there is none.
     """
     clear(verdict)
-    none = np.empty(0, dtype=np.int8)
+    none = byte_vector(0)
     kept = contacts(rows, n, 0.0)
     if kept.shape[0] == 0:
         _without_impact(c, rows, n, tolerance, verdict)
@@ -79,9 +79,9 @@ def judge_window(c, rows, n, periods, tolerance, verdict):
     period = 2.0 * math.pi / c.Omega
     scale = _largest_speed(rows, n)
     verdict[v.SCALE] = scale
-    blocks = np.empty(kept.shape[0])
+    blocks = new_vector(kept.shape[0])
     lasts = np.full(MAX_P + 1, math.inf)
-    lags = np.zeros(MAX_P + 1, dtype=np.int64)
+    lags = zero_integers(MAX_P + 1)
     best, best_first, best_filled = 0, math.inf, 0
     for p in range(1, min(MAX_P, int(periods / 2.0 + 1e-9)) + 1):
         lag, filled = repetition(rows, kept, p * period, scale, blocks)
@@ -127,7 +127,7 @@ def note_drift(verdict, period, speed):
     return not verdict[v.REMAINING] < FOREVER
 
 
-@njit
+@cold_njit
 def _largest_speed(rows, n):
     """Return the scale of velocities and displacements, at least 1e-3 so that rest is no special case."""
     speed = 1e-3
@@ -137,14 +137,14 @@ def _largest_speed(rows, n):
     return speed
 
 
-@njit
+@cold_njit
 def _repeats(c, rows, kept, p, lag, last, tolerance, verdict):
     """Judge a run that repeats: it may still be creeping towards its orbit, or sit on an unstable one."""
-    none = np.empty(0, dtype=np.int8)
+    none = byte_vector(0)
     count = kept.shape[0]
     span = p * 2.0 * math.pi / c.Omega
     first, end = kept[count - 1 - lag], kept[count - 1]
-    roots = np.empty(4, dtype=np.complex128)
+    roots = complex_vector(4)
     eigenvalues_kernel(tangent_product(c, rows, first, end).astype(np.complex128), roots)
     order = np.argsort(-np.abs(roots))
     roots = roots[order]
@@ -178,7 +178,7 @@ def _repeats(c, rows, kept, p, lag, last, tolerance, verdict):
             verdict[v.REASON], verdict[v.VALUE], verdict[v.OTHER] = v.CREEPS, distance, largest
             verdict[v.REMAINING] = max(remaining, 1.0 * p)
             return none
-    sides = np.empty(lag, dtype=np.int8)
+    sides = byte_vector(lag)
     for k in range(lag):
         sides[k] = 1 if rows[kept[count - lag + k], col.SIDE] > 0.0 else -1
         verdict[v.LEFT if sides[k] > 0 else v.RIGHT] += 1.0
@@ -189,7 +189,7 @@ def _repeats(c, rows, kept, p, lag, last, tolerance, verdict):
     return sides
 
 
-@njit
+@cold_njit
 def _without_impact(c, rows, n, tolerance, verdict):
     """Judge a run without impacts: a drifting ball will hit a wall one day; the oscillator's start must die out."""
     last = rows[n - 1]

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
-
 from vines.attractors import _verdict as v
 from vines.attractors._follow import follow
 from vines.attractors._judge import clear, judge_window
@@ -13,12 +11,12 @@ from vines.attractors._window import measure_window, open_window, run_window
 from vines.dynamics import _advance as col
 from vines.dynamics._advance import set_state
 from vines.dynamics._constants import constants_kernel
-from vines.dynamics._jit import njit
+from vines.kernels import byte_vector, cold_njit, entry_njit, new_matrix, zero_vector
 
 __all__ = ["look", "look_at_block"]
 
 
-@njit
+@cold_njit
 def look(c, state, waited, stages, watch, cap, tolerance, rows, verdict):
     """Record a run from time 0 on, until it repeats or the last stage ends, and decide what it shows.
 
@@ -48,7 +46,7 @@ def look(c, state, waited, stages, watch, cap, tolerance, rows, verdict):
         The window's rows, their number, sides of the contacts in one repetition, and the totals of its measures.
     """
     period = 2.0 * math.pi / c.Omega
-    sides = np.empty(0, dtype=np.int8)
+    sides = byte_vector(0)
     count = open_window(state, rows)
     for stage in range(stages.shape[0]):
         stop = stages[stage] * period if waited == col.COMPLETE else state[col.S_T]
@@ -61,7 +59,7 @@ def look(c, state, waited, stages, watch, cap, tolerance, rows, verdict):
             clear(verdict)
             verdict[v.REGIME], verdict[v.REMAINING], verdict[v.REASON] = v.UNSETTLED, math.nan, v.CAPPED
             verdict[v.STATUS], verdict[v.RECORDED] = code, stages[stage]
-            sides = np.empty(0, dtype=np.int8)
+            sides = byte_vector(0)
             break
         # A window without impacts may only be too short.
         if verdict[v.REGIME] != v.OPEN and verdict[v.SCALE] > 0.0:
@@ -75,7 +73,7 @@ def look(c, state, waited, stages, watch, cap, tolerance, rows, verdict):
     return rows, count + 1, sides, totals
 
 
-@njit
+@entry_njit
 def look_at_block(parameters, starts, waited, stages, watch, cap, tolerance, impacts, verdicts, totals):
     """Do as `look` for many runs.
 
@@ -98,11 +96,11 @@ def look_at_block(parameters, starts, waited, stages, watch, cap, tolerance, imp
         Sides of the contacts of all repetitions, one behind the other; rows of the impacts, the number of the run last.
     """
     n = parameters.shape[0]
-    rows = np.empty((512, col.ROW))
-    state = np.zeros(col.STATE)
-    letters = np.empty(4 * n, dtype=np.int8)
+    rows = new_matrix(512, col.ROW)
+    state = zero_vector(col.STATE)
+    letters = byte_vector(4 * n)
     written = 0
-    hits = np.empty((16, col.ROW + 1))
+    hits = new_matrix(16, col.ROW + 1)
     filled = 0
     for k in range(n):
         p, s = parameters[k], starts[k]
@@ -111,7 +109,7 @@ def look_at_block(parameters, starts, waited, stages, watch, cap, tolerance, imp
         rows, count, sides, total = look(c, state, waited[k], stages, watch, cap, tolerance, rows, verdicts[k])
         totals[k] = total
         if written + sides.shape[0] > letters.shape[0]:
-            more = np.empty(2 * (written + sides.shape[0]), dtype=np.int8)
+            more = byte_vector(2 * (written + sides.shape[0]))
             more[:written] = letters[:written]
             letters = more
         letters[written : written + sides.shape[0]] = sides
@@ -119,7 +117,7 @@ def look_at_block(parameters, starts, waited, stages, watch, cap, tolerance, imp
         if not impacts:
             continue
         if filled + count > hits.shape[0]:
-            wider = np.empty((2 * (filled + count), col.ROW + 1))
+            wider = new_matrix(2 * (filled + count), col.ROW + 1)
             wider[:filled] = hits[:filled]
             hits = wider
         for i in range(1, count):

@@ -4,14 +4,12 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
-
 from vines.attractors import _verdict as v
 from vines.dynamics import _advance as col
 from vines.dynamics import _totals as entry
 from vines.dynamics._advance import advance, begin, state_now
-from vines.dynamics._jit import njit
 from vines.dynamics._totals import window_totals
+from vines.kernels import cold_njit, linked_njit, new_matrix, njit, zero_vector
 
 __all__ = ["measure_window", "open_window", "run_window"]
 
@@ -26,7 +24,7 @@ def open_window(state, rows):
     return 1
 
 
-@njit
+@linked_njit
 def run_window(c, state, stop, cap, rows, count):
     """Run on to `stop` with every row kept, and write the row of the end behind them.
 
@@ -51,12 +49,12 @@ def run_window(c, state, stop, cap, rows, count):
     """
     count, code = advance(c, state, stop, cap, rows, count)
     while code == col.BUFFER_FULL:
-        wider = np.empty((2 * rows.shape[0], col.ROW))
+        wider = new_matrix(2 * rows.shape[0], col.ROW)
         wider[:count] = rows[:count]
         rows = wider
         count, code = advance(c, state, stop, cap, rows, count)
     if count == rows.shape[0]:
-        wider = np.empty((2 * rows.shape[0], col.ROW))
+        wider = new_matrix(2 * rows.shape[0], col.ROW)
         wider[:count] = rows[:count]
         rows = wider
     end = stop if code == col.COMPLETE else state[col.S_T] + state[col.S_CLEAR]
@@ -70,7 +68,7 @@ def run_window(c, state, stop, cap, rows, count):
     return rows, count, code
 
 
-@njit
+@cold_njit
 def measure_window(c, rows, n, verdict):
     """Return the totals of a window: over one repetition if it is periodic, else over all of it with its errors.
 
@@ -84,12 +82,12 @@ def measure_window(c, rows, n, verdict):
         verdict[v.STICKING] = _sticking_share(rows, n, stop - span, stop, period)
         return window_totals(c, rows, n, stop - span, stop)
     verdict[v.STICKING] = _sticking_share(rows, n, 0.0, stop, period)
-    total = np.zeros(entry.TOTALS)
+    total = zero_vector(entry.TOTALS)
     width = stop / BLOCKS
     if not width > 0.0:
         verdict[v.KINETIC_RATIO_ERROR] = verdict[v.MAX_ABS_X1_ERROR] = verdict[v.RMS_X1_ERROR] = math.nan
         return total
-    values = np.empty((3, BLOCKS))
+    values = new_matrix(3, BLOCKS)
     for k in range(BLOCKS):
         part = window_totals(c, rows, n, k * width, stop if k == BLOCKS - 1 else (k + 1) * width)
         values[0, k] = c.mu * part[entry.V2_SQUARE] / part[entry.V1_SQUARE] if part[entry.V1_SQUARE] > 0.0 else math.nan
@@ -107,14 +105,14 @@ def measure_window(c, rows, n, verdict):
     return total
 
 
-@njit
+@cold_njit
 def _error_of_mean(values):
     n = values.shape[0]
     mean = values.sum() / n
     return math.sqrt(((values - mean) ** 2).sum() / (n - 1) / n)
 
 
-@njit
+@cold_njit
 def _sticking_share(rows, n, start, stop, period):
     """Return in which share of the forcing periods from `start` to `stop` the ball rides on a wall for a while."""
     whole = int((stop - start) / period + 1e-6)
@@ -131,7 +129,7 @@ def _sticking_share(rows, n, start, stop, period):
     return counted / whole if whole > 0 else 0.0
 
 
-@njit
+@cold_njit
 def _quiet_time(rows, n, span):
     """Return the middle of the longest pause in the last `span`, so that no event lies on the edge of a window."""
     last = rows[n - 1, col.TIME]

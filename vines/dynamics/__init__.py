@@ -5,7 +5,6 @@ tangent maps. Importing this room loads numba but compiles nothing.
 """
 
 from vines.dynamics._ensemble import Ensemble, ensemble
-from vines.dynamics._jit import CACHE
 from vines.dynamics._maps import P1, P2, P3, P4, Mapped, impact_map
 from vines.dynamics._measures import Measures
 from vines.dynamics._saltation import jacobian
@@ -15,6 +14,7 @@ from vines.dynamics._tangent import lyapunov_spectrum, tangent_map
 from vines.dynamics._trajectory import Trajectory
 from vines.dynamics._warm_up import warm_up
 from vines.dynamics._yardsticks import ball_locked, no_ball
+from vines.kernels import CACHE
 
 __all__ = [
     "CACHE",

@@ -10,8 +10,8 @@ import numpy as np
 
 from vines.dynamics._contact import CONTACT, NO_CONTACT, next_contact
 from vines.dynamics._flight import advance_phase, derivatives, phasors, turn
-from vines.dynamics._jit import fused_njit, loop_njit, njit
 from vines.dynamics._sticking import merges, next_release
+from vines.kernels import fused_njit, linked_njit, loop_njit, njit
 
 __all__ = [
     "A_V1",
@@ -84,7 +84,7 @@ SNAP = 8.0 * 2.220446049250313e-16
 """A start whose gap is this near to a wall, relative to the positions, is a start on that wall."""
 
 
-@njit
+@linked_njit
 def set_state(state, x1, v1, x2, v2, phase, t):
     """Put a run at its start: a state with |x1 - x2| <= 1 up to rounding, the phase of the forcing, and the time."""
     w = x1 - x2
@@ -105,7 +105,7 @@ def set_state(state, x1, v1, x2, v2, phase, t):
     state[S_PERIOD_START] = t
 
 
-@njit
+@linked_njit
 def state_now(c, state, t):
     """Return (x1, v1, x2, v2, phase, tau) at time t, which must not lie before the last event or after the next."""
     tau = (t - state[S_T]) - state[S_T_LOW]
@@ -285,7 +285,7 @@ def new_state() -> np.ndarray:
     return np.zeros(STATE)
 
 
-@njit
+@linked_njit
 def pass_over(c, state, stop, cap, rows):
     """Run on to `stop` keeping no row; `rows` is only room to work in. Returns COMPLETE, EVENT_CAP or STEP_LIMIT."""
     status = BUFFER_FULL

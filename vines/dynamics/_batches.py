@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 
-from vines.dynamics._jit import njit
 from vines.dynamics._totals import (
     DURATION,
     ENERGY_CHANGE,
@@ -15,6 +14,7 @@ from vines.dynamics._totals import (
     V2_SQUARE,
     X1_SQUARE,
 )
+from vines.kernels import linked_njit
 
 __all__ = ["BATCHES", "close_batch", "standard_errors"]
 
@@ -22,7 +22,7 @@ BATCHES = 8
 """Equal parts of the recorded time for standard errors, as many as `vines.attractors` takes."""
 
 
-@njit
+@linked_njit
 def close_batch(mu, part, total, values):
     """Add a part to the totals, keep its kinetic ratio, largest |x1| and rms of x1, and empty it."""
     for k in range(TOTALS):
@@ -36,7 +36,7 @@ def close_batch(mu, part, total, values):
     part[:] = 0.0
 
 
-@njit
+@linked_njit
 def standard_errors(values, errors):
     """Put the standard errors of the means of columns of `values`, one row a batch, into `errors`."""
     n = values.shape[0]

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-from vines.dynamics._jit import fused_njit, njit
+from vines.kernels import fused_njit, linked_njit
 from vines.model import Params
 
 __all__ = ["Constants", "Oscillator", "constants", "constants_kernel", "oscillator"]
@@ -151,7 +151,7 @@ def oscillator(mass, A, Omega, lam):
     )
 
 
-@njit
+@linked_njit
 def constants_kernel(mu, A, Omega, r, lam):
     """Return the `Constants` at bare parameter values, which must be those of a valid `Params`."""
     mass = 1.0 + mu

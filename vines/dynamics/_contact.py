@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 
 from vines.dynamics._flight import derivatives, fifth, sixth, turn
-from vines.dynamics._jit import fused_njit
 from vines.dynamics._steps import leaving_step, only_root, step_ahead, step_back, taylor_root
+from vines.kernels import fused_njit
 
 __all__ = [
     "BEYOND",

@@ -8,8 +8,8 @@ from __future__ import annotations
 
 import math
 
-from vines.dynamics._jit import fused_njit
 from vines.dynamics._sincos import sincos
+from vines.kernels import fused_njit
 
 __all__ = ["advance_phase", "decay", "derivatives", "fifth", "fourth_bound", "phasors", "sixth", "slow_growth", "turn"]
 

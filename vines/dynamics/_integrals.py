@@ -12,8 +12,8 @@ import numpy as np
 
 from vines.dynamics._contact import BEYOND, SPEED, close_in, modulus
 from vines.dynamics._flight import derivatives, fifth, phasors, slow_growth, turn
-from vines.dynamics._jit import fused_njit, loop_njit, njit
 from vines.dynamics._steps import only_root, step_ahead, step_back, taylor_root
+from vines.kernels import fused_njit, linked_njit, loop_njit
 
 __all__ = [
     "base_per_force",
@@ -50,7 +50,7 @@ def _away_from_resonance(o, u0, g0, u1, g1, length):
     return ug, free * remains + 2.0 * cross.real + steady * length
 
 
-@njit
+@linked_njit
 def _near_resonance(o, Omega, u0, g0, length):
     """Return the same integrals by quadrature of u exp(-i Omega t), which hardly changes."""
     detuning = complex(o.dr, o.di)
@@ -74,7 +74,7 @@ def _near_resonance(o, Omega, u0, g0, length):
     return ug, square
 
 
-@njit
+@linked_njit
 def segment_integrals(c, mode, x1, v1, v2, phase, length):
     """Return the integrals of x1^2, v1^2, v2^2, the base work and the damper loss over [0, length].
 

@@ -12,9 +12,9 @@ import math
 from vines.dynamics import _lane_fields as f
 from vines.dynamics import _totals as entry
 from vines.dynamics._integrals import base_per_force, quadratic_forms
-from vines.dynamics._jit import fused_njit, loop_njit, njit
 from vines.dynamics._lane_motion import MOST_DECAY, MOST_TURN, flow, forced_motion, free_derivatives, kept
 from vines.dynamics._steps import taylor_root
+from vines.kernels import fused_njit, linked_njit, loop_njit
 
 __all__ = ["MEND_PEAK", "lane_energies", "lane_peak", "measure", "open_measures", "renew"]
 
@@ -60,7 +60,7 @@ def _turned(a, b):
     return 0.5 * PI - arc
 
 
-@njit
+@linked_njit
 def open_measures(c, L, i, length, x1):
     """Put what the measures of a run need into a lane: constants, and a part that begins at displacement x1."""
     o = c.free

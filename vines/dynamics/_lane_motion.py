@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from vines.dynamics import _lane_fields as f
-from vines.dynamics._jit import fused_njit, loop_njit
 from vines.dynamics._sincos import eighth_turn
+from vines.kernels import fused_njit, loop_njit
 
 __all__ = [
     "MOST_DECAY",

@@ -13,11 +13,21 @@ import numpy as np
 from vines.dynamics import _advance as col
 from vines.dynamics import _lane_fields as f
 from vines.dynamics._batches import BATCHES, standard_errors
-from vines.dynamics._jit import fused_njit, njit
 from vines.dynamics._lane_measures import open_measures
 from vines.dynamics._lane_segments import begin_segment, close_part, part_of
 from vines.dynamics._tangent import flow_basis, jump_basis, orthonormalise
 from vines.dynamics._totals import DURATION, ENERGY_CHANGE, TOTALS, state_energy
+from vines.kernels import (
+    entry_njit,
+    fused_njit,
+    identity,
+    linked_njit,
+    new_matrix,
+    new_vector,
+    zero_cube,
+    zero_integers,
+    zero_matrix,
+)
 
 __all__ = ["DEPTH", "arrange", "close_record", "digest", "keep_row", "new_record", "open_record"]
 
@@ -28,7 +38,7 @@ DEAD = 1e-150
 """Growth below which a direction counts as gone: sticking removes it exactly."""
 
 
-@njit
+@linked_njit
 def new_record(lanes, what_rows, what_totals, what_growth):
     """Return room for the records of all lanes, as a tuple of arrays.
 
@@ -39,18 +49,18 @@ def new_record(lanes, what_rows, what_totals, what_growth):
     n = lanes if what_totals else 0
     m = lanes if what_growth else 0
     return (
-        np.zeros((k, DEPTH + 1, col.ROW)),
-        np.zeros(lanes, dtype=np.int64),
-        np.zeros((n, TOTALS)),
-        np.zeros((n, BATCHES, 3)),
-        np.zeros(lanes, dtype=np.int64),
-        np.zeros((lanes, 2)),
-        np.zeros((m, 4, 4)),
-        np.zeros((m, BATCHES, 5)),
+        zero_cube(k, DEPTH + 1, col.ROW),
+        zero_integers(lanes),
+        zero_matrix(n, TOTALS),
+        zero_cube(n, BATCHES, 3),
+        zero_integers(lanes),
+        zero_matrix(lanes, 2),
+        zero_cube(m, 4, 4),
+        zero_cube(m, BATCHES, 5),
     )
 
 
-@njit
+@linked_njit
 def open_record(c, L, record, i, length, since, mode, x1, v1, x2, v2, phase):
     """Begin the part of a run that is kept, `since` after the last event."""
     rows, count, total, values, batch, segment, basis, growth = record
@@ -71,7 +81,7 @@ def open_record(c, L, record, i, length, since, mode, x1, v1, x2, v2, phase):
         open_measures(c, L, i, length, x1)
         begin_segment(L, segment, i, 0, length, since, mode, x1, v1, v2, phase)
     if basis.shape[0]:
-        basis[i, :, :] = np.eye(4)
+        basis[i, :, :] = identity(4)
         growth[i, :, :] = 0.0
 
 
@@ -86,10 +96,10 @@ def keep_row(rows, count, i):
     return k == DEPTH
 
 
-@njit
+@linked_njit
 def _digest_growth(c, rows, n, Y, growth, width):
     """Carry disturbances over n rows; their growth goes to the batch in which a row lies."""
-    gains = np.empty(4)
+    gains = new_vector(4)
     product = np.ones(4)
     running = min(int(rows[1, col.TIME] / width), BATCHES - 1)
     for j in range(1, n):
@@ -108,7 +118,7 @@ def _digest_growth(c, rows, n, Y, growth, width):
     _log_growth(product, growth[running])
 
 
-@njit
+@linked_njit
 def _log_growth(product, growth):
     """Move growth from factors to logarithms: one logarithm for many events."""
     for k in range(4):
@@ -116,7 +126,7 @@ def _log_growth(product, growth):
         product[k] = 1.0
 
 
-@njit
+@linked_njit
 def digest(c, record, i, length, what_growth, what_impacts, events, filled, who):
     """Digest the rows that wait in a lane; return how much of `events` is filled, -1 if it is full."""
     rows, count, _, _, _, _, basis, growth = record
@@ -138,7 +148,7 @@ def digest(c, record, i, length, what_growth, what_impacts, events, filled, who)
     return filled
 
 
-@njit
+@linked_njit
 def close_record(c, L, record, i, energy, who, totals, errors, growths, growth_errors):
     """Write what a record has gathered to row `who`; standard errors are nan if the run ended before its time."""
     _, _, total, values, batch, _, _, growth = record
@@ -153,7 +163,7 @@ def close_record(c, L, record, i, energy, who, totals, errors, growths, growth_e
         if whole:
             standard_errors(values[i], errors[who])
     if growth.shape[0]:
-        rates = np.empty((BATCHES, 4))
+        rates = new_matrix(BATCHES, 4)
         growths[who, :] = 0.0
         for b in range(BATCHES):
             growths[who] += growth[i, b]
@@ -164,10 +174,10 @@ def close_record(c, L, record, i, energy, who, totals, errors, growths, growth_e
                 growth_errors[who, k] = 0.0
 
 
-@njit
+@entry_njit
 def arrange(events, runs, start, out):
     """Sort impacts, the number of their run last, by run, keeping the order of time, into records of RUN_IMPACT."""
-    begins = np.zeros(runs + 1, dtype=np.int64)
+    begins = zero_integers(runs + 1)
     for k in range(events.shape[0]):
         begins[int(events[k, col.ROW]) + 1] += 1
     for run in range(runs):

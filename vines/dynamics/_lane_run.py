@@ -12,13 +12,13 @@ from vines.dynamics import _advance as col
 from vines.dynamics import _lane_fields as f
 from vines.dynamics._advance import advance, set_state, state_now
 from vines.dynamics._constants import constants_kernel
-from vines.dynamics._jit import njit
 from vines.dynamics._lane_measures import measure, renew
 from vines.dynamics._lane_record import close_record, digest, keep_row, new_record, open_record
 from vines.dynamics._lane_segments import end_segment, mend
 from vines.dynamics._lane_state import fill_lane, may_fly, row_of, take_lane
 from vines.dynamics._lanes import tick
 from vines.dynamics._totals import state_energy
+from vines.kernels import entry_njit, linked_njit, njit, zero_matrix, zero_vector
 
 __all__ = ["CAP", "DONE", "FINAL", "LIMIT", "OVERFLOW", "WITH_EXPONENTS", "WITH_IMPACTS", "WITH_MEASURES", "run_block"]
 
@@ -40,15 +40,15 @@ def _constants_of(parameters):
     return constants_kernel(parameters[0], parameters[1], parameters[2], parameters[3], parameters[4])
 
 
-@njit
+@linked_njit
 def _room():
     """Return room for the lanes that begins where a line of the cache begins."""
-    room = np.zeros(f.SIZE + 8)
+    room = zero_vector(f.SIZE + 8)
     skip = (-(room.ctypes.data // 8)) % 8
     return room[skip : skip + f.SIZE]
 
 
-@njit
+@entry_njit
 def run_block(
     parameters,
     starts,
@@ -101,9 +101,9 @@ def run_block(
     n = parameters.shape[0]
     L = _room()
     L[f.WAITS : f.WAITS + LANES] = 1.0
-    state = np.zeros(col.STATE)
-    row = np.zeros((1, col.ROW))
-    last = np.zeros(col.ROW)
+    state = zero_vector(col.STATE)
+    row = zero_matrix(1, col.ROW)
+    last = zero_vector(col.ROW)
     energies = what & WITH_MEASURES != 0
     rates = what & WITH_EXPONENTS != 0
     impacts = what & WITH_IMPACTS != 0

@@ -8,14 +8,11 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
-
 from vines.dynamics import _advance as col
 from vines.dynamics import _lane_fields as f
 from vines.dynamics._batches import BATCHES, close_batch
 from vines.dynamics._flight import advance_phase
 from vines.dynamics._integrals import largest_displacement
-from vines.dynamics._jit import njit
 from vines.dynamics._lane_measures import MEND_PEAK, lane_energies, lane_peak
 from vines.dynamics._lane_motion import flow, forced_motion
 from vines.dynamics._sincos import sincos
@@ -31,6 +28,7 @@ from vines.dynamics._totals import (
     count_event,
     segment_state,
 )
+from vines.kernels import linked_njit, new_vector, njit, zero_vector
 
 __all__ = ["begin_segment", "close_part", "end_segment", "mend", "part_of"]
 
@@ -38,12 +36,12 @@ LARGEST = f.PART + MAX_ABS_X1 * f.STRIDE
 WHEN_LARGEST = f.PART + T_MAX_ABS_X1 * f.STRIDE
 
 
-@njit
+@linked_njit
 def _one_energies(L, i):
     lane_energies(L, i)
 
 
-@njit
+@linked_njit
 def _one_peak(L, i):
     lane_peak(L, i)
 
@@ -54,7 +52,7 @@ def _part_ends(batch, length):
     return length * (1.0 - (batch + 1.0) / BATCHES) if batch < BATCHES - 1 else -1.0
 
 
-@njit
+@linked_njit
 def begin_segment(L, segment, i, batch, length, since, mode, x1, v1, v2, phase):
     """Begin a segment in a lane whose last event was at `since` before it."""
     sine, cosine = sincos(phase)
@@ -64,21 +62,21 @@ def begin_segment(L, segment, i, batch, length, since, mode, x1, v1, v2, phase):
     L[f.PART_ENDS + i] = _part_ends(batch, length)
 
 
-@njit
+@linked_njit
 def part_of(L, i):
     """Return the totals of the running part."""
-    part = np.empty(TOTALS)
+    part = new_vector(TOTALS)
     for k in range(TOTALS):
         part[k] = L[f.PART + k * f.STRIDE + i]
     return part
 
 
-@njit
+@linked_njit
 def end_segment(c, L, record, i, length, row):
     """Add the segment that a row ends, cut where a part ends, and what its event costs; begin the next segment."""
     _, _, total, values, batch, segment, _, _ = record
     part = part_of(L, i)
-    start = np.zeros(col.ROW)
+    start = zero_vector(col.ROW)
     mode, v2 = segment[i]
     x1, v1 = L[f.FROM_X + i], L[f.FROM_V + i]
     phase = advance_phase(math.atan2(L[f.FROM_SIN + i], L[f.FROM_COS + i]), 0.0)
@@ -116,13 +114,13 @@ def end_segment(c, L, record, i, length, row):
     )
 
 
-@njit
+@linked_njit
 def close_part(mu, L, record, i, part):
     """Add the running part of a lane to its totals."""
     close_batch(mu, part, record[2][i], record[3][i, record[4][i]])
 
 
-@njit
+@linked_njit
 def _at(L, i, h):
     """Return free displacement and velocity and the phasor a time h after the start of a segment."""
     cosine, sine = L[f.FROM_COS + i], L[f.FROM_SIN + i]
@@ -156,7 +154,7 @@ def _set_end(L, i, end):
     L[f.X_FREE + i], L[f.COS + i], L[f.SIN + i], L[f.BEFORE1 + i], L[f.FLIGHT + i], L[f.LEFT + i], L[f.WALL + i] = end
 
 
-@njit
+@linked_njit
 def _end_at(L, i, h, left):
     """Let a flight end, without an impact, a time h after the start of its segment; return x1 and v1 there."""
     xh, vh, cosine, sine = _at(L, i, h)
@@ -165,7 +163,7 @@ def _end_at(L, i, h, left):
     return xh + xq, vh + vq
 
 
-@njit
+@linked_njit
 def _from_end(L, i, x1, v1):
     """Begin a segment where the last one ended, in flight."""
     L[f.FROM_X + i], L[f.FROM_V + i] = x1, v1
@@ -173,7 +171,7 @@ def _from_end(L, i, x1, v1):
     L[f.FROM_TAU + i] = L[f.FLIGHT + i]
 
 
-@njit
+@linked_njit
 def _peak_in_halves(L, i):
     """Search each half of a flight for its peak, as the lanes do; say whether that was enough."""
     begin = L[f.FROM_X + i], L[f.FROM_V + i], L[f.FROM_COS + i], L[f.FROM_SIN + i], L[f.FROM_TAU + i]
@@ -192,7 +190,7 @@ def _peak_in_halves(L, i):
     return L[f.MEND + i] == 0.0
 
 
-@njit
+@linked_njit
 def _mend_peak(c, L, i):
     """Search a flight, which the lanes could not, for its peak."""
     if _peak_in_halves(L, i):
@@ -206,7 +204,7 @@ def _mend_peak(c, L, i):
     L[f.MEND + i] = 0.0
 
 
-@njit
+@linked_njit
 def _one_by_scalar(c, L, i):
     """Take the measures of a flight by the scalar functions."""
     part = part_of(L, i)
@@ -223,7 +221,7 @@ def _one_by_scalar(c, L, i):
     L[f.MEND + i] = 0.0
 
 
-@njit
+@linked_njit
 def _measure_one(c, L, i):
     _one_energies(L, i)
     if L[f.MEND + i] != 0.0:
@@ -234,7 +232,7 @@ def _measure_one(c, L, i):
         _mend_peak(c, L, i)
 
 
-@njit
+@linked_njit
 def _cut(c, L, record, i, length):
     """Take the measures of a flight in which parts end, up to each of these ends and from the last one on."""
     end = _end_of(L, i)
@@ -254,7 +252,7 @@ def _cut(c, L, record, i, length):
     _measure_one(c, L, i)
 
 
-@njit
+@linked_njit
 def mend(c, L, record, i, length):
     """Do for the impact of a lane what `measure` has left to do."""
     if L[f.MEND + i] == MEND_PEAK:

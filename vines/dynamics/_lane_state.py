@@ -8,11 +8,11 @@ from vines.dynamics import _advance as col
 from vines.dynamics import _lane_fields as f
 from vines.dynamics._contact import first_step, modulus
 from vines.dynamics._flight import advance_phase, fifth, phasors, turn
-from vines.dynamics._jit import njit
 from vines.dynamics._lane_motion import MOST_DECAY, MOST_TURN
 from vines.dynamics._lanes import HEIGHT_OF_BOUND, LOOSER
 from vines.dynamics._sincos import sincos
 from vines.dynamics._sticking import UNRESOLVED, merges
+from vines.kernels import linked_njit, njit
 
 __all__ = ["fill_lane", "may_fly", "row_of", "take_lane"]
 
@@ -20,7 +20,7 @@ LANE_LARGE = 256.0
 """Steady amplitude above which the scalar kernel takes every flight: lanes keep free and forced motion apart."""
 
 
-@njit
+@linked_njit
 def fill_lane(c, state, L, i, length):
     """Put a lane where the scalar state is, in flight; say whether it can run there."""
     wall = state[col.S_WALL]
@@ -96,7 +96,7 @@ def _clock(omega, period, phase, phase0, roughly):
     return part + period * round((roughly - part) / period)
 
 
-@njit
+@linked_njit
 def take_lane(c, L, i, state, length, phase0):
     """Put the scalar state where the flight of a lane began."""
     tau = L[f.TAU + i]
@@ -128,7 +128,7 @@ def take_lane(c, L, i, state, length, phase0):
     state[col.S_DECIDE] = 1.0 if struck else 0.0
 
 
-@njit
+@linked_njit
 def may_fly(c, state):
     """Say whether the scalar state is that of an ordinary flight."""
     if state[col.S_MODE] != 0.0:
@@ -141,7 +141,7 @@ def may_fly(c, state):
     return True
 
 
-@njit
+@linked_njit
 def row_of(L, i, row, length, phase0):
     """Write the row of the impact that a lane had in this tick."""
     sine, cosine = L[f.SIN + i], L[f.COS + i]

@@ -7,9 +7,9 @@ from __future__ import annotations
 
 from vines.dynamics import _lane_fields as f
 from vines.dynamics._contact import BEYOND
-from vines.dynamics._jit import loop_njit
 from vines.dynamics._lane_motion import forced_motion, free_derivatives, kept
 from vines.dynamics._steps import only_root, taylor_root
+from vines.kernels import loop_njit
 
 __all__ = ["look", "polish", "strike"]
 

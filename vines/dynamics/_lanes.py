@@ -8,11 +8,11 @@ WAITS; the scalar kernel then does it.
 from __future__ import annotations
 
 from vines.dynamics import _lane_fields as f
-from vines.dynamics._jit import fused_njit, loop_njit
 from vines.dynamics._lane_motion import forced_motion, free_derivatives, go_to_root, kept, step_on
 from vines.dynamics._lane_strike import look, polish, strike
 from vines.dynamics._steps import step_ahead, step_back
 from vines.dynamics._sticking import OMITTED, UNRESOLVED
+from vines.kernels import fused_njit, loop_njit
 
 __all__ = ["HEIGHT_OF_BOUND", "LOOSER", "certify", "choose", "tick"]
 

@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from vines.dynamics._jit import njit
+from vines.kernels import njit
 
 __all__ = ["normal", "uniform"]
 

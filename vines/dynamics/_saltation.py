@@ -13,9 +13,9 @@ import numpy.typing as npt
 
 from vines.dynamics._constants import oscillator
 from vines.dynamics._flight import decay, derivatives, phasors, turn
-from vines.dynamics._jit import njit
 from vines.dynamics._sincos import sincos
 from vines.errors import StateError
+from vines.kernels import entry_njit, new_matrix, zero_matrix
 from vines.model import Params
 
 __all__ = ["jacobian", "jacobian_kernel"]
@@ -24,7 +24,7 @@ GAP_TOLERANCE = 1e-6
 """How far the gap may be from the named wall at either impact before the arguments are taken to be wrong."""
 
 
-@njit
+@entry_njit
 def jacobian_kernel(mu, A, Omega, r, lam, x1, v1, v2, phase, tau):
     """Return (J, x1, v1, v2): the 4x4 Jacobian over a flight of length tau, and the oscillator and ball at its end.
 
@@ -39,7 +39,7 @@ def jacobian_kernel(mu, A, Omega, r, lam, x1, v1, v2, phase, tau):
     x1n, v1n, a1n, _, _ = derivatives(o, Omega, ur, ui, gr, gi)
 
     # Columns of [R E, -f+] in the coordinates (x1, v1, x2, v2).
-    start = np.zeros((4, 4))
+    start = zero_matrix(4, 4)
     start[0, 2] = 1.0
     start[2, 2] = 1.0
     start[1, 0] = (1.0 - r * mu) / (1.0 + mu)
@@ -54,14 +54,14 @@ def jacobian_kernel(mu, A, Omega, r, lam, x1, v1, v2, phase, tau):
     sine, cosine = sincos(o.gamma * tau)
     sine *= size * o.inverse
     cosine *= size
-    grown = np.empty((4, 4))
+    grown = new_matrix(4, 4)
     for j in range(4):
         grown[0, j] = (cosine + o.half * sine) * start[0, j] + sine * start[1, j]
         grown[1, j] = -sine * start[0, j] + (cosine - o.half * sine) * start[1, j]
         grown[2, j] = start[2, j] + tau * start[3, j]
         grown[3, j] = start[3, j]
 
-    J = np.empty((4, 4))
+    J = new_matrix(4, 4)
     closing = v1n - v2p
     for j in range(4):
         shift = (grown[0, j] - grown[2, j]) / closing

@@ -16,11 +16,11 @@ from vines.dynamics import _advance as col
 from vines.dynamics import _totals as entry
 from vines.dynamics._batches import BATCHES, close_batch, standard_errors
 from vines.dynamics._flight import advance_phase
-from vines.dynamics._jit import njit
 from vines.dynamics._random import normal
 from vines.dynamics._sincos import sincos
 from vines.dynamics._steps import leaving_step, quartic_root, safe_step
 from vines.errors import ParameterError
+from vines.kernels import entry_njit, linked_njit, njit, zero_matrix, zero_vector
 
 __all__ = ["Scatter", "scatter_block"]
 
@@ -224,7 +224,7 @@ def _towards(d, s, side, bound, window, fresh):
     return h, math.nan
 
 
-@njit
+@linked_njit
 def _energies(o, p, numbers, s, h, total, t):
     """Add the energies of a step of length h to the totals."""
     A, Omega, lam = p[1], p[2], p[4]
@@ -288,7 +288,7 @@ def _write(events, filled, who, kind, side, t, tau, s, v1, v2):
     row[col.MODE], row[col.ROW] = s[MODE], who
 
 
-@njit
+@entry_njit
 def scatter_block(
     parameters, starts, first, lengths, cap, what, finals, totals, errors, counts, status, events, numbers, base
 ):
@@ -300,9 +300,9 @@ def scatter_block(
         Events filled.
     """
     filled = 0
-    free, stuck = np.zeros(7), np.zeros(7)
-    none, total, values = np.zeros(entry.TOTALS), np.zeros(entry.TOTALS), np.zeros((BATCHES, 3))
-    s, d = np.zeros(8), np.zeros(6)
+    free, stuck = zero_vector(7), zero_vector(7)
+    none, total, values = zero_vector(entry.TOTALS), zero_vector(entry.TOTALS), zero_matrix(BATCHES, 3)
+    s, d = zero_vector(8), zero_vector(6)
     key = int(numbers[6])
     for who in range(parameters.shape[0]):
         p = parameters[who]

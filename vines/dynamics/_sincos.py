@@ -6,7 +6,7 @@ to about one unit in the last place of 1 for the angles that occur here, |x| < 1
 
 from __future__ import annotations
 
-from vines.dynamics._jit import fused_njit
+from vines.kernels import fused_njit
 
 __all__ = ["eighth_turn", "sincos"]
 

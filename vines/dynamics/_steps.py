@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 
-from vines.dynamics._jit import fused_njit, njit
+from vines.kernels import fused_njit, njit
 
 __all__ = ["leaving_step", "only_root", "quartic_root", "safe_step", "step_ahead", "step_back", "taylor_root"]
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from vines.dynamics._contact import BEYOND, CONTACT, FEW_ULP, FORCE, MAX_STEPS, NO_CONTACT, STEP_CAP, close_in, modulus
 from vines.dynamics._flight import derivatives, fifth, turn
-from vines.dynamics._jit import fused_njit, loop_njit
 from vines.dynamics._steps import leaving_step, only_root, safe_step, taylor_root
+from vines.kernels import fused_njit, loop_njit
 
 __all__ = ["merges", "next_release"]
 

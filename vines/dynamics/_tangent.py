@@ -15,10 +15,10 @@ import numpy.typing as npt
 from vines.dynamics._advance import IMPACT, KIND, MODE, PHASE, STICK, TAU, TIME, V1, V2, X1
 from vines.dynamics._constants import constants
 from vines.dynamics._flight import decay, derivatives, phasors
-from vines.dynamics._jit import fused_njit, njit
 from vines.dynamics._sincos import sincos
 from vines.dynamics._trajectory import Trajectory
 from vines.errors import StateError
+from vines.kernels import fused_njit, identity, linked_njit, zero_matrix, zero_vector
 
 __all__ = [
     "flow_basis",
@@ -84,10 +84,10 @@ def jump_basis(c, row, Y):
             Y[3, j] = v
 
 
-@njit
+@linked_njit
 def tangent_product(c, rows, first, last):
     """Return the 4x4 tangent map from just after row `first` to just after row `last`."""
-    Y = np.eye(4)
+    Y = identity(4)
     for i in range(first + 1, last + 1):
         flow_basis(c, rows[i - 1, MODE], rows[i, TAU], Y)
         jump_basis(c, rows[i], Y)
@@ -114,14 +114,14 @@ def orthonormalise(Y, gains):
             Y[i, j] *= scale
 
 
-@njit
+@linked_njit
 def lyapunov_blocks(c, rows, n, start, stop, blocks, Y):
     """Return (blocks, 5): logarithmic growth of the four directions in equal blocks of time, and each block's length.
 
     The columns of Y, orthonormal at the first row, are carried on in place; growth before `start` is not counted.
     """
-    out = np.zeros((blocks, 5))
-    gains = np.zeros(4)
+    out = zero_matrix(blocks, 5)
+    gains = zero_vector(4)
     width = (stop - start) / blocks
     for i in range(1, n):
         flow_basis(c, rows[i - 1, MODE], rows[i, TAU], Y)

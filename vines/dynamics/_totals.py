@@ -22,7 +22,7 @@ from vines.dynamics._advance import (
 )
 from vines.dynamics._flight import advance_phase, derivatives, phasors, turn
 from vines.dynamics._integrals import energies_between, peak_between, segment_integrals
-from vines.dynamics._jit import njit
+from vines.kernels import entry_njit, linked_njit, njit, zero_matrix, zero_vector
 
 __all__ = ["accumulate", "add_segment", "count_event", "segment_state", "state_energy", "window_totals"]
 
@@ -47,7 +47,7 @@ __all__ = ["accumulate", "add_segment", "count_event", "segment_state", "state_e
 TOTALS = 15
 
 
-@njit
+@linked_njit
 def segment_state(c, row, tau):
     """Return (x1, v1, x2, v2, phase) at time tau after a row, before the next one."""
     mode = row[MODE]
@@ -87,7 +87,7 @@ def count_event(c, out, row):
         out[STICKS_LEFT if left else STICKS_RIGHT] += 1.0
 
 
-@njit
+@linked_njit
 def add_segment(c, out, mode, begins, x1, v1, v2, phase, length):
     """Add the motion of a segment, given by the state at its start, to the totals."""
     o = c.stuck if mode != 0.0 else c.free
@@ -106,13 +106,13 @@ def add_segment(c, out, mode, begins, x1, v1, v2, phase, length):
         out[T_MAX_ABS_X1] = begins + when
 
 
-@njit
+@linked_njit
 def window_totals(c, rows, n, start, stop):
     """Return the totals of the time window (start, stop] of a run of n rows, the last of which ends it.
 
     Events exactly at `start` count only if they belong to the run's first instant.
     """
-    out = np.zeros(TOTALS)
+    out = zero_vector(TOTALS)
     opened = False
     energy = 0.0
     for i in range(n):
@@ -156,11 +156,11 @@ def window_totals(c, rows, n, start, stop):
     return out
 
 
-@njit
+@entry_njit
 def accumulate(c, rows):
     """Return, for each row, base work, damper loss and impact loss from the first row to just after it: (n, 3)."""
     n = rows.shape[0]
-    out = np.zeros((n, 3))
+    out = zero_matrix(n, 3)
     for i in range(1, n):
         row = rows[i - 1]
         _, _, _, work, loss = segment_integrals(c, row[MODE], row[X1], row[A_V1], row[A_V2], row[PHASE], rows[i, TAU])
@@ -170,7 +170,7 @@ def accumulate(c, rows):
     return out
 
 
-@njit
+@entry_njit
 def sample_rows(c, rows, totals, segment, tau, before, out):
     """Fill out[:, :] with x1, v1, x2, v2, phase, stuck, base work, damper loss, impact loss at given places.
 

@@ -8,11 +8,11 @@ from collections.abc import Callable
 import numpy as np
 
 from vines.dynamics._ensemble import ensemble
-from vines.dynamics._jit import CACHE
 from vines.dynamics._saltation import jacobian
 from vines.dynamics._scatter import Scatter
 from vines.dynamics._simulate import simulate
 from vines.dynamics._tangent import lyapunov_spectrum, tangent_map
+from vines.kernels import CACHE
 from vines.model import Params
 
 __all__ = ["timed", "warm_up"]

@@ -10,9 +10,9 @@ import numpy.typing as npt
 from vines.dynamics import Measures
 from vines.dynamics import _advance as column
 from vines.dynamics._constants import Constants
-from vines.dynamics._jit import njit
 from vines.dynamics._measures import measures_from
 from vines.dynamics._totals import window_totals
+from vines.kernels import entry_njit, zero_matrix
 from vines.model import Params, Word
 
 __all__ = ["orbit_measures"]
@@ -20,11 +20,11 @@ __all__ = ["orbit_measures"]
 Floats = npt.NDArray[np.float64]
 
 
-@njit
+@entry_njit
 def _totals(c, duration, side, t, states):
     """Return the totals of the window from just after the first impact to just after its return."""
     N = t.size
-    rows = np.zeros((N + 1, column.ROW))
+    rows = zero_matrix(N + 1, column.ROW)
     for k in range(N + 1):
         j = k % N
         row = rows[k]

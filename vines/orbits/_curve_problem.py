@@ -6,7 +6,7 @@ import numpy as np
 import numpy.typing as npt
 
 from vines.dynamics._constants import constants
-from vines.dynamics._jit import njit
+from vines.kernels import entry_njit, linked_njit, new_vector
 from vines.model import PARAMETER_NAMES, Params
 from vines.orbits._assemble import assemble
 from vines.orbits._closed_form import family_of, impact_states
@@ -31,7 +31,7 @@ _CODES = {
 }
 
 
-@njit
+@linked_njit
 def _append(out, n, kind, values, p, side, t, states, half, place, wall, tau):
     """Write the defining equation behind the n closing equations."""
     first, second = condition_kernel(kind, values, p, side, t, states, half, place, wall, tau)
@@ -40,13 +40,13 @@ def _append(out, n, kind, values, p, side, t, states, half, place, wall, tau):
         out[n + 1] = second
 
 
-@njit
+@entry_njit
 def _general(kind, values, first, second, p, side, n, half, place, wall, y):
     """Return the closing equations in n phases with the defining equation appended, shape (y.size - 1,)."""
     values = values.copy()
     values[first], values[second] = y[-2], y[-1]
     defect, _, t, states = closing_at(values, p, side, y[:n])
-    out = np.empty(y.size - 1)
+    out = new_vector(y.size - 1)
     out[:n] = defect
     _append(out, n, kind, values, p, side, t, states, half, place, wall, y[n])
     return out

@@ -11,8 +11,8 @@ import math
 import numpy as np
 
 from vines.dynamics._flight import derivatives, phasors, turn
-from vines.dynamics._jit import njit
 from vines.dynamics._saltation import jacobian_kernel
+from vines.kernels import identity, linked_njit, new_matrix, sum_of
 from vines.orbits._turning import turning_points_kernel
 from vines.orbits._values import essentials
 
@@ -22,11 +22,11 @@ FOLD, FLIP, TORUS, GRAZE, STOP = range(5)
 """Codes of the defining equations: a multiplier +1, -1, a pair of product 1, a turning point on a wall, w' = 0."""
 
 
-@njit
+@linked_njit
 def _period_map(values, duration, side, t, states, half):
     """Return M, or H where `half`, of an orbit with these impacts."""
     mu, A, Omega, r, lam = values[0], values[1], values[2], values[3], values[4]
-    product = np.eye(4)
+    product = identity(4)
     for j in range(t.size // 2 if half else t.size):
         tau = t[j + 1] - t[j] if j + 1 < t.size else t[0] + duration - t[j]
         x1, v1, v2 = states[j, 0], states[j, 1], states[j, 3]
@@ -37,20 +37,20 @@ def _period_map(values, duration, side, t, states, half):
     return product
 
 
-@njit
+@linked_njit
 def _without_pair(M):
     """Return det(I - C), C the second compound of M: the product of 1 - m_i m_j over all pairs."""
     rows = ((0, 1), (0, 2), (0, 3), (1, 2), (1, 3), (2, 3))
-    C = np.empty((6, 6))
+    C = new_matrix(6, 6)
     for a in range(6):
         i, j = rows[a]
         for b in range(6):
             k, m = rows[b]
             C[a, b] = M[i, k] * M[j, m] - M[i, m] * M[j, k]
-    return np.linalg.det(np.eye(6) - C)
+    return np.linalg.det(identity(6) - C)
 
 
-@njit
+@linked_njit
 def gap_kernel(values, t, states, flight, tau):
     """Return w, w' and w'' at time tau of a flight."""
     c = essentials(values)
@@ -64,7 +64,7 @@ def gap_kernel(values, t, states, flight, tau):
     return x - x2 - ball * tau, v - ball, a
 
 
-@njit
+@linked_njit
 def condition_kernel(kind, values, p, side, t, states, half, place, wall, tau):
     """Return the two numbers of which the first, and for GRAZE also the second, vanishes at the bifurcation.
 
@@ -91,13 +91,13 @@ def condition_kernel(kind, values, p, side, t, states, half, place, wall, tau):
     if kind == STOP:
         return states[place, 1] - states[place, 3], 0.0
     M = _period_map(values, 2.0 * math.pi * p / values[2], side, t, states, half)
-    size = 1.0 + math.sqrt(np.sum(M * M))
+    size = 1.0 + math.sqrt(sum_of(M * M))
     if kind == TORUS:
         return _without_pair(M) / (size * size), 0.0
-    return np.linalg.det(np.eye(4) - M if kind == FOLD else np.eye(4) + M) / size, 0.0
+    return np.linalg.det(identity(4) - M if kind == FOLD else identity(4) + M) / size, 0.0
 
 
-@njit
+@linked_njit
 def turnings_kernel(c, duration, t, states):
     """Return all turning points of the gap, rows of flight, time since its start, wall it points at, clearance, w''.
 
@@ -120,7 +120,7 @@ def turnings_kernel(c, duration, t, states):
             x, _, bend, _, _ = derivatives(c.free, c.Omega, a, b, d, e)
             wall = 1.0 if bend < 0.0 else -1.0
             rows.append((float(j), at, wall, 1.0 - wall * (x - x2 - ball * at), bend))
-    out = np.empty((len(rows), 5))
+    out = new_matrix(len(rows), 5)
     for i in range(len(rows)):
         for k in range(5):
             out[i, k] = rows[i][k]

@@ -6,7 +6,7 @@ import cmath
 
 import numpy as np
 
-from vines.dynamics._jit import njit
+from vines.kernels import complex_vector, linked_njit, new_vector, njit
 
 __all__ = ["eigenvalues_kernel"]
 
@@ -19,7 +19,7 @@ def _size(z):
     return abs(z.real) + abs(z.imag)
 
 
-@njit
+@linked_njit
 def eigenvalues_kernel(H, out):
     """Fill `out`, shape (n,), with the eigenvalues of H, shape (n, n), complex, which is overwritten.
 
@@ -48,8 +48,8 @@ def eigenvalues_kernel(H, out):
                         H[k, m] += factor * H[k, i]
     high = n - 1
     low = 0
-    cosines = np.empty(n)
-    sines = np.empty(n, dtype=np.complex128)
+    cosines = new_vector(n)
+    sines = complex_vector(n)
     for sweep in range(_SWEEPS):
         while high >= 0:
             low = high

@@ -12,14 +12,14 @@ import math
 
 import numpy as np
 
-from vines.dynamics._jit import njit
+from vines.kernels import linked_njit, max_abs, new_cube, new_matrix, new_vector, zero_matrix
 
 __all__ = ["closing_kernel", "eliminate", "newton_kernel"]
 
 _EPS = 2.220446049250313e-16
 
 
-@njit
+@linked_njit
 def eliminate(matrix, right):
     """Solve matrix x = right in place, right of shape (N, M), by Gaussian elimination; say whether it was regular."""
     N = matrix.shape[0]
@@ -50,7 +50,7 @@ def eliminate(matrix, right):
     return True
 
 
-@njit
+@linked_njit
 def closing_kernel(c, duration, side, t):
     """Return the closing equations at given impact times, and what was eliminated on the way.
 
@@ -81,8 +81,8 @@ def closing_kernel(c, duration, side, t):
     q = complex(c.free.qr, c.free.qi)
 
     # g, g', g'' of t_j - t_k modulo the period; on the diagonal g(0), and g' just before the kick.
-    g = np.empty((3, N, N))
-    forced = np.empty((3, N))
+    g = new_cube(3, N, N)
+    forced = new_matrix(3, N)
     for j in range(N):
         turned = q * cmath.exp(complex(0.0, c.Omega * t[j]))
         forced[0, j] = turned.real
@@ -96,9 +96,9 @@ def closing_kernel(c, duration, side, t):
             g[2, j, k] = (s * s * kernel).imag / gamma
 
     # Ball: v2⁺_j = (x1_{j+1} - side_{j+1} - x1_j + side_j)/dt_j as rows over the kicks, plus a constant.
-    dt = np.empty(N)
-    ball = np.empty((N, N))
-    ball_0 = np.empty(N)
+    dt = new_vector(N)
+    ball = new_matrix(N, N)
+    ball_0 = new_vector(N)
     for j in range(N):
         n = (j + 1) % N
         dt[j] = t[n] - t[j] if n > j else t[n] - t[j] + duration
@@ -108,17 +108,17 @@ def closing_kernel(c, duration, side, t):
 
     # Impact law d_j + e (v1_j - v2_j) = 0 with v2_j = v2⁺_{j-1}, solved for the kicks.
     e = c.mu * c.pass2
-    law = np.empty((N, N))
-    kicks = np.empty((N, 1))
+    law = new_matrix(N, N)
+    kicks = new_matrix(N, 1)
     for j in range(N):
         b = j - 1 if j > 0 else N - 1
         kicks[j, 0] = -e * (forced[1, j] - ball_0[b])
         for k in range(N):
             law[j, k] = e * (g[1, j, k] - ball[b, k])
         law[j, j] += 1.0
-    defect = np.empty(N)
-    slope = np.empty((N, N))
-    states = np.empty((N, 4))
+    defect = new_vector(N)
+    slope = new_matrix(N, N)
+    states = new_matrix(N, 4)
     if not eliminate(law.copy(), kicks):
         return False, defect, slope, states
     d = kicks[:, 0].copy()
@@ -128,8 +128,8 @@ def closing_kernel(c, duration, side, t):
     w = ball_0 + ball @ d
 
     # Derivatives in the times with the kicks held, then the kicks' own.
-    dx = np.zeros((N, N))
-    dv = np.zeros((N, N))
+    dx = zero_matrix(N, N)
+    dv = zero_matrix(N, N)
     for j in range(N):
         dx[j, j] = forced[1, j]
         dv[j, j] = forced[2, j]
@@ -139,15 +139,15 @@ def closing_kernel(c, duration, side, t):
                 dv[j, j] += d[k] * g[2, j, k]
                 dx[j, k] = -d[k] * g[1, j, k]
                 dv[j, k] = -d[k] * g[2, j, k]
-    dw = np.empty((N, N))
+    dw = new_matrix(N, N)
     for j in range(N):
         n = (j + 1) % N
         for k in range(N):
             dw[j, k] = (dx[n, k] - dx[j, k]) / dt[j]
         dw[j, n] -= w[j] / dt[j]
         dw[j, j] += w[j] / dt[j]
-    moved = np.empty((N, N))
-    momentum = np.empty((N, N))
+    moved = new_matrix(N, N)
+    momentum = new_matrix(N, N)
     for j in range(N):
         b = j - 1 if j > 0 else N - 1
         for k in range(N):
@@ -165,7 +165,7 @@ def closing_kernel(c, duration, side, t):
     return True, defect, slope, states
 
 
-@njit
+@linked_njit
 def newton_kernel(c, duration, side, t, iterations):
     """Solve the closing equations by damped Newton steps.
 
@@ -181,7 +181,7 @@ def newton_kernel(c, duration, side, t, iterations):
     N = t.size
     t = t.copy()
     regular, defect, slope, states = closing_kernel(c, duration, side, t)
-    size = np.max(np.abs(defect)) if regular else math.inf
+    size = max_abs(defect) if regular else math.inf
     # The equations are sums of parts as large as the steady motion without the ball.
     rounding = 8.0 * _EPS * c.mu * (1.0 + math.hypot(c.free.qr, c.free.qi))
     for _ in range(iterations):
@@ -196,11 +196,11 @@ def newton_kernel(c, duration, side, t, iterations):
             change = step[j, 0] - step[n, 0]
             if change < -0.8 * dt / share:
                 share = -0.8 * dt / change
-        largest = np.max(np.abs(step))
+        largest = max_abs(step)
         while True:
             trial = t - share * step[:, 0]
             regular, defect, slope, states = closing_kernel(c, duration, side, trial)
-            better = np.max(np.abs(defect)) if regular else math.inf
+            better = max_abs(defect) if regular else math.inf
             if better < size or share * largest < 1e-12 * duration or share < 1e-3:
                 break
             share *= 0.5

@@ -7,7 +7,7 @@ import math
 import numpy as np
 import numpy.typing as npt
 
-from vines.dynamics._jit import njit
+from vines.kernels import linked_njit, new_matrix, new_vector, njit, zero_matrix
 from vines.model import PARAMETER_NAMES
 from vines.orbits._assemble import assemble
 from vines.orbits._equations import closing_kernel
@@ -25,13 +25,13 @@ DIFFERENCE = 1e-6
 @njit
 def unfold(values, p, side, phases):
     """Return the times of all impacts from the phases of the free ones; each further set of them comes pT/2 later."""
-    t = np.empty(side.size)
+    t = new_vector(side.size)
     for j in range(side.size):
         t[j] = (phases[j % phases.size] + math.pi * p * (j // phases.size)) / values[2]
     return t
 
 
-@njit
+@linked_njit
 def closing_at(values, p, side, phases):
     """Return the defects in the ball's velocity, their slope in the free phases, impact times and states.
 
@@ -50,21 +50,21 @@ def closing_at(values, p, side, phases):
     regular, defect, slope, states = closing_kernel(essentials(values), 2.0 * math.pi * p / values[2], side, t)
     if not regular:
         defect[:] = np.nan
-    folded = np.zeros((n, n))
+    folded = zero_matrix(n, n)
     for i in range(n):
         for j in range(side.size):
             folded[i, j % n] += slope[i, j] / (values[0] * values[2])
     return defect[:n] / values[0], folded, t, states
 
 
-@njit
+@linked_njit
 def _linearised(values, index, p, side, y):
     """Return the defects at y = (phases, parameter) and their derivatives in y."""
     n = y.size - 1
     values = values.copy()
     values[index] = y[n]
     defect, folded, _, _ = closing_at(values, p, side, y[:n])
-    matrix = np.empty((n, n + 1))
+    matrix = new_matrix(n, n + 1)
     matrix[:, :n] = folded
     step = DIFFERENCE * max(abs(y[n]), 0.01)
     values[index] = y[n] + step

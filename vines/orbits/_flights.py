@@ -10,14 +10,12 @@ from __future__ import annotations
 import cmath
 import math
 
-import numpy as np
-
-from vines.dynamics._jit import njit
+from vines.kernels import linked_njit, new_matrix, new_vector, njit
 
 __all__ = ["defects_kernel", "linear_kernel", "sample_kernel", "start_kernel"]
 
 
-@njit
+@linked_njit
 def _eliminated(matrix, right):
     """Solve matrix x = right in place by Gaussian elimination and return the determinant; 0 if singular."""
     N = matrix.shape[0]
@@ -51,7 +49,7 @@ def _eliminated(matrix, right):
     return det
 
 
-@njit
+@linked_njit
 def linear_kernel(c, span, flip, side, tau, R):
     """Fill R, shape (N, 3), with the momentum balance as rows over (a, b, 1); return the factor that clears its poles.
 
@@ -77,10 +75,10 @@ def linear_kernel(c, span, flip, side, tau, R):
     gamma = c.free.gamma
     s = complex(-c.free.half, gamma)
     weight = 1.0 / (1.0 - flip * cmath.exp(s * span))
-    x = np.empty((N + 1, N + 3))
-    v = np.empty((N, N + 3))
+    x = new_matrix(N + 1, N + 3)
+    v = new_matrix(N, N + 3)
     t = 0.0
-    times = np.empty(N)
+    times = new_vector(N)
     for j in range(N):
         times[j] = t
         t += tau[j]
@@ -99,7 +97,7 @@ def linear_kernel(c, span, flip, side, tau, R):
     for k in range(N + 3):
         x[N, k] = flip * x[0, k]
     # The ball after each impact, as a row over the kicks and (a, b, 1).
-    ball = np.empty((N, N + 3))
+    ball = new_matrix(N, N + 3)
     factor = 1.0
     for j in range(N):
         step = (flip * side[0] if j == N - 1 else side[j + 1]) - side[j]
@@ -109,8 +107,8 @@ def linear_kernel(c, span, flip, side, tau, R):
             ball[j, N + 2] -= step / tau[j]
             factor *= tau[j]
     e = c.mu * c.pass2
-    law = np.empty((N, N))
-    kicks = np.empty((N, 3))
+    law = new_matrix(N, N)
+    kicks = new_matrix(N, 3)
     for j in range(N):
         b, sign = (j - 1, 1.0) if j > 0 else (N - 1, float(flip))
         for k in range(N):
@@ -138,7 +136,7 @@ def _cross(R, i, j):
     )
 
 
-@njit
+@linked_njit
 def defects_kernel(c, span, flip, side, tau, divide, out):
     """Fill `out` with functions of the flight times that all vanish on an orbit at the amplitude of c.
 
@@ -146,7 +144,7 @@ def defects_kernel(c, span, flip, side, tau, divide, out):
     of the three equations, and the former from each pair of them. All are divided by `divide`, a common zero.
     """
     N = tau.size
-    R = np.empty((N, 3))
+    R = new_matrix(N, 3)
     factor = linear_kernel(c, span, flip, side, tau, R) / divide
     B2 = c.free.qr**2 + c.free.qi**2
     if N == 2:
@@ -160,7 +158,7 @@ def defects_kernel(c, span, flip, side, tau, divide, out):
                 out[0] = factor * (R[0, 0] * za + R[0, 1] * zb + R[0, 2] * z1)
 
 
-@njit
+@linked_njit
 def sample_kernel(c, span, flip, side, halves, low, width, nodes, out):
     """Sample `defects_kernel` on boxes of the unit interval (N = 2) or square (N = 3).
 
@@ -181,7 +179,7 @@ def sample_kernel(c, span, flip, side, halves, low, width, nodes, out):
     """
     N = side.size
     K = nodes.size
-    tau = np.empty(N)
+    tau = new_vector(N)
     # Two flights between opposite walls that are short together make all functions vanish.
     opposite = N == 3 and side[1] != side[2] and side[2] != flip * side[0]
     for m in range(low.shape[0]):
@@ -199,14 +197,14 @@ def sample_kernel(c, span, flip, side, halves, low, width, nodes, out):
                     defects_kernel(c, span, flip, side, tau, 1.0 - y if opposite else 1.0, out[m, i * K + j])
 
 
-@njit
+@linked_njit
 def start_kernel(c, span, flip, side, tau):
     """Return the time of the first impact that fits the flight times best, for a forcing of phase zero at t = 0.
 
     The phase is that of the (a, b) with the least squared defect of the N equations.
     """
     N = tau.size
-    R = np.empty((N, 3))
+    R = new_matrix(N, 3)
     linear_kernel(c, span, flip, side, tau, R)
     aa = ab = bb = a1 = b1 = 0.0
     for j in range(N):

@@ -4,11 +4,9 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
-
 from vines.dynamics._flight import derivatives, phasors, turn
-from vines.dynamics._jit import njit
 from vines.dynamics._saltation import jacobian_kernel
+from vines.kernels import linked_njit, new_cube, njit
 from vines.orbits._turning import turning_points_kernel
 
 __all__ = ["NO_TURNING", "inspect_flight", "survey_kernel"]
@@ -39,7 +37,7 @@ def _crossing(c, zr, zi, qr, qi, x2, v2, side, inside, outside):
     return outside
 
 
-@njit
+@linked_njit
 def inspect_flight(c, side, x1, v1, x2, v2, phase, tau):
     """Inspect the flight that starts at `side` just after an impact and lasts tau.
 
@@ -70,7 +68,7 @@ def inspect_flight(c, side, x1, v1, x2, v2, phase, tau):
     return clearance, violation, wall
 
 
-@njit
+@linked_njit
 def survey_kernel(c, duration, side, t, states):
     """Fly a closed orbit once, flight by flight from its stored states.
 
@@ -97,7 +95,7 @@ def survey_kernel(c, duration, side, t, states):
         Time and side of the first contact within a flight, nan and 0 if there is none.
     """
     N = t.size
-    jacobians = np.empty((N, 4, 4))
+    jacobians = new_cube(N, 4, 4)
     residual = 0.0
     clearance = NO_TURNING
     violation = math.nan

@@ -10,9 +10,9 @@ import numpy.typing as npt
 
 from vines.dynamics._constants import constants_kernel
 from vines.dynamics._integrals import largest_displacement, segment_integrals
-from vines.dynamics._jit import njit
 from vines.dynamics._saltation import jacobian_kernel
 from vines.errors import ParameterError
+from vines.kernels import complex_matrix, complex_vector, entry_njit
 from vines.model import Params
 from vines.model._params import LAM_TABLE_1
 from vines.orbits._eigenvalues import eigenvalues_kernel
@@ -98,11 +98,11 @@ def symmetric_table(
     return out.reshape(*shape, 2)
 
 
-@njit
+@entry_njit
 def _table_kernel(points, period, out):
     """Fill the table: the closed form of docs/orbits.md, then one flight of each orbit, the other being its mirror."""
-    H = np.empty((4, 4), dtype=np.complex128)
-    multipliers = np.empty(4, dtype=np.complex128)
+    H = complex_matrix(4, 4)
+    multipliers = complex_vector(4)
     for i in range(points.shape[0]):
         mu, A, Omega, r, lam = points[i, 0], points[i, 1], points[i, 2], points[i, 3], points[i, 4]
         c = constants_kernel(mu, A, Omega, r, lam)

@@ -8,10 +8,8 @@ computed.
 
 from __future__ import annotations
 
-import numpy as np
-
 from vines.dynamics._flight import derivatives, fourth_bound, turn
-from vines.dynamics._jit import njit
+from vines.kernels import linked_njit, new_vector, njit
 
 __all__ = ["turning_points_kernel"]
 
@@ -51,7 +49,7 @@ def _root(c, zr, zi, qr, qi, drift, a, b, ua):
     return tau
 
 
-@njit
+@linked_njit
 def turning_points_kernel(c, zr, zi, qr, qi, drift, duration):
     """Return the times in (0, duration) at which x1' = drift, in order.
 
@@ -65,10 +63,10 @@ def turning_points_kernel(c, zr, zi, qr, qi, drift, duration):
     drift : float
     duration : float
     """
-    found = np.empty(16)
+    found = new_vector(16)
     count = 0
-    left = np.empty(_DEEPEST + 2)
-    right = np.empty(_DEEPEST + 2)
+    left = new_vector(_DEEPEST + 2)
+    right = new_vector(_DEEPEST + 2)
     left[0], right[0] = 0.0, duration
     depth = 1
     slack = 1e-15 * (abs(zr) + abs(zi) + (1.0 + c.Omega) * (abs(qr) + abs(qi)) + abs(drift))
@@ -87,7 +85,7 @@ def turning_points_kernel(c, zr, zi, qr, qi, drift, duration):
             ub, _, _ = _rate(c, zr, zi, qr, qi, drift, b)
             if ua * ub < 0.0 or (ua == 0.0 and a > 0.0):
                 if count == found.size:
-                    grown = np.empty(2 * count)
+                    grown = new_vector(2 * count)
                     grown[:count] = found
                     found = grown
                 found[count] = _root(c, zr, zi, qr, qi, drift, a, b, ua) if ua != 0.0 else a

@@ -12,7 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from vines.dynamics._constants import Oscillator, oscillator
-from vines.dynamics._jit import njit
+from vines.kernels import njit
 from vines.model import Params
 
 __all__ = ["Essentials", "essentials", "values_of"]

@@ -15,7 +15,7 @@ import math
 
 import numpy as np
 
-from vines.rig.synth._jit import njit
+from vines.kernels import njit
 
 __all__ = ["IMPACT", "NAMES", "advance"]
 

@@ -1,0 +1,50 @@
+"""How kernels are compiled, kept and joined: decorators, digests, the cache on disk. It knows no physics."""
+
+from vines.kernels._arrays import (
+    byte_vector,
+    complex_matrix,
+    complex_vector,
+    determinant,
+    identity,
+    integer_vector,
+    matmul,
+    max_abs,
+    new_cube,
+    new_matrix,
+    new_vector,
+    sum_of,
+    zero_cube,
+    zero_integers,
+    zero_matrix,
+    zero_vector,
+)
+from vines.kernels._cache import CACHE
+from vines.kernels._decorators import cold_njit, entry_njit, fused_njit, linked_njit, loop_njit, njit
+from vines.kernels._settings import WIDE
+
+__all__ = [
+    "CACHE",
+    "WIDE",
+    "byte_vector",
+    "cold_njit",
+    "complex_matrix",
+    "complex_vector",
+    "determinant",
+    "entry_njit",
+    "fused_njit",
+    "identity",
+    "integer_vector",
+    "linked_njit",
+    "loop_njit",
+    "matmul",
+    "max_abs",
+    "new_cube",
+    "new_matrix",
+    "new_vector",
+    "njit",
+    "sum_of",
+    "zero_cube",
+    "zero_integers",
+    "zero_matrix",
+    "zero_vector",
+]

@@ -1,0 +1,126 @@
+"""Arrays inside kernels, each way to make one compiled once.
+
+numba writes into every function that calls numpy.empty what would format the message of a failure: some 5,000
+instructions, more than most kernels have of their own. It is alike with reductions and products of matrices.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from vines.kernels._decorators import linked_njit
+
+__all__ = [
+    "byte_vector",
+    "complex_matrix",
+    "complex_vector",
+    "determinant",
+    "identity",
+    "integer_vector",
+    "matmul",
+    "max_abs",
+    "new_cube",
+    "new_matrix",
+    "new_vector",
+    "sum_of",
+    "zero_cube",
+    "zero_integers",
+    "zero_matrix",
+    "zero_vector",
+]
+
+
+@linked_njit
+def new_vector(n):
+    """Return room for n doubles."""
+    return np.empty(n)
+
+
+@linked_njit
+def new_matrix(n, m):
+    """Return room for n by m doubles."""
+    return np.empty((n, m))
+
+
+@linked_njit
+def new_cube(n, m, k):
+    """Return room for n by m by k doubles."""
+    return np.empty((n, m, k))
+
+
+@linked_njit
+def zero_vector(n):
+    """Return n zeros."""
+    return np.zeros(n)
+
+
+@linked_njit
+def zero_matrix(n, m):
+    """Return n by m zeros."""
+    return np.zeros((n, m))
+
+
+@linked_njit
+def zero_cube(n, m, k):
+    """Return n by m by k zeros."""
+    return np.zeros((n, m, k))
+
+
+@linked_njit
+def integer_vector(n):
+    """Return room for n integers."""
+    return np.empty(n, dtype=np.int64)
+
+
+@linked_njit
+def zero_integers(n):
+    """Return n integers that are zero."""
+    return np.zeros(n, dtype=np.int64)
+
+
+@linked_njit
+def byte_vector(n):
+    """Return room for n integers of one byte."""
+    return np.empty(n, dtype=np.int8)
+
+
+@linked_njit
+def complex_vector(n):
+    """Return room for n complex numbers."""
+    return np.empty(n, dtype=np.complex128)
+
+
+@linked_njit
+def complex_matrix(n, m):
+    """Return room for n by m complex numbers."""
+    return np.empty((n, m), dtype=np.complex128)
+
+
+@linked_njit
+def identity(n):
+    """Return the identity of n by n doubles."""
+    return np.eye(n)
+
+
+@linked_njit
+def max_abs(values):
+    """Return the largest absolute value."""
+    return np.max(np.abs(values))
+
+
+@linked_njit
+def sum_of(values):
+    """Return the sum of all values."""
+    return np.sum(values)
+
+
+@linked_njit
+def matmul(left, right):
+    """Return the product of a matrix with a matrix or a vector."""
+    return np.dot(left, right)
+
+
+@linked_njit
+def determinant(values):
+    """Return the determinant of a square matrix."""
+    return np.linalg.det(values)

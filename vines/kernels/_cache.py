@@ -1,0 +1,147 @@
+"""Compiled kernels on disk: found by the kernel's own digest, wherever the checkout lies.
+
+numba's own cache looks at the file in which the cached function stands: a changed comment there compiles again, and a
+changed helper in another file does not. Here a kernel's file is named by its digest (`vines.kernels._digest`), and is
+loaded only after the kernels that it calls by symbol.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import time
+from collections.abc import Mapping
+from pathlib import Path
+from types import FunctionType
+from typing import Any
+
+import numpy as np
+from numba.core.caching import CompileResultCacheImpl, FunctionCache, _CacheLocator
+
+from vines.kernels._announcement import announce
+from vines.kernels._digest import digest_of
+from vines.kernels._linked import load_symbols, symbols_in
+from vines.places import cache_folder
+
+__all__ = ["CACHE", "LazyCache"]
+
+
+def _folder() -> Path:
+    """Return the folder of compiled kernels: NUMBA_CACHE_DIR if it is set, else in the cache folder of vines."""
+    named = os.environ.get("NUMBA_CACHE_DIR")
+    return (Path(named) if named else cache_folder()) / "kernels"
+
+
+CACHE = _folder()
+"""The folder of the compiled kernels."""
+
+DAYS = 30.0
+"""A kernel of other sources that was not asked for so long is deleted when a new one is kept."""
+
+
+_OPTIONS: dict[FunctionType, Mapping[str, Any]] = {}
+"""How each kernel is compiled; numba's interface has no room for it."""
+
+
+class _Locator(_CacheLocator):
+    """Says where the machine code of a function lies, by its module, name and digest."""
+
+    def __init__(self, function: FunctionType) -> None:
+        self._path = CACHE / function.__module__
+        self._digest = digest_of(function, _OPTIONS[function])
+
+    def get_cache_path(self) -> str:  # pyright: ignore[reportIncompatibleMethodOverride]
+        return str(self._path)
+
+    def ensure_cache_path(self) -> None:
+        self._path.mkdir(parents=True, exist_ok=True)
+
+    def get_source_stamp(self) -> str:  # pyright: ignore[reportIncompatibleMethodOverride]
+        return f"numpy {np.__version__}"
+
+    def get_disambiguator(self) -> str:  # pyright: ignore[reportIncompatibleMethodOverride]
+        return self._digest
+
+    @classmethod
+    def from_function(cls, py_func: FunctionType, py_file: str) -> _Locator:
+        del py_file
+        return cls(py_func)
+
+
+class _Impl(CompileResultCacheImpl):
+    """Keeps with the machine code of a kernel the symbols that it calls."""
+
+    _locator_classes = [_Locator]  # noqa: RUF012 - the attribute is numba's
+
+    def reduce(self, cres: Any) -> Any:
+        return symbols_in(cres.library), super().reduce(cres)
+
+    def rebuild(self, target_context: Any, payload: Any) -> Any:
+        symbols, rest = payload
+        if not load_symbols(symbols):
+            return None
+        return super().rebuild(target_context, rest)
+
+
+class _KernelCache(FunctionCache):
+    _impl_class = _Impl
+
+
+class LazyCache:
+    """The cache of one kernel, which numba asks for machine code: made when it is first asked.
+
+    Parameters
+    ----------
+    function : function
+        The kernel as written.
+    options : mapping
+        How it is compiled.
+    """
+
+    def __init__(self, function: FunctionType, options: Mapping[str, Any]) -> None:
+        self._function = function
+        _OPTIONS[function] = options
+        self._made: _KernelCache | None = None
+
+    def _cache(self) -> _KernelCache:
+        if self._made is None:
+            self._made = _KernelCache(self._function)
+        return self._made
+
+    @property
+    def cache_path(self) -> str:
+        """Folder in which the kernel is kept."""
+        return self._cache().cache_path
+
+    def load_overload(self, sig: Any, target_context: Any) -> Any:
+        """Return the compiled kernel for a signature, or None; say so where it has to be compiled."""
+        found = self._cache().load_overload(sig, target_context)
+        if found is None:
+            announce(CACHE)
+        return found
+
+    def save_overload(self, sig: Any, data: Any) -> None:
+        """Keep a kernel; that it can't be written does no harm."""
+        with contextlib.suppress(OSError):
+            self._cache().save_overload(sig, data)
+            self._delete_old()
+
+    def _delete_old(self) -> None:
+        """Delete what was kept of this kernel for other sources and not used for long."""
+        cache = self._cache()
+        kernel, _, _ = cache._impl.filename_base.rpartition(f"-{cache._impl.locator.get_disambiguator()}")
+        for path in Path(cache.cache_path).glob(f"{kernel}-*"):
+            if time.time() - max(path.stat().st_mtime, path.stat().st_atime) > DAYS * 86_400:
+                path.unlink(missing_ok=True)
+
+    def enable(self) -> None:
+        """Use the cache; numba's interface."""
+        self._cache().enable()
+
+    def disable(self) -> None:
+        """Do without the cache; numba's interface."""
+        self._cache().disable()
+
+    def flush(self) -> None:
+        """Forget what is kept; numba's interface."""
+        self._cache().flush()

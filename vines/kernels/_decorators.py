@@ -1,0 +1,94 @@
+"""The decorators of all kernels in vines."""
+
+from __future__ import annotations
+
+import functools
+from collections.abc import Callable
+from typing import Any, TypeVar
+
+from numba.core.config import _OptLevel
+from numba.core.registry import CPUDispatcher
+
+from vines.kernels._cache import LazyCache
+from vines.kernels._linked import Linked
+from vines.kernels._settings import numba
+
+__all__ = ["cold_njit", "entry_njit", "fused_njit", "linked_njit", "loop_njit", "njit"]
+
+_Function = TypeVar("_Function", bound=Callable[..., Any])
+
+_FUSED = {"contract", "nsz"}
+_FULL = _OptLevel(3)
+_LITTLE = _OptLevel(1)
+
+
+def njit(function: _Function) -> _Function:
+    """Compile a small function: IEEE division, GIL released; a kernel that calls it has a copy of it."""
+    return _compiled(function, _LITTLE)  # pyright: ignore[reportReturnType]
+
+
+def fused_njit(function: _Function) -> _Function:
+    """Compile the inside of a hot loop: a product with a sum may be rounded once, and it is always inlined."""
+    return _compiled(function, _LITTLE, fastmath=_FUSED, forceinline=True)  # pyright: ignore[reportReturnType]
+
+
+def loop_njit(function: _Function) -> _Function:
+    """Compile a hot loop itself: as `linked_njit`, and a product with a sum may be rounded once."""
+    return Linked(_compiled(function, _FULL, fastmath=_FUSED), entry_njit)  # pyright: ignore[reportReturnType]
+
+
+def linked_njit(function: _Function) -> _Function:
+    """Compile a function once: kernels that call it do so by its symbol and hold no copy of it."""
+    return Linked(_compiled(function, _FULL), entry_njit)  # pyright: ignore[reportReturnType]
+
+
+def cold_njit(function: _Function) -> _Function:
+    """Compile what runs once a window or once a run: as `linked_njit`, with little optimisation."""
+    return Linked(_compiled(function, _LITTLE), entry_njit)  # pyright: ignore[reportReturnType]
+
+
+def entry_njit(function: _Function) -> _Function:
+    """Compile what only Python calls."""
+    return _dispatcher(CPUDispatcher, function, _FULL)
+
+
+class _Dispatcher(CPUDispatcher):
+    """A function that kernels call. From Python it is called through another one, made when first needed.
+
+    Machine code that takes Python's objects apart is a seventh of all, and only few kernels are called from Python.
+    """
+
+    @functools.cached_property
+    def from_python(self) -> Any:
+        """The same function, to be called from Python."""
+        # Compiled like the others, so that what Python sees is what kernels do.
+        return _dispatcher(CPUDispatcher, self.py_func, _FULL, **{**self.targetoptions, "no_cpython_wrapper": False})
+
+    def __call__(self, *arguments: Any) -> Any:  # pyright: ignore[reportIncompatibleMethodOverride]
+        return self.from_python(*arguments)
+
+
+def _compiled(function: Any, level: _OptLevel, **options: Any) -> Any:
+    """Return a dispatcher for a function that is called by kernels."""
+    return _dispatcher(_Dispatcher, function, level, no_cpython_wrapper=True, **options)
+
+
+def _dispatcher(kind: type, function: Any, level: _OptLevel, **options: Any) -> Any:
+    """Return a dispatcher with a cache of ours and a level of optimisation of its own."""
+    settings = {"nopython": True, "boundscheck": None, "error_model": "numpy", "nogil": True, "no_cfunc_wrapper": True}
+    dispatcher = kind(function, locals={}, targetoptions={**settings, **options})
+    dispatcher._cache = LazyCache(function, {**dispatcher.targetoptions, "level": int(level)})
+    compile_it = dispatcher._compiler.compile
+
+    def at_level(arguments: Any, result: Any) -> Any:
+        # Whoever is compiled in between, because this one calls it, sets its own level.
+        config: Any = numba.config  # pyright: ignore[reportPrivateImportUsage]
+        before = config.OPT
+        config.OPT = level
+        try:
+            return compile_it(arguments, result)
+        finally:
+            config.OPT = before
+
+    dispatcher._compiler.compile = at_level
+    return dispatcher

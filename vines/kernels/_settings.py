@@ -1,0 +1,18 @@
+"""Settings of the compiler, made before numba is imported, because numba reads them then."""
+
+from __future__ import annotations
+
+import os
+
+import llvmlite.binding
+
+__all__ = ["WIDE", "numba"]
+
+WIDE = "+avx512f" in llvmlite.binding.get_host_cpu_features().flatten()
+"""Whether the processor has vectors of eight doubles; LLVM would use only half of each unless told to."""
+
+if WIDE and "NUMBA_CPU_FEATURES" not in os.environ and "NUMBA_CPU_NAME" not in os.environ:
+    os.environ["NUMBA_CPU_NAME"] = llvmlite.binding.get_host_cpu_name()
+    os.environ["NUMBA_CPU_FEATURES"] = llvmlite.binding.get_host_cpu_features().flatten() + ",-prefer-256-bit"
+
+import numba  # noqa: E402 - only now
