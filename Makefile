@@ -5,8 +5,9 @@ VENV := .venv
 BIN := $(VENV)/bin
 INSTALLED := $(VENV)/.installed
 INSTALLED_DEV := $(VENV)/.installed-dev
-# Byte-compiling every package takes as long as fetching it, for modules that are hardly ever all imported; what is
-# imported is byte-compiled then.
+# Byte-compiling every package takes as long as fetching it, and few of the modules are ever imported: Python does it
+# for those that are, when they are, and is not to be kept from it.
+unexport PYTHONDONTWRITEBYTECODE
 PIP := "$(BIN)/python" -m pip install -qq --disable-pip-version-check --no-compile
 export RERUN_ANALYTICS = 0
 
@@ -18,11 +19,12 @@ help:            ## list the targets
 run: $(INSTALLED)  ## install what runs, compile the kernels, run the pipeline quickstart
 	@"$(BIN)/vines" run quickstart
 
-test: install    ## install what tests too, then run the tests
+test: $(INSTALLED_DEV)  ## install what tests too, then run the tests
 	@"$(BIN)/vines" warm-up
 	@"$(BIN)/python" -m pytest -n auto --dist loadgroup -m "not full" $(PYTEST_ARGS)
 
-install: $(INSTALLED_DEV)  ## make .venv from the hashed locks: what runs, and what develops and tests
+install: $(INSTALLED_DEV)  ## make .venv from the hashed locks (run, dev), byte-compiled, to be used by hand
+	@"$(BIN)/python" -m compileall -q -j 0 "$(VENV)"
 
 $(INSTALLED): requirements.lock pyproject.toml
 	@test -x "$(BIN)/python" || $(PYTHON) -m venv "$(VENV)"
@@ -36,17 +38,17 @@ $(INSTALLED_DEV): $(INSTALLED) requirements-dev.lock
 	@$(PIP) --require-hashes -r requirements-dev.lock
 	@touch "$(INSTALLED_DEV)"
 
-lint: install    ## ruff: style and format
+lint: $(INSTALLED_DEV)  ## ruff: style and format
 	@"$(BIN)/ruff" check .
 	@"$(BIN)/ruff" format --check .
 
-types: install   ## basedpyright
+types: $(INSTALLED_DEV)  ## basedpyright
 	@"$(BIN)/basedpyright"
 
-rooms: install   ## import-linter: the rooms of the house
+rooms: $(INSTALLED_DEV)  ## import-linter: the rooms of the house
 	@"$(BIN)/lint-imports" --no-cache
 
-acceptance: install  ## everything in full; writes docs/acceptance.md
+acceptance: $(INSTALLED_DEV)  ## everything in full; writes docs/acceptance.md
 	@"$(BIN)/python" -m benchmarks.acceptance
 
 system:          ## Debian packages for the viewer's pictures in tests: software Vulkan, and Chromium for the web page
@@ -62,7 +64,7 @@ system:          ## Debian packages for the viewer's pictures in tests: software
 COMPILE := "$(BIN)/pip-compile" --quiet --generate-hashes --allow-unsafe --strip-extras \
   --no-emit-index-url --no-emit-find-links
 
-lock: install    ## renew requirements-dev.lock, requirements.lock and requirements-node.lock
+lock: $(INSTALLED_DEV)  ## renew requirements-dev.lock, requirements.lock and requirements-node.lock
 	@$(COMPILE) --upgrade --extra dev --build-deps-for wheel --output-file=requirements-dev.lock pyproject.toml
 	@$(COMPILE) --upgrade --build-deps-for wheel --constraint=requirements-dev.lock \
 	  --output-file=requirements.lock pyproject.toml
