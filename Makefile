@@ -3,7 +3,12 @@ SHELL := /bin/sh
 PYTHON ?= python3.11
 VENV := .venv
 BIN := $(VENV)/bin
-STAMP := $(VENV)/.installed
+INSTALLED := $(VENV)/.installed
+INSTALLED_DEV := $(VENV)/.installed-dev
+# Byte-compiling every package takes as long as fetching it, and few of the modules are ever imported: Python does it
+# for those that are, when they are, and is not to be kept from it.
+unexport PYTHONDONTWRITEBYTECODE
+PIP := "$(BIN)/python" -m pip install -qq --disable-pip-version-check --no-compile
 export RERUN_ANALYTICS = 0
 
 .PHONY: run test install lint types rooms acceptance system lock clean clean-results help
@@ -11,33 +16,39 @@ export RERUN_ANALYTICS = 0
 help:            ## list the targets
 	@grep -hE '^[a-z-]+:.*##' Makefile | sed 's/:.*##/\t/'
 
-run: install     ## install, compile the kernels, run the pipeline quickstart
+run: $(INSTALLED)  ## install what runs, compile the kernels, run the pipeline quickstart
 	@"$(BIN)/vines" run quickstart
 
-test: install    ## install, then run the tests
+test: $(INSTALLED_DEV)  ## install what tests too, then run the tests
 	@"$(BIN)/vines" warm-up
 	@"$(BIN)/python" -m pytest -n auto --dist loadgroup -m "not full" $(PYTEST_ARGS)
 
-install: $(STAMP)  ## make .venv from the hashed lock
+install: $(INSTALLED_DEV)  ## make .venv from the hashed locks (run, dev), byte-compiled, to be used by hand
+	@"$(BIN)/python" -m compileall -q -j 0 "$(VENV)"
 
-$(STAMP): requirements.lock pyproject.toml
+$(INSTALLED): requirements.lock pyproject.toml
 	@test -x "$(BIN)/python" || $(PYTHON) -m venv "$(VENV)"
-	@echo "installing the locked packages (about two minutes the first time)"
-	@"$(BIN)/python" -m pip install -qq --disable-pip-version-check --require-hashes -r requirements.lock
-	@"$(BIN)/python" -m pip install -qq --disable-pip-version-check --no-deps --no-build-isolation -e .
-	@touch "$(STAMP)"
+	@echo "installing what vines needs to run (half a minute the first time)"
+	@$(PIP) --require-hashes -r requirements.lock
+	@$(PIP) --no-deps --no-build-isolation -e .
+	@touch "$(INSTALLED)"
 
-lint: install    ## ruff: style and format
+$(INSTALLED_DEV): $(INSTALLED) requirements-dev.lock
+	@echo "installing what develops and tests vines (half a minute the first time)"
+	@$(PIP) --require-hashes -r requirements-dev.lock
+	@touch "$(INSTALLED_DEV)"
+
+lint: $(INSTALLED_DEV)  ## ruff: style and format
 	@"$(BIN)/ruff" check .
 	@"$(BIN)/ruff" format --check .
 
-types: install   ## basedpyright
+types: $(INSTALLED_DEV)  ## basedpyright
 	@"$(BIN)/basedpyright"
 
-rooms: install   ## import-linter: the rooms of the house
+rooms: $(INSTALLED_DEV)  ## import-linter: the rooms of the house
 	@"$(BIN)/lint-imports" --no-cache
 
-acceptance: install  ## everything in full; writes docs/acceptance.md
+acceptance: $(INSTALLED_DEV)  ## everything in full; writes docs/acceptance.md
 	@"$(BIN)/python" -m benchmarks.acceptance
 
 system:          ## Debian packages for the viewer's pictures in tests: software Vulkan, and Chromium for the web page
@@ -49,9 +60,16 @@ system:          ## Debian packages for the viewer's pictures in tests: software
 	  apt-get install -y -qq --no-install-recommends mesa-vulkan-drivers libvulkan1 chromium; \
 	fi
 
-lock:            ## renew requirements.lock
-	@"$(BIN)/pip-compile" --quiet --upgrade --generate-hashes --allow-unsafe --strip-extras --extra dev \
-	  --no-emit-index-url --no-emit-find-links --output-file=requirements.lock pyproject.toml
+# The widest first: the others take its versions.
+COMPILE := "$(BIN)/pip-compile" --quiet --generate-hashes --allow-unsafe --strip-extras \
+  --no-emit-index-url --no-emit-find-links
+
+lock: $(INSTALLED_DEV)  ## renew requirements-dev.lock, requirements.lock and requirements-node.lock
+	@$(COMPILE) --upgrade --extra dev --build-deps-for wheel --output-file=requirements-dev.lock pyproject.toml
+	@$(COMPILE) --upgrade --build-deps-for wheel --constraint=requirements-dev.lock \
+	  --output-file=requirements.lock pyproject.toml
+	@$(COMPILE) --upgrade --constraint=requirements-dev.lock \
+	  --output-file=requirements-node.lock requirements-node.in
 
 clean:           ## remove the virtual environment and what can be made again; results stay
 	rm -rf "$(VENV)" data/cache

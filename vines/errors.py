@@ -16,6 +16,7 @@ __all__ = [
     "FileMissingError",
     "LogError",
     "OrbitNotFound",
+    "PackageMissingError",
     "ParameterError",
     "QueryError",
     "RigError",
@@ -68,9 +69,13 @@ class StoreError(VinesError, RuntimeError):
 
 
 class EngineError(VinesError, RuntimeError):
-    """Whoever should compute is missing: dask is not installed, or its scheduler is gone. What was computed is kept."""
+    """Whoever should compute is missing, such as the scheduler of dask. What was computed is kept."""
 
     exit_code: int = 3
+
+
+class PackageMissingError(VinesError, ModuleNotFoundError):
+    """A package that computing does without is needed and not installed; the message says what to install."""
 
 
 class LogError(VinesError, ValueError):

@@ -14,6 +14,7 @@ from vines.store import Store
 BODY = '''
 """Bodies of the toy kinds."""
 
+import importlib
 import multiprocessing
 import os
 import time
@@ -32,6 +33,7 @@ class ToyOptions(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     bad: tuple[float, ...] = ()
     tally: str = ""
     die: str = ""
+    package: str = ""
 
 
 class SumOptions(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -49,6 +51,8 @@ def points(job):
             os._exit(1)
         if point.params["A"] in options.bad:
             raise ValueError(f"A = {point.params['A']} is bad")
+        if options.package:
+            importlib.import_module(options.package)
         if options.tally:
             with Path(options.tally).open("a") as stream:
                 stream.write(f"{point.id}\\n")

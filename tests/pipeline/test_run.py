@@ -1,5 +1,6 @@
 """The engine: only what is new, the same bytes whoever computed them, failures as rows."""
 
+import importlib
 import os
 import signal
 import subprocess
@@ -215,6 +216,18 @@ def test_failed_points_are_rows_with_a_reason_and_can_be_tried_again(lab, tally)
     assert (again.new, again.stages[0].state, again.stages[0].failed) == (0, "up_to_date", 2)
     assert not read()
     assert lab.run(declared, jobs=1, retry_failed=True).stages[0].new == 2
+
+
+@pytest.mark.parametrize("jobs", [1, 2])
+@pytest.mark.parametrize("toys", [TOYS, CARRIED])
+def test_a_package_that_is_missing_here_fails_no_point(lab, toys, jobs):
+    declared = lab.declare(toys.replace('"toy"', '"toy"\n    package = "toylab.driver"'))
+    stage = lab.run(declared, jobs=jobs).stages[0]
+    assert (stage.state, stage.reason) == ("failed", "ModuleNotFoundError: No module named 'toylab.driver'")
+    lab.source("driver", "")  # it is installed, or the run goes on where it is
+    importlib.invalidate_caches()
+    stage = lab.run(declared, jobs=1).stages[0]
+    assert (stage.state, stage.failed, stage.new) == ("computed", 0, stage.wanted)
 
 
 def test_in_a_chain_what_comes_after_a_failed_point_fails_with_it(lab):

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any, Literal
 from vines import schema
 from vines.catalogue._views import View, list_views, quote, select, stage_results, text
 from vines.errors import QueryError, SchemaError, UnknownNameError, nearest
+from vines.packages import need
 from vines.store import Store
 
 if TYPE_CHECKING:
@@ -116,6 +117,7 @@ class Catalogue:
         return self.query(f"select * from {quote(name)}")
 
     def _run(self, sql: str, take: Callable[[Any], Any]) -> Any:
+        need("duckdb")
         import duckdb
 
         try:
@@ -251,6 +253,7 @@ def connect_tables(
 
 
 def _open() -> Any:
+    need("duckdb")
     import duckdb
 
     connection = duckdb.connect(

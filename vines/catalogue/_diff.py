@@ -8,6 +8,7 @@ from typing import Any
 
 from vines import schema
 from vines.catalogue._views import quote
+from vines.packages import need
 from vines.store import Result
 
 __all__ = ["ColumnDifference", "TableDifference", "compare_tables"]
@@ -71,6 +72,7 @@ def compare_tables(
     tuple of TableDifference
         One for each table of `a`.
     """
+    need("duckdb")
     import duckdb
 
     with duckdb.connect(":memory:") as connection:

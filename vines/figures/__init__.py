@@ -1,10 +1,13 @@
 """Figures: tables in, pictures out. Imports no other room but the errors.
 
-Lazy (PEP 562): names of panels cost nothing; numpy and matplotlib are loaded when something is drawn.
+Lazy (PEP 562): names of panels cost nothing; numpy and matplotlib are loaded when something is drawn. Where matplotlib
+is missing, a function that draws says so when it is imported.
 """
 
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
+
+from vines.packages import need
 
 if TYPE_CHECKING:
     from vines.figures._basins import BasinMap, basins_figure
@@ -126,4 +129,6 @@ _HOME = {
 def __getattr__(name: str) -> Any:
     if name not in _HOME:
         raise AttributeError(f"module 'vines.figures' has no attribute {name!r}")
+    if name == "save" or name.endswith("_figure"):
+        need("matplotlib")
     return getattr(import_module(f"vines.figures.{_HOME[name]}"), name)

@@ -10,6 +10,7 @@ from concurrent.futures import CancelledError, Executor
 from typing import Any
 
 from vines.errors import EngineError
+from vines.packages import need
 from vines.pipeline._worker import compute_apart, compute_task
 
 __all__ = ["Dask"]
@@ -27,12 +28,18 @@ class Dask:
         Address of a scheduler; None starts a scheduler and workers on this machine.
     jobs : int
         Workers to start where none is given.
+
+    Raises
+    ------
+    PackageMissingError
+        If dask is not installed.
     """
 
     worth = 0.0
     """Who asks for dask gets it: the time to start a cluster, or to reach one, is spent already."""
 
     def __init__(self, address: str | None, jobs: int) -> None:
+        need("distributed")
         self._address = address
         self._jobs = jobs
         self._cluster: Any = None
@@ -58,7 +65,7 @@ class Dask:
         Raises
         ------
         EngineError
-            If dask is not installed, or nobody answers at the address.
+            If nobody answers at the address.
         """
         if self._executor is None:
             self._connect()
@@ -94,12 +101,8 @@ class Dask:
             cluster.close()
 
     def _connect(self) -> None:
-        try:
-            import distributed
-        except ImportError:
-            raise EngineError(
-                "--engine dask needs the package distributed; install vines with the extra 'dask'"
-            ) from None
+        import distributed
+
         # what it says of lost connections is said in one line here
         for name in [*logging.root.manager.loggerDict, "tornado.application"]:
             if name.partition(".")[0] in ("distributed", "tornado"):

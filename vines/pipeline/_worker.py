@@ -143,6 +143,8 @@ def compute_task(task: Task) -> Done:
     ------
     SchemaError
         If the body returns rows that don't fit: a mistake in the kind, not in a point.
+    ImportError
+        If the body needs a package that is not installed here.
     """
     began = time.perf_counter()
     gathered = _Gathered({name: [] for name in task.tables})
@@ -188,6 +190,8 @@ def _attempt(
     compute = body_of(task.body)  # that it cannot be imported is no property of a point
     try:
         batch = compute(job)
+    except ImportError:  # a package is missing on this machine: no property of a point, which another may compute
+        raise
     except Exception as error:  # whatever a body raises is a property of a point, and the others go on
         if len(points) == 1:
             _fail(task, points, _say(error), gathered)

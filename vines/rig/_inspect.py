@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from vines.errors import RigError
+from vines.packages import need
 from vines.rig._calibrate import even_rate
 from vines.rig.formats import RawChannel, RawFile
 
@@ -129,6 +130,7 @@ def draw_file(file: RawFile, title: str) -> Any:
     title : str
         Above the panels.
     """
+    need("matplotlib")
     from matplotlib.figure import Figure
 
     shown = file.channels[:_MOST_DRAWN]

@@ -13,6 +13,7 @@ from importlib import resources
 from pathlib import Path
 
 from vines.errors import SchemaError
+from vines.packages import need
 from vines.places import shipped
 
 __all__ = ["DESCRIPTOR_SETS", "compile_descriptor_set", "main"]
@@ -33,13 +34,14 @@ def compile_descriptor_set(schemas: Path, folder: str = "vines/v1") -> bytes:
 
     Raises
     ------
+    PackageMissingError
+        If grpcio-tools is missing.
     SchemaError
-        If grpcio-tools is missing, or a source does not compile (its message is on stderr).
+        If a source does not compile (its message is on stderr).
     """
-    try:
-        from grpc_tools import protoc
-    except ImportError as missing:
-        raise SchemaError("compiling the schemas needs grpcio-tools; pip install '.[dev]'") from missing
+    need("grpc_tools")
+    from grpc_tools import protoc
+
     sources = sorted(path.relative_to(schemas).as_posix() for path in (schemas / folder).glob("*.proto"))
     well_known = resources.files("grpc_tools") / "_proto"
     with tempfile.TemporaryDirectory() as temporary:

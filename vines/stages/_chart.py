@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from vines.figures import CurveLine, Region, SpecialMark, chart_figure
+from vines.packages import need
 from vines.pipeline import Input
 from vines.stages._diagram import family_label, listed
 
@@ -36,6 +37,7 @@ def chart(inputs: Mapping[str, Input], options: Any) -> Figure:
 
 
 def _lines(stage: Input, first: str, second: str) -> Iterable[CurveLine]:
+    need("pandas")
     frame = stage.table().to_pandas()
     for _, points in frame[frame["special"].isna()].groupby("curve_id", sort=False):
         row = points.iloc[0]
@@ -49,6 +51,7 @@ def _special(stage: Input, first: str, second: str) -> Iterable[SpecialMark]:
 
 
 def _stable(stage: Input, first: str, second: str) -> Region:
+    need("pandas")
     frame = stage.table().to_pandas()
     x, y = np.unique(frame[first]), np.unique(frame[second])
     inside = np.zeros((len(y), len(x)), dtype=bool)

@@ -9,6 +9,7 @@ import numpy as np
 
 from vines.errors import DeclarationError
 from vines.figures import ERRORS, ErrorMap
+from vines.packages import need
 
 if TYPE_CHECKING:
     from vines.pipeline import Input
@@ -33,6 +34,7 @@ def error_map(stage: Input) -> ErrorMap:
         )
     # Along y is A where it varies: the range of the forcing is what one reads off.
     first, second = sorted(stage.axes, key=lambda axis: axis == "A")
+    need("pandas")
     frame = stage.table().to_pandas()
     x, y = np.unique(frame[first]), np.unique(frame[second])
     where = np.searchsorted(y, frame[second]), np.searchsorted(x, frame[first])

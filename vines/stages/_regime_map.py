@@ -9,6 +9,7 @@ import numpy as np
 
 from vines.errors import DeclarationError
 from vines.figures import REGIME_CLASSES, SYMBOLS, RegimeMap
+from vines.packages import need
 
 if TYPE_CHECKING:
     from vines.pipeline import Input
@@ -34,6 +35,7 @@ def regime_map(stage: Input) -> RegimeMap:
     first, second = stage.axes
     wanted = [first, second, "regime", "name", "n", "m", "p", "symmetric", "recurrent_sticking", "kinetic_ratio"]
     table = stage.table().select(wanted)
+    need("pandas")
     frame = table.to_pandas()
     x, y = np.unique(frame[first]), np.unique(frame[second])
     where = np.searchsorted(y, frame[second]), np.searchsorted(x, frame[first])

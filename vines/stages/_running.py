@@ -7,7 +7,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
-from vines.errors import EngineError, VinesError
+from vines.errors import EngineError, PackageMissingError, VinesError
 from vines.pipeline import available, kind, plan
 from vines.places import find_root
 from vines.stages._opening import open_store
@@ -72,8 +72,10 @@ def run(
         Before anything is computed or written.
     RunFailed
         After the run, if points or stages failed; the rest is stored.
+    PackageMissingError
+        If dask is asked for and not installed.
     EngineError
-        If dask is not installed, or its scheduler does not answer any more; what was computed is stored.
+        If the scheduler of dask does not answer any more; what was computed is stored.
     """
     parts = load_parts(name, stages, overrides)
     from vines.pipeline import RunSummary, Shard
@@ -108,7 +110,7 @@ def _run_part(part: Part, asked: dict[str, Any], report: Callable[[Event], None]
     try:
         with Journal(store.logs, name, {"stages": part.stages, **asked, "set": part.overrides}, told) as journal:
             summary = run_pipeline(part.pipeline, store, stages=part.stages, **asked, report=journal)
-    except EngineError:
+    except (EngineError, PackageMissingError):
         raise
     except VinesError as error:
         if not part.collection:

@@ -6,7 +6,7 @@ import importlib
 import warnings
 from pathlib import Path
 
-from vines.errors import FileMissingError, RigError
+from vines.errors import FileMissingError, PackageMissingError, RigError
 from vines.rig.formats._raw import RawFile
 
 __all__ = ["FORMS", "read_file"]
@@ -37,8 +37,9 @@ def read_file(path: Path) -> RawFile:
     FileMissingError
         If there is no such file.
     RigError
-        If it is of no known format, damaged, or holds no channels; one line with the reason. Also if the library for
-        its format is not installed.
+        If it is of no known format, damaged, or holds no channels; one line with the reason.
+    PackageMissingError
+        If the library for its format is not installed.
     """
     if not path.is_file():
         raise FileMissingError(f"{path}: there is no such file")
@@ -51,8 +52,8 @@ def read_file(path: Path) -> RawFile:
             found = reader.read(path)
     except RigError as error:
         raise RigError(f"{path.name}: {error}") from None
-    except ImportError as error:
-        raise RigError(f"{path.name}: reading {FORMS[form][0]} needs {error.name}; pip install '.[rig]'") from None
+    except PackageMissingError as error:
+        raise PackageMissingError(f"{path.name}: {error}", name=error.name) from None
     except MemoryError:
         raise RigError(f"{path.name}: its header asks for more memory than there is; the file is damaged") from None
     except Exception as error:

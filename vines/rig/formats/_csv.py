@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from vines.errors import RigError
+from vines.packages import need
 from vines.rig._units import si_factor
 from vines.rig.formats._raw import RawChannel, RawFile
 
@@ -20,6 +21,7 @@ _NOTES = re.compile(r"^#\s*(?P<key>[a-z_]+)\s*[:=]\s*(?P<value>.*?)\s*$")
 
 def read(path: Path) -> RawFile:
     """Read a file whose first line without # is the head; parted by commas, semicolons or tabs."""
+    need("pandas")
     import pandas as pd
 
     skipped, notes, head = _top(path)

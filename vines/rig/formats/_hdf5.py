@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from vines.packages import need
 from vines.rig.formats._raw import RawChannel, RawFile
 
 __all__ = ["first_of", "read", "write"]
@@ -37,6 +38,7 @@ def _number(value: Any) -> float | None:
 
 def read(path: Path) -> RawFile:
     """Read a file; a channel is called by its path in the file."""
+    need("h5py")
     import h5py
 
     channels: list[RawChannel] = []
@@ -82,6 +84,7 @@ def write(path: Path, channels: tuple[RawChannel, ...], *, started: str) -> None
     started : str
         ISO 8601 in UTC.
     """
+    need("h5py")
     import h5py
 
     with h5py.File(path, "w") as file:

@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 
+from vines.packages import need
 from vines.rig.formats._hdf5 import first_of
 from vines.rig.formats._raw import RawChannel, RawFile
 
@@ -23,6 +24,7 @@ _USERBLOCK = 512
 
 def read(path: Path) -> RawFile:
     """Read a file of any version; a channel is called by its variable, with dots inside structures."""
+    need("pymatreader")
     import pymatreader
 
     found: Mapping[str, Any] = pymatreader.read_mat(str(path))
@@ -109,6 +111,7 @@ def write_73(path: Path, channels: tuple[RawChannel, ...], *, started: str) -> N
     path, channels, started
         As of :func:`write`.
     """
+    need("h5py")
     import h5py
 
     with h5py.File(path, "w", userblock_size=_USERBLOCK, libver="latest") as file:

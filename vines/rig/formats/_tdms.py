@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from vines.errors import RigError
+from vines.packages import need
 from vines.rig.formats._raw import RawChannel, RawFile
 
 __all__ = ["read", "write"]
@@ -22,6 +23,7 @@ def read(path: Path) -> RawFile:
     RigError
         If the recorder or a copy did not write it to its end: how much is missing cannot be told.
     """
+    need("nptdms")
     import nptdms
     import nptdms.log
 
@@ -92,6 +94,7 @@ def write(path: Path, channels: tuple[RawChannel, ...], *, started: str) -> None
     RigError
         If a channel has no rate.
     """
+    need("nptdms")
     import nptdms
 
     began = np.datetime64(started.removesuffix("Z"), "us")

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from vines.packages import need
 from vines.rig.formats._raw import RawChannel, RawFile
 
 __all__ = ["read", "write"]
@@ -22,6 +23,7 @@ def read(path: Path) -> RawFile:
 
     The time step is written with six digits (2.6 ppm), so a stated rate is to be preferred.
     """
+    need("pyuff")
     import pyuff
 
     file = pyuff.UFF(str(path))
@@ -76,6 +78,7 @@ def write(path: Path, channels: tuple[RawChannel, ...], *, started: str) -> None
     started : str
         ISO 8601 in UTC.
     """
+    need("pyuff")
     import pyuff
 
     file = pyuff.UFF(str(path))

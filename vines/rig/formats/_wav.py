@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from vines.errors import RigError
+from vines.packages import need
 from vines.rig.formats._raw import RawChannel, RawFile
 
 __all__ = ["read", "sidecar", "write"]
@@ -30,6 +31,7 @@ def sidecar(path: Path) -> Path:
 
 def read(path: Path) -> RawFile:
     """Read a file; without a sidecar its channels are numbered, have no unit, and are parts of full scale."""
+    need("soundfile")
     import soundfile
 
     values, rate = soundfile.read(str(path), dtype="float64", always_2d=True)
@@ -81,6 +83,7 @@ def write(path: Path, channels: tuple[RawChannel, ...], *, started: str) -> None
     started : str
         ISO 8601 in UTC.
     """
+    need("soundfile")
     import soundfile
 
     # libsndfile keeps the upper 24 of 32 bits.

@@ -33,7 +33,7 @@ class Cycles:
     @cached_property
     def first(self) -> npt.NDArray[np.int64]:
         """Place of the first impact of each motion."""
-        return np.concatenate([[0], np.cumsum(self.lengths)[:-1]]).astype(np.int64)
+        return np.cumsum(self.lengths) - self.lengths
 
     @cached_property
     def following(self) -> npt.NDArray[np.int64]:
