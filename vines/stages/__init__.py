@@ -19,7 +19,15 @@ if TYPE_CHECKING:
     from vines.stages._report import report
     from vines.stages._rig_by_hand import Compared, Derived, compare_run, reconstruct_run
     from vines.stages._rig_running import ingest_folder
-    from vines.stages._running import compile_cold, compile_if_cold, list_pipelines, run, status, warm_up
+    from vines.stages._running import (
+        compile_cold,
+        compile_if_cold,
+        list_pipelines,
+        run,
+        status,
+        status_of_each,
+        warm_up,
+    )
     from vines.stages._study import init_study
     from vines.stages.audit import Verification, verify
 
@@ -57,6 +65,7 @@ __all__ = [
     "run",
     "save_query",
     "status",
+    "status_of_each",
     "table",
     "verify",
     "warm_up",
@@ -97,6 +106,7 @@ _HOME = {
     "run": "_running",
     "save_query": "_asking",
     "status": "_running",
+    "status_of_each": "_running",
     "table": "_asking",
     "warm_up": "_running",
 }

@@ -8,15 +8,16 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
 from vines.errors import EngineError, VinesError
-from vines.pipeline import available, kind, plan
+from vines.pipeline import available, code_digests, kind, plan
 from vines.places import find_root
 from vines.stages._opening import open_store
-from vines.stages._parts import Part, load_parts
+from vines.stages._parts import Part, load_parts, members_of
 
 if TYPE_CHECKING:
-    from vines.pipeline import Declaration, Event, RunSummary, StageOutcome, StagePlan
+    from vines.pipeline import CodeDigests, Declaration, Event, RunSummary, StageOutcome, StagePlan
+    from vines.store import Store
 
-__all__ = ["compile_cold", "compile_if_cold", "list_pipelines", "run", "status", "warm_up"]
+__all__ = ["compile_cold", "compile_if_cold", "list_pipelines", "run", "status", "status_of_each", "warm_up"]
 
 
 def run(
@@ -153,10 +154,49 @@ def status(
     In a collection stages are ``<pipeline>.<stage>``; points that two pipelines share are wanted by both.
     """
     store = open_store()
+    return _plans(load_parts(name, stages, overrides), store, code_digests(store))
+
+
+def status_of_each(name: str | None = None) -> tuple[dict[str, list[StagePlan]], dict[str, str]]:
+    """Return where the stages of several pipelines stand; the sources of their kinds are looked at once for all.
+
+    Parameters
+    ----------
+    name : str, optional
+        A pipeline, or a collection for those in it; all pipelines there are if left out.
+
+    Returns
+    -------
+    plans : dict of str to list of StagePlan
+        By name of the pipeline.
+    unreadable : dict of str to str
+        Why the others cannot be read.
+
+    Raises
+    ------
+    VinesError
+        If the named pipeline itself cannot be read.
+    """
+    names = [row["name"] for row in list_pipelines() if not row["pipelines"]] if name is None else members_of(name)
+    store = open_store()
+    code = code_digests(store)
+    plans: dict[str, list[StagePlan]] = {}
+    unreadable: dict[str, str] = {}
+    for each in map(str, names):
+        try:
+            plans[each] = _plans(load_parts(each), store, code)
+        except VinesError as error:
+            if each == name:
+                raise
+            unreadable[each] = str(error)
+    return plans, unreadable
+
+
+def _plans(parts: Iterable[Part], store: Store, code: CodeDigests) -> list[StagePlan]:
     return [
         replace(each, name=part.prefix + each.name)
-        for part in load_parts(name, stages, overrides)
-        for each in plan(part.pipeline, store, part.stages)
+        for part in parts
+        for each in plan(part.pipeline, store, part.stages, code=code)
     ]
 
 
