@@ -14,6 +14,7 @@ __all__ = [
     "DeclarationError",
     "EngineError",
     "FileMissingError",
+    "KernelError",
     "LogError",
     "OrbitNotFound",
     "PackageMissingError",
@@ -72,6 +73,10 @@ class EngineError(VinesError, RuntimeError):
     """Whoever should compute is missing, such as the scheduler of dask. What was computed is kept."""
 
     exit_code: int = 3
+
+
+class KernelError(VinesError, RuntimeError):
+    """The kernels that a task needs could not be compiled."""
 
 
 class PackageMissingError(VinesError, ModuleNotFoundError):

@@ -96,6 +96,30 @@ def test_files_are_the_same_bytes_each_time(tmp_path):
         assert one == two
 
 
+def test_all_files_are_laid_out_once_and_each_is_drawn_once(tmp_path, monkeypatch):
+    from collections import Counter
+
+    from matplotlib.figure import Figure
+    from matplotlib.layout_engine import ConstrainedLayoutEngine
+
+    calls = Counter()
+
+    def counted(owner, name):
+        function = getattr(owner, name)
+
+        def inner(self, *about, **options):
+            calls[name] += 1
+            return function(self, *about, **options)
+
+        monkeypatch.setattr(owner, name, inner)
+
+    figure = drawing()
+    counted(ConstrainedLayoutEngine, "execute")
+    counted(Figure, "draw")
+    files = save(figure, tmp_path)
+    assert calls == {"execute": 1, "draw": len(files)}
+
+
 def test_unknown_panel_names_the_nearest():
     with pytest.raises(DeclarationError, match="'w_dot'"):
         drawing(panels=["w_dott"])

@@ -6,7 +6,7 @@ import pytest
 
 import vines
 from vines.errors import StateError, StoreError, UnknownNameError
-from vines.stages import checks, find_logs, init_study, list_pipelines, run, status
+from vines.stages import checks, find_logs, init_study, list_pipelines, run, status, status_of_each
 
 
 @pytest.fixture
@@ -49,6 +49,48 @@ def test_a_file_anywhere_is_a_pipeline(root, tmp_path):
     (tmp_path / "elsewhere.toml").write_text(SMALL)
     run(str(tmp_path / "elsewhere.toml"))
     assert vines.query("select count(*) as n from points where pipeline = 'elsewhere'").to_pylist() == [{"n": 5}]
+
+
+def test_a_status_of_all_reads_each_text_and_each_source_once(root, monkeypatch):
+    import tomllib
+    from collections import Counter
+
+    from vines.pipeline import _code, _include
+    from vines.stages import _claims
+
+    _include._loads.cache_clear()
+    _claims._claims.cache_clear()
+    texts, sources = Counter(), Counter()
+    loads, read, read_once = tomllib.loads, _code.read_source, _code.read_source_once
+
+    def counted_loads(text, **options):
+        texts[text] += 1
+        return loads(text, **options)
+
+    def counted(function):
+        def inner(module, *about):
+            sources[module] += 1
+            return function(module, *about)
+
+        return inner
+
+    monkeypatch.setattr(tomllib, "loads", counted_loads)
+    monkeypatch.setattr(_code, "read_source", counted(read))
+    monkeypatch.setattr(_code, "read_source_once", counted(read_once))
+    plans, unreadable = status_of_each()
+    assert len(plans) > 10
+    assert not unreadable
+    assert texts[(root / "pipelines" / "claims.toml").read_text()] == 1
+    assert texts[(root / "pipelines" / "quickstart.toml").read_text()] == 1
+    assert set(texts.values()) == {1}
+    assert "vines.stages._figure" in sources
+    assert set(sources.values()) == {1}
+
+
+def test_a_value_that_is_set_stays_out_of_what_others_read(root):
+    (root / "pipelines" / "small.toml").write_text(SMALL)
+    assert status("small", overrides={"stages.up.vary.A.count": 9, "params.mu": 0.02})[0].wanted == 9
+    assert status("small")[0].wanted == 5
 
 
 def test_lists_and_their_errors(root):

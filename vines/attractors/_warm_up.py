@@ -1,4 +1,4 @@
-"""Compile every kernel of this room, visibly."""
+"""Work that makes numba compile the kernels of this room, one function for each kind of task."""
 
 from __future__ import annotations
 
@@ -10,7 +10,19 @@ from vines.dynamics._warm_up import timed
 from vines.dynamics._warm_up import warm_up as warm_up_dynamics
 from vines.model import Params
 
-__all__ = ["warm_up"]
+__all__ = ["many_runs", "one_run", "warm_up"]
+
+P = Params(mu=0.01, A=0.015)
+
+
+def one_run() -> None:
+    """Settle one run."""
+    settle(P, settle=200)
+
+
+def many_runs() -> None:
+    """Classify many runs."""
+    classify_many(P, settle=200)
 
 
 def warm_up(report: Callable[[str], object] = print) -> None:
@@ -22,6 +34,5 @@ def warm_up(report: Callable[[str], object] = print) -> None:
         Takes each line.
     """
     warm_up_dynamics(report)
-    p = Params(mu=0.01, A=0.015)
-    timed("attractors, one run", lambda: settle(p, settle=200), report)
-    timed("attractors, many runs", lambda: classify_many(p, settle=200), report)
+    timed("attractors, one run", one_run, report)
+    timed("attractors, many runs", many_runs, report)

@@ -18,20 +18,9 @@ if TYPE_CHECKING:
 def command(name: str | None, as_json: bool) -> None:
     """Say what is computed, what is stale, and why: of the pipeline or collection NAME, or of all."""
     from vines.cli._layout import print_rows
-    from vines.errors import VinesError
-    from vines.stages import list_pipelines, members_of, status
+    from vines.stages import status_of_each
 
-    alone = [row["name"] for row in list_pipelines() if not row["pipelines"]] if name is None else members_of(name)
-    names = [str(each) for each in alone]
-    plans: dict[str, list[StagePlan]] = {}
-    unreadable: dict[str, str] = {}
-    for each in names:
-        try:
-            plans[each] = status(each)
-        except VinesError as error:
-            if each == name:
-                raise
-            unreadable[each] = str(error)
+    plans, unreadable = status_of_each(name)
     if as_json:
         told: dict[str, object] = {each: [asdict(p) for p in found] for each, found in plans.items()}
         click.echo(json.dumps({**told, **{each: {"error": why} for each, why in unreadable.items()}}, indent=2))

@@ -1,11 +1,9 @@
-"""Compile every kernel of this room, visibly."""
+"""Work that makes numba compile the kernels of this room, one function for each kind of task."""
 
 from __future__ import annotations
 
 import time
 from collections.abc import Callable
-
-import numpy as np
 
 from vines.dynamics._ensemble import ensemble
 from vines.dynamics._saltation import jacobian
@@ -15,7 +13,29 @@ from vines.dynamics._tangent import lyapunov_spectrum, tangent_map
 from vines.kernels import CACHE
 from vines.model import Params
 
-__all__ = ["timed", "warm_up"]
+__all__ = ["lanes", "runs", "scatter", "timed", "warm_up"]
+
+P = Params(mu=0.1, A=0.3, Omega=1.2)
+
+
+def runs() -> None:
+    """Run one trajectory, and take its measures, samples, tangent map and exponents."""
+    run = simulate(P, periods=4)
+    run.measures()
+    run.sample(16)
+    tangent_map(run)
+    lyapunov_spectrum(run)
+    jacobian(P, 1, -1, (0.3, 0.3, -0.7, -0.8), 0.4, 2.3409392834070411)
+
+
+def lanes() -> None:
+    """Run many trajectories."""
+    ensemble(P, periods=1, threads=1)
+
+
+def scatter() -> None:
+    """Run many trajectories with scatter."""
+    ensemble(P, periods=1, scatter=Scatter(sigma_r=0.1), threads=1)
 
 
 def timed(name: str, work: Callable[[], object], report: Callable[[str], object]) -> None:
@@ -38,17 +58,9 @@ def warm_up(report: Callable[[str], object] = print) -> None:
     >>> lines = []
     >>> warm_up(lines.append)
     >>> len(lines)
-    8
+    4
     """
     report(f"kernels of the dynamics, kept in {CACHE}")
-    p = Params(mu=0.1, A=0.3, Omega=1.2)
-    runs = []
-    timed("flight, impact, next impact, sticking", lambda: runs.append(simulate(p, periods=4)), report)
-    run = runs[0]
-    timed("energies and largest displacement", run.measures, report)
-    timed("samples", lambda: run.sample(16), report)
-    timed("tangent map, Lyapunov exponents", lambda: (tangent_map(run), lyapunov_spectrum(run)), report)
-    before = np.array([0.3, 0.3, -0.7, -0.8])
-    timed("Jacobian of an impact map", lambda: jacobian(p, 1, -1, tuple(before), 0.4, 2.3409392834070411), report)
-    timed("ensembles in lanes", lambda: ensemble(p, periods=1, threads=1), report)
-    timed("ensembles with scatter", lambda: ensemble(p, periods=1, scatter=Scatter(sigma_r=0.1), threads=1), report)
+    timed("one run: flight, impact, sticking, energies, samples, tangent map", runs, report)
+    timed("ensembles in lanes", lanes, report)
+    timed("ensembles with scatter", scatter, report)

@@ -79,14 +79,17 @@ def new_figure(width: float, height: float) -> Figure:
 def save(figure: Figure, folder: Path, name: str = "picture") -> list[Path]:
     """Write ``<name>.png`` and ``<name>.svg`` into a folder, without dates, and return the paths.
 
-    Panels are laid out once, the dearest part of drawing, so both files show the same.
+    Panels are laid out once, so both files show the same, and each file is drawn once. Drawing is slow: a sheet of
+    twelve panels has hundreds of ticks and texts, which matplotlib measures at every draw.
     """
     import matplotlib as mpl
 
     files = [folder / f"{name}.png", folder / f"{name}.svg"]
     with mpl.rc_context(RC):
-        figure.draw_without_rendering()
-        figure.set_layout_engine("none")
+        engine = figure.get_layout_engine()
+        if engine is not None:
+            engine.execute(figure)
+            figure.set_layout_engine(None)  # "none" would keep a placeholder, for which each file is drawn twice
         figure.savefig(files[0], metadata={"Software": "vines"})
         figure.savefig(files[1], metadata={"Date": None, "Creator": "vines"})
     return files

@@ -1,5 +1,6 @@
 """How kernels are compiled, kept and joined: decorators, digests, the cache on disk. It knows no physics."""
 
+from vines.kernels._announcement import expected
 from vines.kernels._arrays import (
     byte_vector,
     complex_matrix,
@@ -21,19 +22,25 @@ from vines.kernels._arrays import (
 from vines.kernels._cache import CACHE
 from vines.kernels._decorators import cold_njit, entry_njit, fused_njit, linked_njit, loop_njit, njit
 from vines.kernels._settings import WIDE
+from vines.kernels._tasks import Task, compile_tasks, do_task, is_warm
 
 __all__ = [
     "CACHE",
     "WIDE",
+    "Task",
     "byte_vector",
     "cold_njit",
+    "compile_tasks",
     "complex_matrix",
     "complex_vector",
     "determinant",
+    "do_task",
     "entry_njit",
+    "expected",
     "fused_njit",
     "identity",
     "integer_vector",
+    "is_warm",
     "linked_njit",
     "loop_njit",
     "matmul",

@@ -8,14 +8,17 @@ loaded only after the kernels that it calls by symbol.
 from __future__ import annotations
 
 import contextlib
+import functools
 import os
 import time
-from collections.abc import Mapping
+from collections.abc import Callable, Iterator, Mapping
+from importlib import import_module
 from pathlib import Path
 from types import FunctionType
 from typing import Any
 
 import numpy as np
+from filelock import FileLock
 from numba.core.caching import CompileResultCacheImpl, FunctionCache, _CacheLocator
 
 from vines.kernels._announcement import announce
@@ -23,7 +26,7 @@ from vines.kernels._digest import digest_of
 from vines.kernels._linked import load_symbols, symbols_in
 from vines.places import cache_folder
 
-__all__ = ["CACHE", "LazyCache"]
+__all__ = ["CACHE", "LazyCache", "asked_for", "is_there"]
 
 
 def _folder() -> Path:
@@ -39,8 +42,8 @@ DAYS = 30.0
 """A kernel of other sources that was not asked for so long is deleted when a new one is kept."""
 
 
-_OPTIONS: dict[FunctionType, Mapping[str, Any]] = {}
-"""How each kernel is compiled; numba's interface has no room for it."""
+_DIGEST: dict[FunctionType, str] = {}
+"""The digest of a kernel whose cache is being made; numba's interface has no room for it."""
 
 
 class _Locator(_CacheLocator):
@@ -48,7 +51,7 @@ class _Locator(_CacheLocator):
 
     def __init__(self, function: FunctionType) -> None:
         self._path = CACHE / function.__module__
-        self._digest = digest_of(function, _OPTIONS[function])
+        self._digest = _DIGEST[function]
 
     def get_cache_path(self) -> str:  # pyright: ignore[reportIncompatibleMethodOverride]
         return str(self._path)
@@ -87,6 +90,24 @@ class _KernelCache(FunctionCache):
     _impl_class = _Impl
 
 
+_ASKED: set[tuple[str, str]] = set()
+"""Module and name of the kernels that this process asked for, from the cache or compiled."""
+
+
+def asked_for() -> set[tuple[str, str]]:
+    """Return module and name of the kernels that this process has asked for so far."""
+    return set(_ASKED)
+
+
+def is_there(module: str, name: str) -> bool:
+    """Say whether a kernel is kept for the sources as they are."""
+    kernel = getattr(import_module(module), name, None)
+    cache = getattr(getattr(kernel, "dispatcher", kernel), "_cache", None)
+    if not isinstance(cache, LazyCache):
+        return False
+    return any((CACHE / module).glob(f"*.{name}-{cache.digest}.*.nbi"))
+
+
 class LazyCache:
     """The cache of one kernel, which numba asks for machine code: made when it is first asked.
 
@@ -100,12 +121,20 @@ class LazyCache:
 
     def __init__(self, function: FunctionType, options: Mapping[str, Any]) -> None:
         self._function = function
-        _OPTIONS[function] = options
+        self._options = options
         self._made: _KernelCache | None = None
+
+    @functools.cached_property
+    def digest(self) -> str:
+        """Digest of the kernel as it is loaded in this process."""
+        return digest_of(self._function, self._options)
 
     def _cache(self) -> _KernelCache:
         if self._made is None:
+            _DIGEST[self._function] = self.digest
             self._made = _KernelCache(self._function)
+            if "<" not in self._function.__code__.co_filename:
+                _ASKED.add((self._function.__module__, self._function.__qualname__))
         return self._made
 
     @property
@@ -114,25 +143,49 @@ class LazyCache:
         return self._cache().cache_path
 
     def load_overload(self, sig: Any, target_context: Any) -> Any:
-        """Return the compiled kernel for a signature, or None; say so where it has to be compiled."""
-        found = self._cache().load_overload(sig, target_context)
-        if found is None:
-            announce(CACHE)
-        return found
+        """Return the compiled kernel for a signature, or None."""
+        return self._cache().load_overload(sig, target_context)
+
+    def compiled(self, sig: Any, target_context: Any, compile_it: Callable[[], Any]) -> Any:
+        """Return what `compile_it` returns, or what another process has kept meanwhile; say that it takes its time."""
+        with self._alone():
+            found = self._cache().load_overload(sig, target_context)
+            if found is None:
+                announce(CACHE)
+                found = compile_it()
+                # That it can't be written does no harm.
+                with contextlib.suppress(OSError):
+                    self._cache().save_overload(sig, found)
+                    self._delete_old()
+            return found
+
+    @contextlib.contextmanager
+    def _alone(self) -> Iterator[None]:
+        """Let no other process compile this kernel meanwhile; where nothing can be written, nobody waits."""
+        cache = self._cache()
+        try:
+            cache._impl.locator.ensure_cache_path()
+            lock = FileLock(Path(cache.cache_path) / f"{cache._impl.filename_base}.lock")
+            lock.acquire()
+        except OSError:
+            yield
+            return
+        try:
+            yield
+        finally:
+            lock.release()
 
     def save_overload(self, sig: Any, data: Any) -> None:
-        """Keep a kernel; that it can't be written does no harm."""
-        with contextlib.suppress(OSError):
-            self._cache().save_overload(sig, data)
-            self._delete_old()
+        """Do nothing: `compiled` has kept it; numba's interface."""
 
     def _delete_old(self) -> None:
         """Delete what was kept of this kernel for other sources and not used for long."""
         cache = self._cache()
         kernel, _, _ = cache._impl.filename_base.rpartition(f"-{cache._impl.locator.get_disambiguator()}")
         for path in Path(cache.cache_path).glob(f"{kernel}-*"):
-            if time.time() - max(path.stat().st_mtime, path.stat().st_atime) > DAYS * 86_400:
-                path.unlink(missing_ok=True)
+            with contextlib.suppress(OSError):
+                if time.time() - max(path.stat().st_mtime, path.stat().st_atime) > DAYS * 86_400:
+                    path.unlink()
 
     def enable(self) -> None:
         """Use the cache; numba's interface."""

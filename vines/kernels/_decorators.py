@@ -77,7 +77,8 @@ def _dispatcher(kind: type, function: Any, level: _OptLevel, **options: Any) -> 
     """Return a dispatcher with a cache of ours and a level of optimisation of its own."""
     settings = {"nopython": True, "boundscheck": None, "error_model": "numpy", "nogil": True, "no_cfunc_wrapper": True}
     dispatcher = kind(function, locals={}, targetoptions={**settings, **options})
-    dispatcher._cache = LazyCache(function, {**dispatcher.targetoptions, "level": int(level)})
+    cache = LazyCache(function, {**dispatcher.targetoptions, "level": int(level)})
+    dispatcher._cache = cache
     compile_it = dispatcher._compiler.compile
 
     def at_level(arguments: Any, result: Any) -> Any:
@@ -86,7 +87,7 @@ def _dispatcher(kind: type, function: Any, level: _OptLevel, **options: Any) -> 
         before = config.OPT
         config.OPT = level
         try:
-            return compile_it(arguments, result)
+            return cache.compiled(arguments, dispatcher.targetctx, lambda: compile_it(arguments, result))
         finally:
             config.OPT = before
 

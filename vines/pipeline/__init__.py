@@ -8,7 +8,7 @@ if TYPE_CHECKING:
     from vines.pipeline._builder import Declaration, span
     from vines.pipeline._code import CodeDigests
     from vines.pipeline._collection import Collection, load_collection, members
-    from vines.pipeline._declaration import Carry, Pipeline, Refine, Stage, available, find, load
+    from vines.pipeline._declaration import Carry, Pipeline, Refine, Stage, available, file_of, find, load
     from vines.pipeline._events import Event, RunSummary, StageOutcome, silent
     from vines.pipeline._form import json_schema
     from vines.pipeline._graph import mermaid, mermaid_of_all
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from vines.pipeline._jobs import Batch, Input, Job, Point, Points, Range, WholeJob
     from vines.pipeline._journal import Journal
     from vines.pipeline._kinds import Kind, kind, kinds, register
-    from vines.pipeline._plan import StagePlan, plan, pool_keys
+    from vines.pipeline._plan import StagePlan, code_digests, plan, pool_keys
     from vines.pipeline._run import run_pipeline
     from vines.pipeline._shard import Shard
 
@@ -45,6 +45,8 @@ __all__ = [
     "StagePlan",
     "WholeJob",
     "available",
+    "code_digests",
+    "file_of",
     "find",
     "json_schema",
     "kind",
@@ -88,6 +90,8 @@ _HOME = {
     "StagePlan": "vines.pipeline._plan",
     "WholeJob": "vines.pipeline._jobs",
     "available": "vines.pipeline._declaration",
+    "code_digests": "vines.pipeline._plan",
+    "file_of": "vines.pipeline._declaration",
     "find": "vines.pipeline._declaration",
     "json_schema": "vines.pipeline._form",
     "kind": "vines.pipeline._kinds",

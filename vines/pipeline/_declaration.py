@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from vines.pipeline._axes import Axis
     from vines.pipeline._kinds import Kind
 
-__all__ = ["JUMP", "MOST", "Carry", "Pipeline", "Refine", "Stage", "available", "find", "load"]
+__all__ = ["JUMP", "MOST", "Carry", "Pipeline", "Refine", "Stage", "available", "file_of", "find", "load"]
 
 JUMP = (("", 0.1),)
 """Relative change of a number from one point to the next that counts as a jump, where nothing is said."""
@@ -206,9 +206,22 @@ def available(root: Path) -> dict[str, Path]:
     found: dict[str, Path] = {}
     for folder in (shipped("pipelines"), root / "pipelines"):
         for path in sorted(folder.glob("*.toml")):
-            if _STAGES.search(path.read_text("utf-8", errors="replace")):
+            if _declares(path):
                 found[path.stem] = path
     return dict(sorted(found.items()))
+
+
+def _declares(path: Path) -> bool:
+    return _STAGES.search(path.read_text("utf-8", errors="replace")) is not None
+
+
+def file_of(name: str, root: Path) -> Path | None:
+    """Return the file of a pipeline or collection, as `available` has it; ``None`` if there is none of that name."""
+    for folder in (root / "pipelines", shipped("pipelines")):
+        path = folder / f"{name}.toml"
+        if path.is_file() and _declares(path):
+            return path
+    return None
 
 
 def find(name: str, root: Path) -> Path:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import tomllib
 from collections.abc import Mapping
 from decimal import Decimal
@@ -17,7 +18,7 @@ _BY_NAME = ("params", "vary")
 
 
 def parse(path: Path) -> dict[str, Any]:
-    """Read a TOML file; decimals stay what was written.
+    """Read a TOML file; decimals stay what was written. Tables inside are shared: whoever changes one copies it first.
 
     Raises
     ------
@@ -27,11 +28,17 @@ def parse(path: Path) -> dict[str, Any]:
         If it is not TOML.
     """
     try:
-        return tomllib.loads(path.read_text("utf-8"), parse_float=Decimal)
+        return dict(_loads(path.read_text("utf-8")))
     except FileNotFoundError:
         raise FileMissingError(f"{path}: there is no such file; 'vines list' shows the pipelines there are") from None
     except (tomllib.TOMLDecodeError, UnicodeDecodeError, OSError) as error:
         raise DeclarationError(f"{path}: not a TOML file: {str(error).splitlines()[0]}") from None
+
+
+@functools.lru_cache(maxsize=64)
+def _loads(text: str) -> dict[str, Any]:
+    """Parse a text once: a declaration is read for its title, as a collection, and as a pipeline."""
+    return tomllib.loads(text, parse_float=Decimal)
 
 
 def with_included(path: Path) -> dict[str, Any]:

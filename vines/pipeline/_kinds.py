@@ -52,6 +52,9 @@ class Kind:
         cannot be. Called with the corners of the declared box before anything is written.
     files : callable, optional
         ``files(options, root)`` returns the files whose contents belong to the key, such as published claims.
+    kernels : callable, optional
+        ``kernels(options, carried)`` names the kinds of tasks whose compiled kernels the body asks for, so that they
+        are compiled before the run, and no others.
     """
 
     name: str
@@ -68,6 +71,7 @@ class Kind:
     pictures: bool = False
     check: Callable[[dict[str, float], Any], None] | None = None
     files: Callable[[Any, Path], tuple[Path, ...]] | None = None
+    kernels: Callable[[Any, bool], tuple[str, ...]] | None = None
 
 
 _REGISTER: dict[str, Kind] = {}

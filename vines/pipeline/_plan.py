@@ -17,7 +17,7 @@ from vines.store import Store, canonical, versions
 if TYPE_CHECKING:
     from vines.pipeline._refined import Refined
 
-__all__ = ["Planner", "Prepared", "StagePlan", "other_versions", "plan", "pool_keys"]
+__all__ = ["Planner", "Prepared", "StagePlan", "code_digests", "other_versions", "plan", "pool_keys"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,6 +41,8 @@ class StagePlan:
         Which packages the result was computed with, where they are others than now; empty otherwise.
     remark : str
         Why a refinement ended early; empty otherwise.
+    kernels : tuple of str
+        Kinds of tasks whose compiled kernels the stage would ask for, as its kind says.
     """
 
     name: str
@@ -53,6 +55,7 @@ class StagePlan:
     key: str
     versions: str = ""
     remark: str = ""
+    kernels: tuple[str, ...] = ()
 
 
 @dataclass
@@ -106,19 +109,21 @@ class Planner:
         The declared pipeline.
     store : Store
         Where results are kept.
+    code : CodeDigests, optional
+        The look at the sources that it shares with others; one of its own if left out.
     """
 
-    def __init__(self, pipeline: Pipeline, store: Store) -> None:
+    def __init__(self, pipeline: Pipeline, store: Store, code: CodeDigests | None = None) -> None:
         self.pipeline = pipeline
         self.store = store
         self.pins = store.pins(pipeline.name)
         self.keys: dict[str, str] = {}
-        self.code = CodeDigests(store.cache / "code.json" if store.data.is_dir() else None)
+        self.code = code_digests(store) if code is None else code
         self._prepared: dict[str, Prepared] = {}
         self._grids: dict[tuple[str, str], Grid] = {}
 
     def afresh(self) -> Planner:
-        """Return a planner that looks at the store again, and keeps what does not depend on it."""
+        """Return a planner that looks at the store and the sources again, and keeps what depends on neither."""
         new = Planner(self.pipeline, self.store)
         new._grids = self._grids
         return new
@@ -150,7 +155,8 @@ class Planner:
         self.keys[name] = key
         state, reason = self._state(prepared, wanted, done)
         then = other_versions(pin.get("versions", {})) if pin else ""
-        return StagePlan(name, stage.kind.name, state, reason, wanted, done, failed, key, then)
+        needed = stage.kind.kernels(stage.options, stage.carry is not None) if stage.kind.kernels is not None else ()
+        return StagePlan(name, stage.kind.name, state, reason, wanted, done, failed, key, then, kernels=needed)
 
     def set_key(self, name: str, key: str) -> None:
         """Say which key the result of a stage has now that it was computed."""
@@ -187,9 +193,14 @@ class Planner:
         return f"{source.pool_key}/{source.grid.identity(dict(stage.carry.at))}"
 
 
-def pool_keys(pipeline: Pipeline, store: Store) -> set[str]:
+def code_digests(store: Store) -> CodeDigests:
+    """Return a look at the sources, with a cache in the store if there is one; for all plans that are made together."""
+    return CodeDigests(store.cache / "code.json" if store.data.is_dir() else None)
+
+
+def pool_keys(pipeline: Pipeline, store: Store, code: CodeDigests | None = None) -> set[str]:
     """Return the keys of the pools that a pipeline asks for as it is declared."""
-    planner = Planner(pipeline, store)
+    planner = Planner(pipeline, store, code)
     for name in pipeline.order:
         planner.plan(name)
     stages = [planner.prepare(name) for name in pipeline.order]
@@ -209,7 +220,9 @@ def other_versions(then: Mapping[str, str]) -> str:
     return "; ".join(f"{name} {then[name]} then, now {now.get(name, 'not installed')}" for name in names)
 
 
-def plan(pipeline: Pipeline, store: Store, stages: Iterable[str] | None = None) -> list[StagePlan]:
+def plan(
+    pipeline: Pipeline, store: Store, stages: Iterable[str] | None = None, *, code: CodeDigests | None = None
+) -> list[StagePlan]:
     """Return what a run would do, stage by stage in the order of the run. Computes and writes nothing of value.
 
     Parameters
@@ -220,6 +233,8 @@ def plan(pipeline: Pipeline, store: Store, stages: Iterable[str] | None = None) 
         Where results are kept.
     stages : iterable of str, optional
         Only these and what they need.
+    code : CodeDigests, optional
+        The look at the sources that plans made together share.
 
     Raises
     ------
@@ -228,7 +243,7 @@ def plan(pipeline: Pipeline, store: Store, stages: Iterable[str] | None = None) 
     FileMissingError
         If a file that a stage needs is missing.
     """
-    planner = Planner(pipeline, store)
+    planner = Planner(pipeline, store, code)
     plans = [planner.plan(name) for name in pipeline.select(stages)]
     planner.code.save()
     return plans

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import copy
+import functools
 import itertools
 import tomllib
 from collections.abc import Iterable, Mapping
@@ -58,7 +60,7 @@ def read_form(
     DeclarationError, ParameterError, StateError
         As :func:`vines.pipeline.load`.
     """
-    form = _override(dict(declared), overrides, path)
+    form = _override(declared, overrides, path)
     _known(form, TOP, f"{path}")
     if not NAME.fullmatch(name) or name in RESERVED:
         rule = "a name is [a-z][a-z0-9_]* and no reserved word of SQL"
@@ -80,7 +82,8 @@ def read_form(
     return pipeline
 
 
-def _override(form: dict[str, Any], overrides: Mapping[str, Any], path: Path) -> dict[str, Any]:
+def _override(declared: Mapping[str, Any], overrides: Mapping[str, Any], path: Path) -> dict[str, Any]:
+    form = copy.deepcopy(dict(declared)) if overrides else dict(declared)
     for dotted, value in overrides.items():
         keys = dotted.split(".")
         place: Any = form
@@ -108,7 +111,7 @@ def _stage(name: str, table: dict[str, Any], spec: Kind, common: dict[str, Any],
     where = f"{path}: stages.{name}"
     if not NAME.fullmatch(name):
         raise DeclarationError(f"{where}: a stage cannot be called {name!r}; a name is [a-z][a-z0-9_]*")
-    fields = msgspec.structs.fields(spec.options)
+    fields = _fields(spec.options)
     general = [key for key in GENERAL if _allows(spec, key)]
     _known(table, [*general, *(field.encode_name for field in fields)], where)
     zipped = read_zipped(table["zip"], table.get("vary", {}), f"{where}.zip") if "zip" in table else ()
@@ -265,13 +268,18 @@ def _plain(form: Any, where: str) -> Any:
     return form
 
 
+@functools.cache
+def _fields(struct: type[msgspec.Struct]) -> tuple[msgspec.structs.FieldInfo, ...]:
+    return msgspec.structs.fields(struct)
+
+
 def _known_inside(table: dict[str, Any], struct: type[msgspec.Struct], where: str) -> None:
     """See that tables inside a stage, such as its start state, have no unknown key either."""
-    for field in msgspec.structs.fields(struct):
+    for field in _fields(struct):
         inner = table.get(field.encode_name)
         if isinstance(inner, dict) and isinstance(field.type, type) and issubclass(field.type, msgspec.Struct):
             place = f"{where}.{field.encode_name}"
-            _known(inner, [each.encode_name for each in msgspec.structs.fields(field.type)], place)
+            _known(inner, [each.encode_name for each in _fields(field.type)], place)
             _known_inside(inner, field.type, place)
 
 

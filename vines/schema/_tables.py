@@ -110,7 +110,7 @@ def tables() -> dict[str, Table]:
     >>> [name for name in tables() if name.startswith("bi")]
     ['bifurcations']
     """
-    return dict(_tables())
+    return {name: _table(name) for name in _names()}
 
 
 def table(name: str) -> Table:
@@ -126,12 +126,12 @@ def table(name: str) -> Table:
     >>> table("impacts").columns[0].name
     'point_id'
     """
-    known = _tables()
-    if name not in known:
-        raise UnknownNameError(f"unknown table {name!r}: {nearest(name, known)}")
-    return known[name]
+    if name not in _names():
+        raise UnknownNameError(f"unknown table {name!r}: {nearest(name, _names())}")
+    return _table(name)
 
 
+@functools.cache
 def digest(name: str) -> str:
     """Return the SHA-256 of what a table's data depend on: version, names, types and units of the columns.
 
@@ -247,10 +247,18 @@ def _from_python(values: Any, kind: pa.DataType) -> Any:
 
 
 @functools.cache
-def _tables() -> dict[str, Table]:
-    folder = shipped("schemas")
-    read = [_read(path.name, tomllib.loads(path.read_text("utf-8"))) for path in sorted(folder.glob("*.toml"))]
-    return {spec.name: spec for spec in read}
+def _names() -> tuple[str, ...]:
+    return tuple(sorted(path.stem for path in shipped("schemas").glob("*.toml")))
+
+
+@functools.cache
+def _table(name: str) -> Table:
+    """Read a table when it is first asked for: what a plan needs is a few of them."""
+    file = shipped("schemas") / f"{name}.toml"
+    spec = _read(file.name, tomllib.loads(file.read_text("utf-8")))
+    if spec.name != name:
+        raise SchemaError(f"schemas/{file.name}: declares the table {spec.name!r}; call the file as the table")
+    return spec
 
 
 def _read(file: str, form: dict[str, Any]) -> Table:

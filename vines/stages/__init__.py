@@ -19,8 +19,9 @@ if TYPE_CHECKING:
     from vines.stages._report import report
     from vines.stages._rig_by_hand import Compared, Derived, compare_run, reconstruct_run
     from vines.stages._rig_running import ingest_folder
-    from vines.stages._running import compile_cold, compile_if_cold, list_pipelines, run, status, warm_up
+    from vines.stages._running import list_pipelines, run, status, status_of_each
     from vines.stages._study import init_study
+    from vines.stages._warm_up import compile_cold, compile_if_cold, warm_up
     from vines.stages.audit import Verification, verify
 
 __all__ = [
@@ -57,6 +58,7 @@ __all__ = [
     "run",
     "save_query",
     "status",
+    "status_of_each",
     "table",
     "verify",
     "warm_up",
@@ -73,8 +75,8 @@ _HOME = {
     "compare_run": "_rig_by_hand",
     "Difference": "_keeping",
     "checks": "_asking",
-    "compile_cold": "_running",
-    "compile_if_cold": "_running",
+    "compile_cold": "_warm_up",
+    "compile_if_cold": "_warm_up",
     "clean": "_keeping",
     "declaration_schema": "_keeping",
     "diff": "_keeping",
@@ -97,8 +99,9 @@ _HOME = {
     "run": "_running",
     "save_query": "_asking",
     "status": "_running",
+    "status_of_each": "_running",
     "table": "_asking",
-    "warm_up": "_running",
+    "warm_up": "_warm_up",
 }
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import tomllib
 from pathlib import Path
 from typing import Literal
@@ -69,14 +70,20 @@ def read_claims(file: Path) -> dict[str, Claim]:
     DeclarationError
         If the file is not TOML, an entry is not a claim, or a claim lacks what its verdict needs.
     """
+    return dict(_claims(file.name, file.read_text(encoding="utf-8")))
+
+
+@functools.lru_cache(maxsize=4)
+def _claims(file: str, text: str) -> dict[str, Claim]:
+    """Convert a text once, however many stages check against it."""
     try:
-        claims = msgspec.convert(tomllib.loads(file.read_text(encoding="utf-8")), dict[str, Claim])
+        claims = msgspec.convert(tomllib.loads(text), dict[str, Claim])
     except (tomllib.TOMLDecodeError, msgspec.ValidationError) as error:
-        raise DeclarationError(f"{file.name}: {error}; see docs/tables.md for the form of a claim") from None
+        raise DeclarationError(f"{file}: {error}; see docs/tables.md for the form of a claim") from None
     for name, claim in claims.items():
         missing = _missing(claim)
         if missing:
-            raise DeclarationError(f"{file.name}: claim {name!r} {missing}")
+            raise DeclarationError(f"{file}: claim {name!r} {missing}")
     return claims
 
 

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from vines.errors import StoreError, UnknownNameError, VinesError, nearest
-from vines.pipeline import available, mermaid, mermaid_of_all, plan, pool_keys, what_changed
+from vines.pipeline import available, code_digests, mermaid, mermaid_of_all, plan, pool_keys, what_changed
 from vines.places import find_root
 from vines.stages._opening import open_store
 from vines.stages._parts import load_parts
@@ -50,7 +50,8 @@ def graph(name: str | Declaration) -> str:
     """Return a pipeline, or those of a collection, as a Mermaid flowchart: stages, needs, and where they stand."""
     store = open_store()
     parts = load_parts(name)
-    drawn = [(part.pipeline, {each.name: each for each in plan(part.pipeline, store)}) for part in parts]
+    code = code_digests(store)
+    drawn = [(part.pipeline, {each.name: each for each in plan(part.pipeline, store, code=code)}) for part in parts]
     return mermaid_of_all(drawn) if parts[0].collection else mermaid(*drawn[0])
 
 
@@ -127,9 +128,10 @@ def diff(a: str, b: str, *, rtol: float = 1e-9, atol: float = 0.0) -> Difference
 def _wanted(store: Store) -> set[str]:
     """Return the keys of the pools that pipelines ask for as they are declared now."""
     wanted: set[str] = set()
+    code = code_digests(store)
     for name in available(find_root()):
         try:
-            wanted |= {key for part in load_parts(name) for key in pool_keys(part.pipeline, store)}
+            wanted |= {key for part in load_parts(name) for key in pool_keys(part.pipeline, store, code)}
         except VinesError:  # a declaration that cannot be read asks for nothing
             continue
     return wanted

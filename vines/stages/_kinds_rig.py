@@ -9,6 +9,7 @@ import msgspec
 
 from vines.errors import ParameterError
 from vines.pipeline import Kind, register
+from vines.stages._warm_up import COMPARE
 
 __all__ = ["CompareOptions", "IngestOptions", "ReconstructOptions", "SynthOptions", "register_rig"]
 
@@ -68,6 +69,11 @@ def _check_synth(params: dict[str, float], options: Any) -> None:
 def _check_seeded(params: dict[str, float], options: Any) -> None:
     del params
     _check_seed(options)
+
+
+def _kernels_of_compare(options: Any, carried: bool) -> tuple[str, ...]:
+    del options, carried
+    return COMPARE
 
 
 def _check_compare(params: dict[str, float], options: Any) -> None:
@@ -151,5 +157,6 @@ def register_rig() -> None:
             needs=True,
             logs=True,
             check=_check_compare,
+            kernels=_kernels_of_compare,
         )
     )

@@ -4,19 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import replace
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
 from vines.errors import EngineError, PackageMissingError, VinesError
-from vines.pipeline import available, kind, plan
+from vines.pipeline import available, code_digests, plan
 from vines.places import find_root
 from vines.stages._opening import open_store
-from vines.stages._parts import Part, load_parts
+from vines.stages._parts import Part, load_parts, members_of
 
 if TYPE_CHECKING:
-    from vines.pipeline import Declaration, Event, RunSummary, StageOutcome, StagePlan
+    from vines.pipeline import CodeDigests, Declaration, Event, RunSummary, StageOutcome, StagePlan
+    from vines.store import Store
 
-__all__ = ["compile_cold", "compile_if_cold", "list_pipelines", "run", "status", "warm_up"]
+__all__ = ["list_pipelines", "run", "status", "status_of_each"]
 
 
 def run(
@@ -155,41 +155,47 @@ def status(
     In a collection stages are ``<pipeline>.<stage>``; points that two pipelines share are wanted by both.
     """
     store = open_store()
+    return _plans(load_parts(name, stages, overrides), store, code_digests(store))
+
+
+def status_of_each(name: str | None = None) -> tuple[dict[str, list[StagePlan]], dict[str, str]]:
+    """Return where the stages of several pipelines stand; the sources of their kinds are looked at once for all.
+
+    Parameters
+    ----------
+    name : str, optional
+        A pipeline, or a collection for those in it; all pipelines there are if left out.
+
+    Returns
+    -------
+    plans : dict of str to list of StagePlan
+        By name of the pipeline.
+    unreadable : dict of str to str
+        Why the others cannot be read.
+
+    Raises
+    ------
+    VinesError
+        If the named pipeline itself cannot be read.
+    """
+    names = [row["name"] for row in list_pipelines() if not row["pipelines"]] if name is None else members_of(name)
+    store = open_store()
+    code = code_digests(store)
+    plans: dict[str, list[StagePlan]] = {}
+    unreadable: dict[str, str] = {}
+    for each in map(str, names):
+        try:
+            plans[each] = _plans(load_parts(each), store, code)
+        except VinesError as error:
+            if each == name:
+                raise
+            unreadable[each] = str(error)
+    return plans, unreadable
+
+
+def _plans(parts: Iterable[Part], store: Store, code: CodeDigests) -> list[StagePlan]:
     return [
         replace(each, name=part.prefix + each.name)
-        for part in load_parts(name, stages, overrides)
-        for each in plan(part.pipeline, store, part.stages)
+        for part in parts
+        for each in plan(part.pipeline, store, part.stages, code=code)
     ]
-
-
-def warm_up(report: Callable[[str], object] = print) -> None:
-    """Compile all kernels, or load them from the cache, with one line for each group."""
-    from vines import attractors, orbits
-
-    for room in (attractors, orbits):  # the first compiles the dynamics as well
-        room.warm_up(report)
-    _compiled().touch()
-
-
-def compile_if_cold(plans: Iterable[StagePlan], report: Callable[[str], object]) -> None:
-    """Compile the kernels visibly if these plans will need them and no cache of theirs exists yet."""
-    if any(p.done < p.wanted and (kind(p.kind).parameters or p.kind in _SIMULATE) for p in plans):
-        compile_cold(report)
-
-
-_SIMULATE = ("compare",)
-"""Kinds that run the model though a declaration gives them no parameters."""
-
-
-def compile_cold(report: Callable[[str], object]) -> None:
-    """Compile the kernels visibly if no cache of theirs exists yet."""
-    if not _compiled().is_file():
-        report("compiling the kernels, once for this version of their sources:")
-        warm_up(report)
-
-
-def _compiled() -> Path:
-    """Return the file whose presence says that a warm-up went to its end; the folder alone may hold a part."""
-    from vines.dynamics import CACHE
-
-    return CACHE / "complete"

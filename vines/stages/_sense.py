@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from vines.errors import DeclarationError, nearest
-from vines.pipeline import Pipeline, Stage, available
+from vines.pipeline import Pipeline, Stage, file_of
 
 __all__ = ["check_name", "check_stages"]
 
@@ -25,7 +25,7 @@ def check_name(path: Path, root: Path) -> None:
     DeclarationError
         If the file is not that pipeline's own.
     """
-    known = available(root).get(path.stem)
+    known = file_of(path.stem, root)
     if known is not None and known.resolve() != path.resolve():
         raise DeclarationError(f"{path}: the pipeline {path.stem!r} is declared in {known} already; rename this file")
 
