@@ -99,8 +99,8 @@ def chatter() -> list[str]:
 
 def waiting() -> list[str]:
     """Time the command line."""
-    rows = [(f"`{name}`", f"{value:.3f}", f"{ratio:.2f}") for name, value, ratio in start_up.rows()]
-    return table(("command", "median s", "x import numpy"), rows)
+    rows = [(f"`{name}`", f"{wall:.3f}", f"{cpu:.3f}", f"{ratio:.2f}") for name, wall, cpu, ratio in start_up.rows()]
+    return table(("command", "median s", "processor s", "x import numpy"), rows)
 
 
 def paper() -> list[str]:

@@ -2,6 +2,9 @@
 
 import json
 import math
+import os
+import subprocess
+import sys
 
 import numpy as np
 import pyarrow.parquet as pq
@@ -115,6 +118,19 @@ def test_a_second_run_computes_nothing_and_says_so(quickstart):
     again = quickstart.vines("run", "quickstart")
     assert "nothing to compute" in again.stdout
     assert sorted((p, p.stat().st_mtime_ns) for p in quickstart.data.glob("results/*/*")) == before
+
+
+def test_a_run_with_nothing_to_do_loads_nothing_heavy(quickstart):
+    heavy = ("numba", "numpy", "scipy", "pandas", "pyarrow", "matplotlib", "duckdb", "rerun", "importlib.metadata")
+    code = (
+        f"import sys\nsys.argv = ['vines', 'run', 'quickstart']\nfrom vines.cli import main\ntry:\n    main()\n"
+        f"except SystemExit as end:\n    print([name for name in {heavy} if name in sys.modules], end.code)\n"
+    )
+    environment = {**os.environ, "VINES_ROOT": str(quickstart.root)}
+    command = [sys.executable, "-c", code]
+    done = subprocess.run(command, capture_output=True, text=True, check=True, env=environment, cwd=quickstart.root)
+    assert "nothing to compute" in done.stdout
+    assert done.stdout.splitlines()[-1] == "[] 0"
 
 
 def test_check_prints_a_row_a_claim(quickstart):

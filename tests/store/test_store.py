@@ -7,6 +7,7 @@ import signal
 import subprocess
 import sys
 import time
+from importlib import metadata
 
 import numpy as np
 import pyarrow as pa
@@ -232,6 +233,9 @@ def test_a_writer_waits_for_another_and_clears_what_a_killed_one_left(tmp_path):
 
 def test_provenance_names_versions_and_revision():
     assert set(versions()) == {"numba", "numpy", "python", "vines"}
+    assert {name: versions()[name] for name in ("numba", "numpy")} == {
+        n: metadata.version(n) for n in ("numba", "numpy")
+    }
     assert revision() == "" or len(revision().rstrip("+")) == 40
 
 

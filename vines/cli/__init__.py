@@ -5,6 +5,7 @@ Subcommands live in modules of their own that are imported when they are called,
 
 from __future__ import annotations
 
+import gc
 import importlib
 import os
 import sys
@@ -41,6 +42,10 @@ COMMANDS = {
     "rig": ("vines.cli._rig", "Measured data of a rig: ingest, reconstruct, compare; or a synthetic one."),
     "warm-up": ("vines.cli._warm_up", "Compile the kernels now, not at the first run."),
 }
+
+
+_THRESHOLDS = (100_000, 50, 100)
+"""New objects, and rounds, after which Python looks for cycles; its own are 700, 10, 10."""
 
 
 class LazyGroup(click.Group):
@@ -102,6 +107,8 @@ def app(root: str | None) -> None:
 def main() -> None:
     """Run the command line; every expected error ends as one line and its exit code."""
     os.environ.setdefault("RERUN_ANALYTICS", "0")
+    # What libraries make at their import lives to the end; to look for cycles there takes a twelfth of a first run.
+    gc.set_threshold(*_THRESHOLDS)
     try:
         code = app.main(standalone_mode=False)
     except click.exceptions.Abort:

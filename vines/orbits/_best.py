@@ -8,8 +8,6 @@ from collections.abc import Callable
 
 import numpy as np
 import numpy.typing as npt
-from scipy.optimize import minimize
-from scipy.stats import qmc
 
 from vines.errors import OrbitNotFound
 from vines.model import Params, Word
@@ -111,6 +109,8 @@ class Search:
 
     def _seeds(self) -> list[Orbit]:
         """Return all orbits at the start, or at the first of some points spread over the box that has one."""
+        from scipy.stats import qmc
+
         spread = qmc.Halton(len(self.box.over), scramble=False).random(_SEED_POINTS + 1)[1:]
         found: list[Orbit] = []
         for p in itertools.chain([self.box.start()], map(self.box.params, spread)):
@@ -174,6 +174,8 @@ class Search:
 
     def _attempt(self, orbit: Orbit, reach: float) -> Orbit:
         """Return where SLSQP ends within `reach` of an orbit, in the coordinates of its chart."""
+        from scipy.optimize import minimize  # half a second to load, and only an optimum needs it
+
         chart = Chart(orbit, self.box)
         free = len(self.box.over)
 

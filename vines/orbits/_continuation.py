@@ -7,7 +7,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
-from scipy.optimize import root_scalar
 
 from vines.errors import OrbitNotFound, ParameterError, nearest
 from vines.model import PARAMETER_NAMES
@@ -24,6 +23,7 @@ from vines.orbits._family import GeneralProblem
 from vines.orbits._general import origin
 from vines.orbits._orbit import Orbit
 from vines.orbits._problem import Point, Problem, ZeroSet
+from vines.orbits._root import bracketed_root
 from vines.orbits._symmetric import SymmetricProblem
 
 __all__ = ["continue_orbit"]
@@ -238,7 +238,7 @@ class _Walk:
             return condition.function(seen[fraction])
 
         try:
-            root = float(root_scalar(function, bracket=(0.0, 1.0), method="brentq", xtol=1e-15, rtol=1e-14).root)
+            root = bracketed_root(function, 0.0, 1.0, xtol=1e-15, rtol=1e-14)
             function(root)
         except OrbitNotFound:
             # Where families join the equations degenerate. The parameter has an extremum there, so that next to it

@@ -8,7 +8,6 @@ from dataclasses import dataclass, field
 
 import numpy as np
 import numpy.typing as npt
-from scipy.optimize import root_scalar
 
 from vines.errors import OrbitNotFound, ParameterError, nearest
 from vines.model import PARAMETER_NAMES
@@ -17,6 +16,7 @@ from vines.orbits._curve import Curve, SpecialPoint
 from vines.orbits._curve_problem import CurveProblem
 from vines.orbits._joined import is_joint, left_family
 from vines.orbits._problem import Point, ZeroSet
+from vines.orbits._root import bracketed_root
 from vines.orbits._special import END, Special, special_functions
 
 __all__ = ["follow_curve"]
@@ -233,7 +233,7 @@ class _Way:
             return function(seen[fraction])
 
         try:
-            root = float(root_scalar(at, bracket=(0.0, 1.0), method="brentq", xtol=1e-14, rtol=1e-13).root)
+            root = bracketed_root(at, 0.0, 1.0, xtol=1e-14, rtol=1e-13)
             at(root)
         except (OrbitNotFound, ValueError):
             return None
