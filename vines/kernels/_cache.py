@@ -14,6 +14,7 @@ import time
 from collections.abc import Callable, Iterator, Mapping
 from importlib import import_module
 from pathlib import Path
+from pickle import UnpicklingError
 from types import FunctionType
 from typing import Any
 
@@ -90,6 +91,9 @@ class _KernelCache(FunctionCache):
     _impl_class = _Impl
 
 
+_UNREADABLE = (OSError, EOFError, UnpicklingError)
+"""What reading a damaged or forbidden file ends in; the kernel is then compiled again."""
+
 _ASKED: set[tuple[str, str]] = set()
 """Module and name of the kernels that this process asked for, from the cache or compiled."""
 
@@ -143,13 +147,15 @@ class LazyCache:
         return self._cache().cache_path
 
     def load_overload(self, sig: Any, target_context: Any) -> Any:
-        """Return the compiled kernel for a signature, or None."""
-        return self._cache().load_overload(sig, target_context)
+        """Return the compiled kernel for a signature, or None where none is kept that can be read."""
+        with contextlib.suppress(*_UNREADABLE):
+            return self._cache().load_overload(sig, target_context)
+        return None
 
     def compiled(self, sig: Any, target_context: Any, compile_it: Callable[[], Any]) -> Any:
         """Return what `compile_it` returns, or what another process has kept meanwhile; say that it takes its time."""
         with self._alone():
-            found = self._cache().load_overload(sig, target_context)
+            found = self.load_overload(sig, target_context)
             if found is None:
                 announce(CACHE)
                 found = compile_it()

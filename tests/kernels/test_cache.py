@@ -1,0 +1,106 @@
+"""Compiled kernels: loaded where nothing changed, compiled again with what changed, never with another's code."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+HELPER = """
+from vines.kernels import fused_njit, linked_njit, new_vector
+
+@fused_njit
+def inner(x):
+    return 2.0 * x
+
+@linked_njit
+def called(x):
+    return inner(x) + 1.0
+"""
+KERNEL = """
+from helper import called, inner
+from vines.kernels import cold_njit, entry_njit
+
+@cold_njit
+def between(x):
+    return called(x) * 10.0
+
+@entry_njit
+def kernel(x):
+    return between(x) + inner(x)
+"""
+PROGRAM = """
+from vines.kernels import expected
+expected()
+import kernel, helper
+result = kernel.kernel(1.0)
+made = [f.__name__ for f, d in ((kernel.kernel, kernel.kernel), (kernel.between, kernel.between.dispatcher),
+        (helper.called, helper.called.dispatcher)) if sum(d.stats.cache_misses.values())]
+print(result, sorted(made))
+"""
+
+
+def _run(folder: Path, helper: str, kernel: str = KERNEL, program: str = PROGRAM, **environment: str) -> str:
+    (folder / "helper.py").write_text(helper)
+    (folder / "kernel.py").write_text(kernel)
+    paths = os.pathsep.join([str(folder), *sys.path])
+    done = subprocess.run(
+        [sys.executable, "-c", program],
+        env={**os.environ, "PYTHONPATH": paths, "NUMBA_CACHE_DIR": str(folder / "cache"), **environment},
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    return (done.stdout + done.stderr).strip()
+
+
+def test_only_what_changed_is_compiled_and_never_stale(tmp_path: Path) -> None:
+    assert _run(tmp_path, HELPER) == "32.0 ['between', 'called', 'kernel']"
+    assert _run(tmp_path, HELPER) == "32.0 []"
+    assert _run(tmp_path, HELPER.replace("@linked_njit", "# Once.\n\n@linked_njit")) == "32.0 []"
+    # The callee alone: its callers hold its name.
+    assert _run(tmp_path, HELPER.replace("+ 1.0", "+ 2.0")) == "42.0 ['called']"
+    # A helper that is copied: both that hold a copy.
+    assert _run(tmp_path, HELPER.replace("2.0 * x", "3.0 * x")) == "43.0 ['called', 'kernel']"
+    # Back again: it is still there.
+    assert _run(tmp_path, HELPER) == "32.0 []"
+
+
+def test_a_callee_whose_result_is_of_another_type_compiles_its_caller(tmp_path: Path) -> None:
+    assert _run(tmp_path, HELPER).startswith("32.0")
+    whole = HELPER.replace("return inner(x) + 1.0", "return 3 if inner(x) > 0.0 else 4")
+    # The caller's own result is of the same type as before, so whoever calls that is left as it is.
+    assert _run(tmp_path, whole) == "32.0 ['between', 'called']"
+
+
+def test_the_same_sources_elsewhere_are_not_compiled_again(tmp_path: Path) -> None:
+    one, other = tmp_path / "one", tmp_path / "other"
+    one.mkdir()
+    other.mkdir()
+    cache = str(tmp_path / "cache")
+    assert _run(one, HELPER, NUMBA_CACHE_DIR=cache).endswith("['between', 'called', 'kernel']")
+    assert _run(other, HELPER, NUMBA_CACHE_DIR=cache) == "32.0 []"
+
+
+def test_who_waits_is_told_once_and_can_silence_it(tmp_path: Path) -> None:
+    program = "import kernel; kernel.kernel(1.0); kernel.between(2.0)"
+    told = _run(tmp_path, HELPER, program=program)
+    assert told.count("\n") == 0
+    assert "compiling kernels" in told
+    assert _run(tmp_path, HELPER, program=program) == ""
+    quiet = HELPER.replace("+ 1.0", "+ 5.0")
+    assert _run(tmp_path, quiet, program=program, VINES_QUIET="1") == ""
+
+
+def test_a_folder_that_cannot_be_written_does_no_harm(tmp_path: Path) -> None:
+    (tmp_path / "file").write_text("not a folder")
+    assert _run(tmp_path, HELPER, NUMBA_CACHE_DIR=str(tmp_path / "file")).startswith("32.0")
+
+
+def test_a_damaged_file_is_compiled_again(tmp_path: Path) -> None:
+    _run(tmp_path, HELPER)
+    for path in [*(tmp_path / "cache").rglob("*.nbc"), *(tmp_path / "cache").rglob("*.nbi")]:
+        path.write_bytes(path.read_bytes()[:40])
+    assert _run(tmp_path, HELPER) == "32.0 ['between', 'called', 'kernel']"
+    assert _run(tmp_path, HELPER) == "32.0 []"
