@@ -161,9 +161,18 @@ class LazyCache:
                 found = compile_it()
                 # That it can't be written does no harm.
                 with contextlib.suppress(OSError):
-                    self._cache().save_overload(sig, found)
+                    self._keep(sig, found)
                     self._delete_old()
             return found
+
+    def _keep(self, sig: Any, found: Any) -> None:
+        cache = self._cache()
+        try:
+            cache.save_overload(sig, found)
+        except (EOFError, UnpicklingError):
+            # The list of what is kept of this kernel is damaged.
+            cache.flush()
+            cache.save_overload(sig, found)
 
     @contextlib.contextmanager
     def _alone(self) -> Iterator[None]:
