@@ -23,7 +23,6 @@ from vines.orbits._family import GeneralProblem
 from vines.orbits._general import origin
 from vines.orbits._orbit import Orbit
 from vines.orbits._problem import Point, Problem, ZeroSet
-from vines.orbits._root import bracketed_root
 from vines.orbits._symmetric import SymmetricProblem
 
 __all__ = ["continue_orbit"]
@@ -237,8 +236,10 @@ class _Walk:
                 seen[fraction] = self._between(here, there, fraction)
             return condition.function(seen[fraction])
 
+        from scipy.optimize import root_scalar  # a third of a second to load: only where something is located
+
         try:
-            root = bracketed_root(function, 0.0, 1.0, xtol=1e-15, rtol=1e-14)
+            root = float(root_scalar(function, bracket=(0.0, 1.0), method="brentq", xtol=1e-15, rtol=1e-14).root)
             function(root)
         except OrbitNotFound:
             # Where families join the equations degenerate. The parameter has an extremum there, so that next to it

@@ -16,7 +16,6 @@ from vines.orbits._curve import Curve, SpecialPoint
 from vines.orbits._curve_problem import CurveProblem
 from vines.orbits._joined import is_joint, left_family
 from vines.orbits._problem import Point, ZeroSet
-from vines.orbits._root import bracketed_root
 from vines.orbits._special import END, Special, special_functions
 
 __all__ = ["follow_curve"]
@@ -232,8 +231,10 @@ class _Way:
                 seen[fraction] = point
             return function(seen[fraction])
 
+        from scipy.optimize import root_scalar  # a third of a second to load: only where something is located
+
         try:
-            root = bracketed_root(at, 0.0, 1.0, xtol=1e-14, rtol=1e-13)
+            root = float(root_scalar(at, bracket=(0.0, 1.0), method="brentq", xtol=1e-14, rtol=1e-13).root)
             at(root)
         except (OrbitNotFound, ValueError):
             return None
