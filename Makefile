@@ -16,7 +16,7 @@ run: install     ## install, compile the kernels, run the pipeline quickstart
 
 test: install    ## install, then run the tests
 	@"$(BIN)/vines" warm-up
-	@"$(BIN)/python" -m pytest -n auto --dist loadgroup -m "not full" $(PYTEST_ARGS)
+	@"$(BIN)/python" -m pytest -n auto --dist loadfile -m "not full" $(PYTEST_ARGS)
 
 install: $(STAMP)  ## make .venv from the hashed lock
 
