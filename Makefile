@@ -21,7 +21,7 @@ run: $(INSTALLED)  ## install what runs, compile the kernels, run the pipeline q
 
 test: $(INSTALLED_DEV)  ## install what tests too, then run the tests
 	@"$(BIN)/vines" warm-up
-	@"$(BIN)/python" -m pytest -n auto --dist loadgroup -m "not full" $(PYTEST_ARGS)
+	@"$(BIN)/python" -m pytest -n auto --dist loadfile -m "not full" $(PYTEST_ARGS)
 
 install: $(INSTALLED_DEV)  ## make .venv from the hashed locks (run, dev), byte-compiled, to be used by hand
 	@"$(BIN)/python" -m compileall -q -j 0 "$(VENV)"

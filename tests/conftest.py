@@ -1,21 +1,21 @@
 """What all tests share: compiled kernels from the project's cache, and one run of the quickstart to look at."""
 
+import importlib
 import os
 import shutil
 import signal
-import subprocess
-import sys
-from pathlib import Path
 
 import hypothesis
 import pytest
 
+from tests.made_once import made_once
+from tests.project import REPOSITORY, Project
 from vines.places import cache_folder
-
-REPOSITORY = Path(__file__).resolve().parent.parent
 
 # Tests keep their results in temporary folders; the kernels they use are those that `make run` compiled.
 os.environ.setdefault("NUMBA_CACHE_DIR", str(cache_folder()))
+# They are made for the vectors of this machine, which numba has to be told before anything else in a test loads it.
+importlib.import_module("vines.dynamics")
 os.environ["RERUN_ANALYTICS"] = "0"
 os.environ.pop("VINES_ROOT", None)
 os.environ.pop("VINES_DATA", None)
@@ -28,33 +28,14 @@ hypothesis.settings.register_profile("vines", deadline=None, derandomize=bool(os
 hypothesis.settings.load_profile("vines")
 
 
-class Project:
-    """A project in a temporary folder and its command line."""
+def pytest_collection_modifyitems(items):
+    """Begin with the long files: a worker takes a file at a time, and none sits idle at the end."""
 
-    def __init__(self, root: Path):
-        self.root = root
+    def seconds(item):
+        mark = item.get_closest_marker("long")
+        return mark.args[0] if mark else 0
 
-    def vines(self, *arguments, check=True, timeout=300, **options):
-        """Run the command line in a process of its own."""
-        environment = {**os.environ, "VINES_ROOT": str(self.root), "COLUMNS": "160"}
-        done = subprocess.run(
-            [sys.executable, "-m", "vines.cli", *map(str, arguments)],
-            capture_output=True,
-            text=True,
-            cwd=self.root,
-            env=environment,
-            timeout=timeout,
-            check=False,
-            **options,
-        )
-        if check:
-            assert done.returncode == 0, done.stderr + done.stdout
-        return done
-
-    @property
-    def data(self):
-        """The folder of results."""
-        return self.root / "data"
+    items.sort(key=seconds, reverse=True)  # which leaves the others in their order
 
 
 @pytest.fixture
@@ -66,12 +47,20 @@ def project(tmp_path):
 
 @pytest.fixture(scope="session")
 def quickstart(tmp_path_factory):
-    """Return a project in which the pipeline quickstart has been run once; not to be changed."""
-    root = tmp_path_factory.mktemp("quick start")  # a path with a space in it
-    shutil.copytree(REPOSITORY / "pipelines", root / "pipelines")
-    project = Project(root)
-    project.first = project.vines("run", "quickstart")
-    return project
+    """Return a project in which a process has run the pipeline quickstart; shared, not to be changed."""
+
+    def make(root):
+        shutil.copytree(REPOSITORY / "pipelines", root / "pipelines")
+        (root / "said.txt").write_text(Project(root).process("run", "quickstart").stdout, "utf-8")
+
+    project = Project(made_once(tmp_path_factory, "quick start", make))
+
+    def stored():
+        return {path: path.stat().st_mtime_ns for path in project.data.glob("results/**/*")}
+
+    before = stored()
+    yield project
+    assert stored() == before, "a test changed the shared quickstart; work on own_copy() of it"
 
 
 @pytest.fixture(scope="session")

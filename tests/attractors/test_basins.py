@@ -12,6 +12,8 @@ from vines.attractors import Attractor, Basins, basins, settle, settle_from, sha
 from vines.errors import StateError
 from vines.model import Params
 
+pytestmark = pytest.mark.long(20)
+
 ASYMMETRIC = Params(mu=0.01, A=0.02)
 GRID = (("x2", np.linspace(-0.9, 0.9, 6)), ("v2", np.linspace(-0.4, 0.4, 6)))
 

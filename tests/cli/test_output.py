@@ -5,7 +5,7 @@ import io
 import json
 import signal
 import subprocess
-import sys
+import time
 from pathlib import Path
 
 import pyarrow.parquet as pq
@@ -140,11 +140,9 @@ def test_interrupted_run_says_how_to_go_on(project):
         'title = "long"\n[params]\nmu = 0.01\n[stages.up]\nkind = "sweep"\n'
         "vary.A = { from = 0.015, to = 0.024, count = 20001 }\n"
     )
-    running = subprocess.Popen(
-        [sys.executable, "-m", "vines.cli", "run", "long"], cwd=project.root, stderr=subprocess.PIPE, text=True
-    )
+    running = project.start("run", "long", stderr=subprocess.PIPE, stdout=subprocess.DEVNULL)
     while not any(project.data.glob("points/*/0*")) and running.poll() is None:
-        pass
+        time.sleep(0.01)
     running.send_signal(signal.SIGINT)
     _, told = running.communicate(timeout=60)
     assert running.returncode not in (0, 1)

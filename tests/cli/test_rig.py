@@ -6,6 +6,7 @@ import matplotlib.image
 import pytest
 from click.testing import CliRunner
 
+from tests.project import Project
 from vines.cli._rig import command
 from vines.errors import VinesError
 
@@ -15,10 +16,8 @@ LIGHT = ("--set", "duration=2", "--set", "settle=1", "--set", "rate=12800")
 @pytest.fixture(scope="module")
 def made(tmp_path_factory):
     """Return a project with a synthetic run."""
-    from tests.conftest import Project
-
     project = Project(tmp_path_factory.mktemp("rig"))
-    project.said = project.vines("rig", "synth", "demo/run_1", "--seed", 3, *LIGHT).stdout
+    project.said = project.process("rig", "synth", "demo/run_1", "--seed", 3, *LIGHT).stdout
     return project
 
 
@@ -40,7 +39,7 @@ def test_synth_makes_a_run_folder_and_seals_its_truth(made):
 
 def test_inspect_shows_and_draws_what_a_raw_file_holds(made):
     raw = made.root / "demo" / "run_1" / "raw" / "run.tdms"
-    told = json.loads(made.vines("rig", "inspect", raw, "--json", "--png", made.root / "raw.png").stdout)
+    told = json.loads(made.process("rig", "inspect", raw, "--json", "--png", made.root / "raw.png").stdout)
     assert told["form"] == "NI TDMS"
     assert [each["name"].rpartition("/")[2] for each in told["channels"]] == [
         "base_disp",
@@ -54,7 +53,7 @@ def test_inspect_shows_and_draws_what_a_raw_file_holds(made):
 
 
 def test_campaign_makes_a_sweep_up_and_down_between_ring_downs(made):
-    said = made.vines("rig", "campaign", "sweep", "--count", 1, *LIGHT).stdout
+    said = made.process("rig", "campaign", "sweep", "--count", 1, *LIGHT).stdout
     assert said.startswith("wrote 5 runs")
     runs = sorted(path.name for path in (made.root / "sweep" / "runs").iterdir())
     assert runs == ["00_ringdown", "01_up", "02_ringdown", "03_down", "04_ringdown"]

@@ -13,6 +13,8 @@ from hypothesis import strategies as st
 from vines.dynamics import simulate
 from vines.model import Params
 
+pytestmark = pytest.mark.long(14)
+
 HORIZON = 4.0
 
 

@@ -16,6 +16,8 @@ from vines.errors import ParameterError
 from vines.model import Params
 from vines.orbits import all_orbits, find_orbit
 
+pytestmark = pytest.mark.long(15)
+
 LAMS = (0.0, 1e-12, 1e-8, 1e-4, 1e-2)
 OMEGAS = (1.0, 1 + 1e-9, 1 - 1e-9, 1 + 1e-6, 1 - 1e-6, 1 + 1e-3, 1 - 1e-3)
 

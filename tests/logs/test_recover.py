@@ -7,6 +7,8 @@ from mcap.writer import CompressionType, Writer
 from vines import logs
 from vines.errors import FileMissingError, LogError
 
+pytestmark = pytest.mark.long(12)
+
 TIMES = {"states": "t", "impacts": "t", "sticks": "t_start"}
 
 

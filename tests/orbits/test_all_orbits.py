@@ -12,6 +12,8 @@ from vines.orbits._equations import newton_kernel
 from vines.orbits._flights import linear_kernel, start_kernel
 from vines.orbits._general import ITERATIONS, proper, same
 
+pytestmark = pytest.mark.long(14)
+
 P = Params(mu=0.01, A=0.02)
 SHORT = ("LR", "LLR", "LRR", "LR/2T", "LR/3T", "LLR/2T")
 

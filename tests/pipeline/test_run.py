@@ -14,6 +14,8 @@ from vines.errors import RunFailed, UnknownNameError
 from vines.pipeline import load, plan
 from vines.store import Store
 
+pytestmark = pytest.mark.long(40)
+
 TOYS = """
     title = "toys"
     [stages.up]

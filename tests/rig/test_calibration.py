@@ -10,6 +10,8 @@ import vines
 from vines.rig import Calibration, Uncertain, calibrate, compare_all
 from vines.rig._model import parameter_draws
 
+pytestmark = pytest.mark.long(15)
+
 WRONG = {"A": 1.02, "Omega": 1.0006, "r": 0.006}
 """Factors of A and Omega, and what is added to r, by which all runs are off."""
 

@@ -18,6 +18,8 @@ from vines.rig._uncertainty import error_ratio
 from vines.rig._verdict import decide, order
 from vines.rig.synth import raw_run, read_raw
 
+pytestmark = pytest.mark.long(25)
+
 
 @pytest.fixture(scope="module")
 def told(dwell):

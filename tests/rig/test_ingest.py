@@ -190,7 +190,7 @@ def test_template_says_what_is_missing(tmp_path):
 def test_ingest_keeps_raw_files_and_a_second_time_does_nothing(run, project):
     from vines import logs
 
-    first = project.vines("rig", "ingest", run)
+    first = project.process("rig", "ingest", run)
     assert "1 run ingested" in first.stdout
     rows = json.loads(project.vines("query", "select * from rig_channels", "--format", "json").stdout)
     assert [row["channel"] for row in rows] == ["base_disp", "base_acc", "lo_disp", "lo_acc"]

@@ -6,7 +6,7 @@ import tomllib
 
 import pytest
 
-from tests.conftest import REPOSITORY
+from tests.project import REPOSITORY
 from vines.cli._check import page, summary
 from vines.errors import DeclarationError
 from vines.stages._check import verdict

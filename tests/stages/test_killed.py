@@ -1,13 +1,12 @@
 """A run that was killed goes on with the same command and ends with the same bytes as an undisturbed one."""
 
 import hashlib
-import os
 import signal
-import subprocess
-import sys
 import time
 
 import pytest
+
+pytestmark = pytest.mark.long(32)
 
 MOMENTS = ("points/*/0*", "results/*/manifest.json", "pipelines/*.pins.json")
 """Files whose first appearance is the moment to kill: a part of a pool, a first result, a first pin."""
@@ -24,10 +23,7 @@ def contents(project):
 
 @pytest.mark.parametrize(("moment", "wait"), [*((m, 0.0) for m in MOMENTS), (MOMENTS[1], 0.4)])
 def test_killed_and_run_again(project, quickstart, moment, wait):
-    environment = {**os.environ, "VINES_ROOT": str(project.root)}
-    running = subprocess.Popen(
-        [sys.executable, "-m", "vines.cli", "run", "quickstart", "--quiet"], cwd=project.root, env=environment
-    )
+    running = project.start("run", "quickstart", "--quiet")
     try:
         end = time.monotonic() + 120
         while not any(project.data.glob(moment)) and time.monotonic() < end and running.poll() is None:
@@ -38,6 +34,6 @@ def test_killed_and_run_again(project, quickstart, moment, wait):
         running.wait()
     assert running.returncode == -signal.SIGKILL, "the run ended before it could be killed"
     assert contents(project) != contents(quickstart)
-    project.vines("run", "quickstart")
+    project.vines("run", "quickstart", "--jobs", "1")
     assert contents(project) == contents(quickstart)
     assert not [path for path in project.data.glob("staging/*") if path.is_dir()]

@@ -13,7 +13,9 @@ import tomllib
 
 import pytest
 
-from tests.conftest import REPOSITORY
+from tests.project import REPOSITORY
+
+pytestmark = pytest.mark.long(10)
 
 REDUCED = {
     "fig8": (

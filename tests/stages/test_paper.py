@@ -7,7 +7,9 @@ from pathlib import Path
 
 import pytest
 
-from tests.conftest import Project
+from tests.project import Project
+
+pytestmark = pytest.mark.long(62)
 
 PIPELINES = Path(__file__).resolve().parents[2] / "pipelines"
 FIGURES = [f"fig{k}" for k in range(2, 12)]
@@ -34,14 +36,14 @@ def coarse(member):
             yield f"{place}.points=41"
 
 
-@pytest.fixture(scope="session")
+@pytest.fixture(scope="module")
 def paper(tmp_path_factory):
     """Return a project in which the coarse paper has been run once; not to be changed."""
     root = tmp_path_factory.mktemp("paper")
     shutil.copytree(PIPELINES, root / "pipelines")
     project = Project(root)
     settings = [part for member in MEMBERS for text in coarse(member) for part in ("--set", text)]
-    project.first = project.vines("run", "paper", "--quiet", *settings, check=False, timeout=900)
+    project.first = project.vines("run", "paper", "--quiet", "--jobs", "1", *settings, check=False)
     return project
 
 
@@ -95,6 +97,6 @@ def test_coexisting_attractors_have_impacts(paper):
 
 @pytest.mark.full
 def test_the_paper_in_full(project):
-    done = project.vines("run", "paper", "--quiet", timeout=1800)
+    done = project.process("run", "paper", "--quiet", timeout=1800)
     assert "stages are up to date" in project.vines("run", "paper").stdout
     assert done.returncode == 0

@@ -5,14 +5,13 @@ import json
 
 import pytest
 
+from tests.project import REPOSITORY, Project
 from vines.model import Params
 from vines.orbits import find_orbit
 
 
 @pytest.fixture(scope="module")
 def coarse(tmp_path_factory):
-    from tests.conftest import REPOSITORY, Project
-
     root = tmp_path_factory.mktemp("regimes")
     (root / "pipelines").symlink_to(REPOSITORY / "pipelines")
     project = Project(root)

@@ -6,12 +6,13 @@ from pathlib import Path
 
 import pytest
 
+from tests.made_once import own_copy
+from tests.project import Project
 from vines.errors import VinesError
 from vines.rig import load_reconstruction, save_reconstruction
 from vines.stages import reconstruct_run
 
-# One process makes the campaign for all tests of this file.
-pytestmark = pytest.mark.xdist_group("rehearsal")
+pytestmark = pytest.mark.long(40)
 
 PIPELINES = Path(__file__).parents[2] / "pipelines"
 COARSE = {
@@ -28,14 +29,12 @@ COARSE = {
 @pytest.fixture(scope="module")
 def rehearsed(tmp_path_factory):
     """Return a project in which the coarse rehearsal has been run; not to be changed."""
-    from tests.conftest import Project
-
     root = tmp_path_factory.mktemp("rehearsal")
     (root / "pipelines").mkdir()
     shutil.copy(PIPELINES / "rehearsal.toml", root / "pipelines")
     project = Project(root)
     project.settings = [f"--set=stages.{key}={value}" for key, value in COARSE.items()]
-    project.first = project.vines("run", "rehearsal", *project.settings)
+    project.vines("run", "rehearsal", *project.settings)
     return project
 
 
@@ -171,7 +170,7 @@ def test_the_figures_are_drawn_and_the_report_tells_the_verdicts(rehearsed, tmp_
 
 
 def test_compare_by_hand_gives_the_verdict_and_writes_derived(rehearsed, campaign):
-    shown = rehearsed.vines("rig", "compare", campaign / "01_up").stdout
+    shown = rehearsed.process("rig", "compare", campaign / "01_up").stdout
     assert shown.startswith("01_up: agree\n1:1: E_n(phase)")
     said = json.loads((campaign / "01_up" / "derived" / "comparison.json").read_text())
     (row,) = rows(rehearsed, "select * from comparisons where run_id = '01_up' and rank = 0")
@@ -193,13 +192,14 @@ def test_a_declaration_that_cannot_compare_is_refused_before_anything_runs(proje
         assert done.stderr.count("\n") == 1
 
 
-def test_an_interrupted_campaign_goes_on_with_what_was_reconstructed(rehearsed):
+def test_an_interrupted_campaign_goes_on_with_what_was_reconstructed(rehearsed, tmp_path):
+    settings, rehearsed = rehearsed.settings, Project(own_copy(rehearsed.root, tmp_path))
     kept = sorted(rehearsed.data.glob("cache/rig/*.npz"))
     assert len(kept) == 2
     before = [path.stat().st_mtime_ns for path in kept]
     (table,) = rehearsed.data.glob("results/*/reconstructions.parquet")
     bytes_before = table.read_bytes()
-    rehearsed.vines("run", "rehearsal", "reconstruct", "--force", *rehearsed.settings)
+    rehearsed.vines("run", "rehearsal", "reconstruct", "--force", *settings)
     assert [path.stat().st_mtime_ns for path in kept] == before
     assert table.read_bytes() == bytes_before
 
@@ -216,7 +216,7 @@ def test_a_reconstruction_is_the_same_after_it_was_kept(rehearsed, tmp_path):
 
 
 def test_reconstruct_by_hand_gives_the_row_and_writes_derived(rehearsed, campaign):
-    rehearsed.vines("rig", "reconstruct", campaign / "01_up")
+    rehearsed.process("rig", "reconstruct", campaign / "01_up")
     said = json.loads((campaign / "01_up" / "derived" / "reconstruction.json").read_text())
     (row,) = rows(rehearsed, "select * from reconstructions where run_id = '01_up'")
     assert said == {name: row[name] for name in said}

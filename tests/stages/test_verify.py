@@ -15,6 +15,8 @@ from vines.stages import verify
 from vines.stages.audit._compare import Comparison, compare_rows, compare_within_errors
 from vines.store import Store
 
+pytestmark = pytest.mark.long(15)
+
 
 @pytest.fixture
 def data(quickstart, tmp_path, monkeypatch):

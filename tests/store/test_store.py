@@ -6,7 +6,6 @@ import os
 import signal
 import subprocess
 import sys
-import time
 from importlib import metadata
 
 import numpy as np
@@ -222,12 +221,10 @@ def test_a_writer_waits_for_another_and_clears_what_a_killed_one_left(tmp_path):
         waited.append(True)
         os.kill(other.pid, signal.SIGKILL)
 
-    began = time.monotonic()
     with store.writing(kill):
         assert not any(store.staging_folder.iterdir())
     other.communicate()
     assert waited == [True]
-    assert time.monotonic() - began < 5
     assert not multiprocessing.active_children()
 
 

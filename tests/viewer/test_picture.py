@@ -12,7 +12,7 @@ from vines.errors import ViewerError
 from vines.viewer._program import headless
 from vines.viewer._show import _at_rest
 
-pytestmark = pytest.mark.usefixtures("vulkan")
+pytestmark = [pytest.mark.long(20), pytest.mark.usefixtures("vulkan")]
 
 
 def viewers():
@@ -50,7 +50,7 @@ def test_views_draw_without_errors(recording):
 
 def test_bare_rerun_shows_a_log_that_explains_itself(settled):
     """Without our layout: the viewer makes its own from the channels that it understands."""
-    with headless(settled, (1200, 800), laid_out=False) as client:
+    with headless(settled, (600, 400), laid_out=False) as client:
         _at_rest(client)
         state = client.get_state()
     kinds = [(view.view_class, view.origin) for view in state.views]

@@ -13,6 +13,8 @@ from vines import viewer
 from vines.errors import ViewerError
 from vines.viewer._program import served
 
+pytestmark = pytest.mark.long(30)
+
 
 def listening():
     """Return the addresses on which this process and its children listen."""

@@ -354,6 +354,8 @@ def _real(fit: JumpFit, pulse: Floats, heard: npt.NDArray[np.bool_]) -> npt.NDAr
 
     Where the displacement can't say (a neighbouring flight holds a missed impact), what was heard counts.
     """
+    if not len(pulse):  # nothing has a usual size then
+        return np.zeros(0, dtype=bool)
     dv = np.abs(fit.jumps.dv)
     alike = np.abs(fit.jumps.dv - pulse) < 0.5 * dv + KEEP * fit.u_dv
     seen = (dv > KEEP * fit.u_dv) & (dv > LEAST) & (alike | (dv > 30 * fit.u_dv))

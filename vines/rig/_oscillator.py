@@ -185,7 +185,7 @@ def _credible(fit: JumpFit, pulse: Floats, u: Floats, fitter: Fitter) -> npt.NDA
     soft = ~denied & ~_beside(t, dv, pulse) & (_off_the_wall(fit, fitter.b) < _AT_WALL * fitter.b)
     # An acceleration has weighed pulses and flights against each other before.
     keep = shown | (heard & (blind | soft | (fitter.order == 2)))
-    if np.mean(~keep) > _DENIED:
+    if not len(keep) or np.mean(~keep) > _DENIED:
         return np.ones(len(t), bool)
     # In a cluster a false impact spoils the jumps of its neighbours.
     worth = np.abs(dv) / fit.u_dv
