@@ -10,9 +10,17 @@ import sys
 from pathlib import Path
 
 import numpy as np
+import pytest
+from numba import typeof, types
 
 import vines.dynamics
+from vines.dynamics import _advance
+from vines.dynamics._constants import constants
 from vines.dynamics._sincos import sincos
+from vines.kernels import CACHE, njit
+from vines.kernels._cache import LazyCache
+from vines.kernels._linked import load_symbols
+from vines.model import Params
 
 PROGRAM = """
 from vines.dynamics._constants import constants
@@ -22,9 +30,9 @@ print(phasors(constants(Params(mu=0.1, A=0.3)).free, 1.0, 0.1, 0.2, 0.5)[2])
 """
 
 
-def _run(program: str, folder: Path) -> str:
+def _run(program: str, folder: Path, cache: Path | None = None) -> str:
     environment = {k: v for k, v in os.environ.items() if k not in ("NUMBA_CACHE_DIR", "PYTHONPATH")}
-    environment |= {"PYTHONPATH": str(folder), "NUMBA_CACHE_DIR": str(folder / "cache")}
+    environment |= {"PYTHONPATH": str(folder), "NUMBA_CACHE_DIR": str(cache or folder / "cache")}
     done = subprocess.run(
         [sys.executable, "-c", program], cwd=folder, env=environment, capture_output=True, text=True, check=True
     )
@@ -77,3 +85,67 @@ def test_sines_are_right_to_the_last_place() -> None:
         s, c = sincos(x)
         assert abs(s - math.sin(x)) < 2.3e-16
         assert abs(c - math.cos(x)) < 2.3e-16
+
+
+def test_a_kernel_kept_for_a_tuple_that_has_other_fields_by_now_is_not_loaded() -> None:
+    now = typeof(constants(Params(mu=0.1, A=0.3)))
+    symbol = _advance.state_now.load((now, types.float64[::1], types.float64))[0]
+    call = (symbol, "vines.dynamics._advance", "state_now")
+    assert load_symbols([(*call, (now, types.float64[::1], types.float64))])
+    before = types.NamedTuple(now.types[:-1], now.instance_class)
+    before.fields = now.fields[:-1]
+    assert not load_symbols([(*call, (before, types.float64[::1], types.float64))])
+    assert not load_symbols([(*call, (types.Tuple((before, types.int64)), types.float64[::1], types.float64))])
+
+
+@njit
+def _half(value):
+    return 0.5 * value
+
+
+def test_a_kernel_kept_with_types_of_modules_that_are_gone_is_compiled_again(monkeypatch: pytest.MonkeyPatch) -> None:
+    assert _half(3.0) == 1.5
+    cache = LazyCache(_half.py_func, _half.targetoptions)
+
+    def gone(*_: object) -> None:
+        raise ModuleNotFoundError("No module named 'vines.gone'")
+
+    monkeypatch.setattr(cache._cache()._cache_file, "load", gone)
+    assert cache.load_overload((types.float64,), _half.targetctx) is None
+
+
+USE = """
+import sys
+import numpy as np
+from vines import Params, continue_orbit, find_orbit, settle
+from vines.dynamics import Scatter, ensemble
+p = Params(mu=0.01, A=0.0213)
+many, one = {"mu": np.full(3, 0.01), "A": np.full(3, 0.02)}, {"v2": np.full(3, 0.1)}
+for params, starts in ((p, one), (many, None), (many, one), (p, None)):
+    ensemble(params, starts, periods=2, record="measures", threads=1)
+    ensemble(params, starts, periods=2, record="impacts", scatter=Scatter(sigma_r=0.01), threads=1)
+settle(p)
+orbit = find_orbit("LLR", p)
+continue_orbit(orbit, "A", 0.0212)
+find_orbit("LLR", p.replace(A=0.0214), guess=orbit)
+kernels = [k for m in list(sys.modules.values()) if m.__name__.startswith("vines.") for k in vars(m).values()]
+kernels = {id(k): k for k in kernels if isinstance(getattr(k, "signatures", 0), list) and len(k.signatures) > 1}
+print(sorted(k.__name__ for k in kernels.values()))
+"""
+
+
+def test_no_kernel_is_compiled_again_because_callers_hold_other_kinds_of_arrays_or_constants() -> None:
+    root = Path(vines.dynamics.__file__).resolve().parent.parent.parent
+    # The largest of a vector, of a matrix and of complex numbers are functions of their own.
+    assert _run(USE, root, CACHE.parent) in ("['max_abs']", "[]")
+
+
+@njit
+def _sum(kind, value):
+    return kind + value
+
+
+def test_a_call_with_a_known_number_and_one_with_an_unknown_are_one_kernel() -> None:
+    for kind in (types.literal(0), types.literal(1), types.int64):
+        _sum.get_call_template((kind, types.float64), {})
+    assert _sum.signatures == [(types.int64, types.float64)]

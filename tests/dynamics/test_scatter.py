@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pytest
 
 from vines.dynamics import Scatter, ensemble, simulate
+from vines.dynamics._ensemble import _Runs
+from vines.dynamics._lane_run import WITH_IMPACTS, WITH_MEASURES
 from vines.errors import ParameterError, StateError
 from vines.model import Params
 
@@ -75,13 +79,22 @@ def test_standard_errors_with_scatter_are_those_between_runs() -> None:
     assert np.isnan(cut.measures["kinetic_ratio_error"][0])
 
 
-def test_impacts_come_with_measures() -> None:
+def test_impacts_alone_are_those_of_a_run_with_measures_which_can_be_had_later() -> None:
     for scatter in (None, Scatter(sigma_r=0.02, seed=2)):
-        many = ensemble(P, {"v2": V2[:4]}, settle=2.3, periods=9, record="impacts", scatter=scatter)
-        alone = ensemble(P, {"v2": V2[:4]}, settle=2.3, periods=9, record="measures", scatter=scatter)
+        asked: dict[str, Any] = {"settle": 2.3, "periods": 9, "scatter": scatter}
+        many = ensemble(P, {"v2": V2[:4]}, record="impacts", **asked)
+        alone = ensemble(P, {"v2": V2[:4]}, record="measures", **asked)
         assert many.impacts is not None
+        assert alone.impacts is None
+        assert isinstance(many._measured, _Runs)  # nothing was measured yet
+        both = many._measured.done(WITH_IMPACTS + WITH_MEASURES)
+        assert np.array_equal(many.impacts, both.impacts)
+        assert np.array_equal(many.final, both.final)
         assert many.measures is not None
+        assert many.measures is many.measures
         assert np.array_equal(many.measures, alone.measures)
+        assert np.array_equal(many.measures, both.measures)
+        assert ensemble(P, {"v2": V2[:4]}, **asked).measures is None
         hits = many.measures["impacts_left"] + many.measures["impacts_right"]
         assert np.array_equal(np.bincount(many.impacts["run"], minlength=4), hits)
 

@@ -13,6 +13,7 @@ from vines.model import Params, Word
 from vines.orbits import continue_orbit, find_orbit, symmetric_orbits
 from vines.orbits._equations import closing_kernel
 from vines.orbits._general import search
+from vines.orbits._values import essentials_of
 
 P = Params(mu=0.01, A=0.023)
 
@@ -37,11 +38,11 @@ def test_the_derivatives_of_the_closing_equations_agree_with_differences(word, s
     # Flight times of a tenth of the mean or more: the derivatives grow with their inverse squares.
     flights = 0.1 + 0.9 * rng.dirichlet(np.ones(len(word))) * len(word)
     t = rng.uniform(0, p.period) + np.cumsum(flights / flights.sum()) * duration
-    regular, _, slope, _ = closing_kernel(c, duration, side, t)
+    regular, _, slope, _ = closing_kernel(essentials_of(c), duration, side, t)
     assert regular
     for k in range(len(word)):
         h = 1e-6 * np.eye(len(word))[k]
-        up, down = (closing_kernel(c, duration, side, t + s * h)[1] for s in (1, -1))
+        up, down = (closing_kernel(essentials_of(c), duration, side, t + s * h)[1] for s in (1, -1))
         np.testing.assert_allclose((up - down) / 2e-6, slope[:, k], rtol=1e-5, atol=1e-7 * (1 + np.abs(slope).max()))
 
 

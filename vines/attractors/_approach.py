@@ -10,6 +10,7 @@ from vines.attractors import _verdict as v
 from vines.attractors._contacts import repetition
 from vines.dynamics import _advance as col
 from vines.dynamics._flight import derivatives, phasors
+from vines.dynamics._impact_law import after_impact_kernel
 from vines.dynamics._tangent import flow_basis, jump_basis
 from vines.kernels import (
     cold_njit,
@@ -121,8 +122,7 @@ def nearest_orbit(c, rows, kept, p, lag, scale, tolerance):
 
     # How far the run is from the orbit at one instant, just after its last contact.
     x1, v1, v2 = states[lag - 1, 0], states[lag - 1, 1], states[lag - 1, 3]
-    after1 = c.keep1 * v1 + c.pass1 * v2
-    after2 = c.pass2 * v1 + c.keep2 * v2
+    after1, after2 = after_impact_kernel(c.law, v1, v2)
     ur, ui, gr, gi = phasors(c.free, c.Omega, x1, v1, event[col.PHASE])
     _, _, a, _, _ = derivatives(c.free, c.Omega, ur, ui, gr, gi)
     late = guess[lag - 1] - t[lag - 1]

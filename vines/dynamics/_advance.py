@@ -10,6 +10,7 @@ import numpy as np
 
 from vines.dynamics._contact import CONTACT, NO_CONTACT, next_contact
 from vines.dynamics._flight import advance_phase, derivatives, phasors, turn
+from vines.dynamics._impact_law import after_impact_kernel
 from vines.dynamics._sticking import merges, next_release
 from vines.kernels import fused_njit, linked_njit, loop_njit, njit
 
@@ -164,7 +165,7 @@ def _place(state, mode, wall, released, x1, v1, x2, v2):
 @njit
 def begin(state, rows):
     """Write the row of the start."""
-    _write(rows[0], state, START, state[S_WALL], 0.0, state[S_X1], state[S_V1], state[S_X2], state[S_V2])
+    _write(rows[0], state, START, int(state[S_WALL]), 0.0, state[S_X1], state[S_V1], state[S_X2], state[S_V2])
 
 
 @loop_njit
@@ -240,8 +241,7 @@ def advance(c, state, stop, cap, rows, first):
             )
             if code == CONTACT:
                 _move(c, state, tau)
-                after1 = c.keep1 * v + c.pass1 * v2
-                after2 = c.pass2 * v + c.keep2 * v2
+                after1, after2 = after_impact_kernel(c.law, v, v2)
                 if hit != state[S_RUN_SIDE] or state[S_RELEASED] != 0.0:
                     state[S_RUN] = 0.0
                 state[S_RUN] += 1.0

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
+from vines.dynamics._impact_law import ImpactLaw, impact_law_kernel
 from vines.kernels import fused_njit, linked_njit
 from vines.model import Params
 
@@ -63,23 +64,20 @@ class Oscillator(NamedTuple):
 
 
 class Constants(NamedTuple):
-    """Parameters, impact law (paper, eq. (12)), the free and the loaded oscillator, and bounds for certified steps."""
+    """Parameters, the law of impact, the free and the loaded oscillator, and bounds for certified steps."""
 
     mu: float
     A: float
     Omega: float
     r: float
     lam: float
-    keep1: float
-    pass1: float
-    keep2: float
-    pass2: float
     Omega4: float
     Omega5: float
     period: float
     window: float
     near: float
     correction: float
+    law: ImpactLaw
     free: Oscillator
     stuck: Oscillator
 
@@ -163,16 +161,13 @@ def constants_kernel(mu, A, Omega, r, lam):
         Omega,
         r,
         lam,
-        (1.0 - r * mu) / mass,
-        mu * (1.0 + r) / mass,
-        (mu - r) / mass,
-        (1.0 + r) / mass,
         Omega * Omega * Omega * Omega,
         Omega * Omega * Omega * Omega * Omega,
         2.0 * math.pi / Omega,
         2.0 / fastest,
         4e-3 / (fastest * math.sqrt(math.sqrt(fastest))),
         2.0 / 3.0 * mu / (mass * mass) / cube if cube > 0.0 else math.inf,
+        impact_law_kernel(mu, r),
         oscillator(1.0, A, Omega, lam),
         oscillator(mass, A, Omega, lam),
     )
@@ -184,7 +179,7 @@ def constants(p: Params) -> Constants:
     Examples
     --------
     >>> c = constants(Params(mu=0.01, A=0.02))
-    >>> print(f"{c.keep1 + c.pass1:.3f} {c.free.gamma:.6f}")
+    >>> print(f"{c.law.keep1 + c.law.pass1:.3f} {c.free.gamma:.6f}")
     1.000 0.999982
     """
     return constants_kernel(p.mu, p.A, p.Omega, p.r, p.lam)

@@ -7,6 +7,7 @@ import os
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import Literal
 
 import numpy as np
@@ -84,8 +85,6 @@ class Ensemble:
         Impacts in all, those before the recording included.
     codes : ndarray of int, shape (n,)
         0 ``complete``, 1 ``impact_cap``, 2 ``step_limit``; see `status`.
-    measures : structured ndarray, dtype MEASURES, or None
-        Over the recorded time, with the standard errors of kinetic_ratio, max_abs_x1 and rms_x1 by batch means.
     impacts : structured ndarray or None
         Recorded impacts as `Trajectory.impacts`, with the column `run` first; sorted by run and time.
     exponents : ndarray, shape (n, 4), or None
@@ -101,11 +100,11 @@ class Ensemble:
     final: npt.NDArray[np.void]
     counts: npt.NDArray[np.int64]
     codes: npt.NDArray[np.int64]
-    measures: npt.NDArray[np.void] | None = None
     impacts: npt.NDArray[np.void] | None = field(default=None, repr=False)
     exponents: Floats | None = None
     exponent_errors: Floats | None = None
     scatter: Scatter | None = None
+    _measured: npt.NDArray[np.void] | _Runs | None = field(default=None, repr=False)
 
     def __len__(self) -> int:
         return len(self.counts)
@@ -114,6 +113,39 @@ class Ensemble:
     def status(self) -> npt.NDArray[np.str_]:
         """``complete``, ``impact_cap`` or ``step_limit`` for each trajectory."""
         return np.array(STATUS_NAMES)[self.codes]
+
+    @cached_property
+    def measures(self) -> npt.NDArray[np.void] | None:
+        """Energy measures over the recorded time, dtype MEASURES; None where only final states were recorded.
+
+        With the standard errors of kinetic_ratio, max_abs_x1 and rms_x1 by batch means. Where impacts were recorded
+        the trajectories are run again for them, the same to the last bit, when they are first asked for.
+        """
+        known = self._measured
+        return known.done(lanes.WITH_MEASURES).measures if isinstance(known, _Runs) else known
+
+
+@dataclass(frozen=True)
+class _Runs:
+    """What is to be run, whatever of it is recorded."""
+
+    table: Floats
+    begin: Floats
+    periods: float
+    settle: float
+    cap: int
+    scatter: Scatter | None
+    threads: int | None
+
+    def done(self, what: int) -> Ensemble:
+        """Run all, block by block, and return the ensemble."""
+        work = _Work(self, what)
+        n = len(self.table)
+        cores = threads_allowed() if self.threads is None else max(1, self.threads)
+        size = min(BLOCK, max(lanes.LANES, -(-n // (4 * cores))))
+        blocks = [slice(k, min(k + size, n)) for k in range(0, n, size)]
+        each_thread(work.run, blocks, cores)
+        return work.result()
 
 
 def ensemble(
@@ -142,7 +174,8 @@ def ensemble(
     settle : float
         Forcing periods to run first, of which nothing is kept.
     record : {"final", "measures", "impacts"}
-        ``final`` keeps states at the end only; ``measures`` energy measures too; ``impacts`` every impact too.
+        ``final`` keeps states at the end only; ``measures`` energy measures too; ``impacts`` every impact too, and
+        runs once more for the measures only if `Ensemble.measures` is asked for.
     lyapunov : bool
         Whether to give Lyapunov exponents over the recorded time.
     scatter : Scatter, optional
@@ -172,8 +205,9 @@ def ensemble(
     table = _parameters(params)
     begin = _starts(starts)
     n = np.broadcast_shapes(table.shape[:1], begin.shape[:1])[0]
-    table = np.ascontiguousarray(np.broadcast_to(table, (n, 5)))
-    begin = np.ascontiguousarray(np.broadcast_to(begin, (n, 5)))
+    # Copies: a kernel would be compiled once more for arrays that are read-only, as those of broadcast_to are.
+    table = np.array(np.broadcast_to(table, (n, 5)), order="C")
+    begin = np.array(np.broadcast_to(begin, (n, 5)), order="C")
     for name, value, positive in (("periods", periods, True), ("settle", settle, False)):
         if not (math.isfinite(value) and (value > 0 if positive else value >= 0)):
             raise StateError(f"{name} is {value!r}; give a finite number {'> 0' if positive else '>= 0'}")
@@ -185,15 +219,9 @@ def ensemble(
         raise StateError("lyapunov is not defined for runs with scatter; leave one of them out")
     if scatter is not None:
         scatter.check(table)
-    both = lanes.WITH_MEASURES + lanes.WITH_IMPACTS
-    what = {"final": lanes.FINAL, "measures": lanes.WITH_MEASURES, "impacts": both}[record]
+    what = {"final": lanes.FINAL, "measures": lanes.WITH_MEASURES, "impacts": lanes.WITH_IMPACTS}[record]
     what += lanes.WITH_EXPONENTS if lyapunov else 0
-    work = _Work(table, begin, periods, settle, max_impacts_per_period, what, scatter)
-    cores = threads_allowed() if threads is None else max(1, threads)
-    size = min(BLOCK, max(lanes.LANES, -(-n // (4 * cores))))
-    blocks = [slice(k, min(k + size, n)) for k in range(0, n, size)]
-    each_thread(work.run, blocks, cores)
-    return work.result()
+    return _Runs(table, begin, periods, settle, max_impacts_per_period, scatter, threads).done(what)
 
 
 def threads_allowed() -> int:
@@ -220,14 +248,11 @@ def each_thread(work: Callable[[slice], object], blocks: Iterable[slice], cores:
 class _Work:
     """The arrays of an ensemble, filled block by block."""
 
-    def __init__(
-        self, table: Floats, begin: Floats, periods: float, settle: float, cap: int, what: int, scatter: Scatter | None
-    ) -> None:
-        n = len(table)
-        self.table, self.begin, self.cap, self.what, self.scatter = table, begin, cap, what, scatter
-        span = 2.0 * math.pi / table[:, 2]
-        self.periods, self.settle = periods, settle
-        self.first, self.lengths = settle * span, periods * span
+    def __init__(self, runs: _Runs, what: int) -> None:
+        n = len(runs.table)
+        self.runs, self.what = runs, what
+        span = 2.0 * math.pi / runs.table[:, 2]
+        self.first, self.lengths = runs.settle * span, runs.periods * span
         self.finals = np.zeros((n, 6))
         self.totals = np.zeros((n, entry.TOTALS)) if what & lanes.WITH_MEASURES else None
         self.errors = np.full((n, 3), math.nan) if what & lanes.WITH_MEASURES else None
@@ -240,28 +265,28 @@ class _Work:
 
     def run(self, block: slice) -> None:
         """Run a block; its events get more room until they fit."""
-        n = block.stop - block.start
+        n, scatter = block.stop - block.start, self.runs.scatter
         totals = np.zeros((0, entry.TOTALS)) if self.totals is None else self.totals[block]
         errors = np.zeros((0, 3)) if self.errors is None else self.errors[block]
         growths = np.zeros((0, 5)) if self.growths is None else self.growths[block]
         growth_errors = np.zeros((0, 4)) if self.growth_errors is None else self.growth_errors[block]
-        room = int(n * (4 * self.periods + 64)) if self.what & lanes.WITH_IMPACTS else 0
+        room = int(n * (4 * self.runs.periods + 64)) if self.what & lanes.WITH_IMPACTS else 0
         while True:
             events = np.empty((room, col.ROW + 1))
-            common = (self.cap, self.what, self.finals[block], totals, errors)
+            common = (self.runs.cap, self.what, self.finals[block], totals, errors)
             rest = (self.counts[block], self.codes[block], events)
-            runs = (self.table[block], self.begin[block], self.first[block], self.lengths[block])
-            if self.scatter is None:
+            runs = (self.runs.table[block], self.runs.begin[block], self.first[block], self.lengths[block])
+            if scatter is None:
                 filled = lanes.run_block(*runs, *common, growths, growth_errors, *rest)
             else:
-                filled = scatter_block(*runs, *common, *rest, self.scatter.numbers(), block.start)
+                filled = scatter_block(*runs, *common, *rest, scatter.numbers(), block.start)
             if not np.any(self.codes[block] == lanes.OVERFLOW):
                 break
             room *= 2
         if self.what & lanes.WITH_IMPACTS:
             kept = events[:filled]
             self.sizes[block.start] = n
-            self.events[block.start] = kept if self.scatter is None else kept[kept[:, col.KIND] == col.IMPACT]
+            self.events[block.start] = kept if scatter is None else kept[kept[:, col.KIND] == col.IMPACT]
 
     def result(self) -> Ensemble:
         """Put the arrays together."""
@@ -275,17 +300,23 @@ class _Work:
             exponents = np.take_along_axis(rates, order, axis=1)
             exponent_errors = np.take_along_axis(self.growth_errors, order, axis=1)
         return Ensemble(
-            parameters=self.table,
-            starts=self.begin,
+            parameters=self.runs.table,
+            starts=self.runs.begin,
             final=final,
             counts=self.counts,
             codes=self.codes,
-            measures=None if self.totals is None else _measures(self.table[:, 0], self.totals, self.errors),
             impacts=self._impacts() if self.what & lanes.WITH_IMPACTS else None,
             exponents=exponents,
             exponent_errors=exponent_errors,
-            scatter=self.scatter,
+            scatter=self.runs.scatter,
+            _measured=self._measured(),
         )
+
+    def _measured(self) -> npt.NDArray[np.void] | _Runs | None:
+        """Return the measures if they were taken; for impacts alone what is to be run again if they are asked for."""
+        if self.totals is not None:
+            return _measures(self.runs.table[:, 0], self.totals, self.errors)
+        return self.runs if self.what & lanes.WITH_IMPACTS else None
 
     def _impacts(self) -> npt.NDArray[np.void]:
         out = np.empty(sum(len(rows) for rows in self.events.values()), dtype=RUN_IMPACT)

@@ -194,7 +194,9 @@ def peak_between(c, o, ur, ui, gr, gi, last_r, last_i, start, length, best):
             h, _ = taylor_root(gap, slope, -side * j, -side * k, 0.0, 0.0, 0.0)
             reach = BEYOND * h
             if reach <= window and only_root(gap, slope, -side * j, -side * k, -bound, 0.0, reach):
-                tau, x, _, a, j, k = close_in(o, c.Omega, c.near, SPEED, ur, ui, gr, gi, 0.0, 0.0, side, tau, h, reach)
+                tau, x, _, a, j, k = close_in(
+                    o, c.Omega, c.near, SPEED, ur, ui, gr, gi, 0.0, 0.0, int(side), tau, h, reach
+                )
                 if tau > length:
                     return best, when
                 if abs(x) > best:

@@ -48,8 +48,8 @@ def fill_lane(c, state, L, i, length):
     L[f.INVERSE + i] = 1.0 / c.free.gamma
     L[f.OMEGA + i] = c.Omega
     L[f.LAM + i] = c.lam
-    L[f.PASS1 + i] = c.pass1
-    L[f.PASS2 + i] = c.pass2
+    L[f.PASS1 + i] = c.law.pass1
+    L[f.PASS2 + i] = c.law.pass2
     L[f.Q_RE + i] = c.free.qr
     L[f.Q_IM + i] = c.free.qi
     force = modulus(gr, gi)

@@ -17,6 +17,7 @@ import numpy.typing as npt
 from vines.dynamics._constants import constants
 from vines.dynamics._contact import CONTACT, next_contact
 from vines.dynamics._flight import phasors
+from vines.dynamics._impact_law import after_impact
 from vines.dynamics._saltation import GAP_TOLERANCE, jacobian_kernel
 from vines.errors import StateError
 from vines.model import Params
@@ -96,7 +97,7 @@ def impact_map(
         raise StateError(f"w' = {v1 - v2:.9g} does not approach {_LETTER[side]}; give the state just before an impact")
     c = constants(p)
     phase = (p.Omega * t + phi) % (2 * math.pi)
-    after1, after2 = c.keep1 * v1 + c.pass1 * v2, c.pass2 * v1 + c.keep2 * v2
+    after1, after2 = after_impact(c.law, v1, v2)
     flight = phasors(c.free, c.Omega, x1, after1, phase)
     code, tau, found, _, _ = next_contact(c, *flight, x2, after2, side, False, 0.0, _PERIODS * p.period)
     if code != CONTACT:

@@ -13,6 +13,7 @@ import numpy.typing as npt
 
 from vines.dynamics._constants import oscillator
 from vines.dynamics._flight import decay, derivatives, phasors, turn
+from vines.dynamics._impact_law import after_impact_kernel, impact_law_kernel
 from vines.dynamics._sincos import sincos
 from vines.errors import StateError
 from vines.kernels import entry_njit, new_matrix, zero_matrix
@@ -31,8 +32,8 @@ def jacobian_kernel(mu, A, Omega, r, lam, x1, v1, v2, phase, tau):
     The arguments x1, v1, v2, phase are those just before the first impact; the results those just before the second.
     """
     o = oscillator(1.0, A, Omega, lam)
-    v1p = ((1.0 - r * mu) * v1 + mu * (1.0 + r) * v2) / (1.0 + mu)
-    v2p = ((1.0 + r) * v1 + (mu - r) * v2) / (1.0 + mu)
+    law = impact_law_kernel(mu, r)
+    v1p, v2p = after_impact_kernel(law, v1, v2)
     ur, ui, gr, gi = phasors(o, Omega, x1, v1p, phase)
     _, _, a1p, _, _ = derivatives(o, Omega, ur, ui, gr, gi)
     ur, ui, gr, gi = turn(o, Omega, ur, ui, gr, gi, tau)
@@ -42,10 +43,8 @@ def jacobian_kernel(mu, A, Omega, r, lam, x1, v1, v2, phase, tau):
     start = zero_matrix(4, 4)
     start[0, 2] = 1.0
     start[2, 2] = 1.0
-    start[1, 0] = (1.0 - r * mu) / (1.0 + mu)
-    start[1, 1] = mu * (1.0 + r) / (1.0 + mu)
-    start[3, 0] = (1.0 + r) / (1.0 + mu)
-    start[3, 1] = (mu - r) / (1.0 + mu)
+    start[1, 0], start[3, 0] = after_impact_kernel(law, 1.0, 0.0)
+    start[1, 1], start[3, 1] = after_impact_kernel(law, 0.0, 1.0)
     start[0, 3] = -v1p
     start[1, 3] = -a1p
     start[2, 3] = -v2p

@@ -16,6 +16,7 @@ from vines.dynamics import _advance as col
 from vines.dynamics import _totals as entry
 from vines.dynamics._batches import BATCHES, close_batch, standard_errors
 from vines.dynamics._flight import advance_phase
+from vines.dynamics._impact_law import exchanged_kernel, impact_law_kernel
 from vines.dynamics._random import normal
 from vines.dynamics._sincos import sincos
 from vines.dynamics._steps import leaving_step, quartic_root, safe_step
@@ -425,8 +426,9 @@ def scatter_block(
             draws += 1
             r = min(max(r, 0.0), 1.0)
             before1, before2 = s[V], s[SPEED]
-            s[V] -= mu * (1.0 + r) / (1.0 + mu) * closing
-            s[SPEED] += (1.0 + r) / (1.0 + mu) * closing
+            loss, gain = exchanged_kernel(impact_law_kernel(mu, r), closing)
+            s[V] -= loss
+            s[SPEED] += gain
             s[BALL] = s[X] - side
             s[WALL] = side
             push = side * d[2]

@@ -15,6 +15,7 @@ import numpy.typing as npt
 from vines.dynamics._advance import IMPACT, KIND, MODE, PHASE, STICK, TAU, TIME, V1, V2, X1
 from vines.dynamics._constants import constants
 from vines.dynamics._flight import decay, derivatives, phasors
+from vines.dynamics._impact_law import after_impact_kernel
 from vines.dynamics._sincos import sincos
 from vines.dynamics._trajectory import Trajectory
 from vines.errors import StateError
@@ -56,8 +57,7 @@ def jump_basis(c, row, Y):
     """Apply the effect of an event to the disturbances."""
     if row[KIND] == IMPACT:
         v1, v2 = row[V1], row[V2]
-        after1 = c.keep1 * v1 + c.pass1 * v2
-        after2 = c.pass2 * v1 + c.keep2 * v2
+        after1, after2 = after_impact_kernel(c.law, v1, v2)
         ur, ui, gr, gi = phasors(c.free, c.Omega, row[X1], v1, row[PHASE])
         _, _, a, _, _ = derivatives(c.free, c.Omega, ur, ui, gr, gi)
         a_after = a - c.lam * (after1 - v1)
@@ -68,11 +68,11 @@ def jump_basis(c, row, Y):
             x1 = Y[0, j] - v1 * shift
             w1 = Y[1, j] - a * shift
             x2 = Y[2, j] - v2 * shift
-            w2 = Y[3, j]
+            w1, w2 = after_impact_kernel(c.law, w1, Y[3, j])
             Y[0, j] = x1 + after1 * shift
-            Y[1, j] = c.keep1 * w1 + c.pass1 * w2 + a_after * shift
+            Y[1, j] = w1 + a_after * shift
             Y[2, j] = x2 + after2 * shift
-            Y[3, j] = c.pass2 * w1 + c.keep2 * w2
+            Y[3, j] = w2
     elif row[KIND] == STICK:
         share = 1.0 / (1.0 + c.mu)
         for j in range(4):

@@ -91,8 +91,9 @@ class _KernelCache(FunctionCache):
     _impl_class = _Impl
 
 
-_UNREADABLE = (OSError, EOFError, UnpicklingError)
-"""What reading a damaged or forbidden file ends in; the kernel is then compiled again."""
+_UNREADABLE = (OSError, EOFError, UnpicklingError, ImportError, AttributeError)
+"""What reading ends in where a file is damaged or forbidden, or holds types that the sources no longer have; the kernel
+is then compiled again."""
 
 _ASKED: set[tuple[str, str]] = set()
 """Module and name of the kernels that this process asked for, from the cache or compiled."""
@@ -169,8 +170,8 @@ class LazyCache:
         cache = self._cache()
         try:
             cache.save_overload(sig, found)
-        except (EOFError, UnpicklingError):
-            # The list of what is kept of this kernel is damaged.
+        except (EOFError, UnpicklingError, ImportError, AttributeError):
+            # The list of what is kept of this kernel is damaged, or of types that are no more.
             cache.flush()
             cache.save_overload(sig, found)
 

@@ -6,6 +6,7 @@ import functools
 from collections.abc import Callable
 from typing import Any, TypeVar
 
+from numba import types
 from numba.core.config import _OptLevel
 from numba.core.registry import CPUDispatcher
 
@@ -63,6 +64,11 @@ class _Dispatcher(CPUDispatcher):
         """The same function, to be called from Python."""
         # Compiled like the others, so that what Python sees is what kernels do.
         return _dispatcher(CPUDispatcher, self.py_func, _FULL, **{**self.targetoptions, "no_cpython_wrapper": False})
+
+    def get_call_template(self, args: Any, kws: Any) -> Any:
+        """Return the signature for a call, the same for an argument and for one whose value is known; numba's name."""
+        plain = {name: types.unliteral(each) for name, each in dict(kws).items()}
+        return super().get_call_template(tuple(types.unliteral(each) for each in args), plain)
 
     def __call__(self, *arguments: Any) -> Any:  # pyright: ignore[reportIncompatibleMethodOverride]
         return self.from_python(*arguments)

@@ -119,9 +119,19 @@ def symbols_in(library: Any) -> list[tuple[str, str, str, tuple[Any, ...]]]:
 
 
 def load_symbols(symbols: list[tuple[str, str, str, tuple[Any, ...]]]) -> bool:
-    """Load linked kernels; False if one of them gives a result of another type than when its caller was compiled."""
+    """Load linked kernels; False if one of them takes or gives other types than when its caller was compiled."""
+    if any(_outdated(each) for *_, arguments in symbols for each in arguments):
+        return False
     for symbol, module, name, arguments in symbols:
         kernel = getattr(importlib.import_module(module), name, None)
         if not isinstance(kernel, Linked) or kernel.load(arguments)[0] != symbol:
             return False
     return True
+
+
+def _outdated(kind: Any) -> bool:
+    """Say whether a type holds a named tuple whose class has other fields by now."""
+    named = getattr(kind, "instance_class", None)
+    if named is not None and tuple(kind.fields) != named._fields:
+        return True
+    return isinstance(kind, types.BaseTuple) and any(_outdated(each) for each in getattr(kind, "types", ()))

@@ -178,7 +178,7 @@ def _gather_long(gathered: _Gathered) -> None:
 
 def _followed(orbit: Orbit, A: float) -> Floats | None:
     """Return the impact times of an orbit followed to the amplitude A in equal steps, None where it is lost."""
-    t = orbit.t
+    t = orbit.t.copy()  # that of an orbit is read-only, for which the kernel would be compiled once more
     for value in np.linspace(orbit.params.A, A, _STEPS + 1)[1:-1]:
         c = constants(orbit.params.replace(A=float(value)))
         converged, t, _, _ = newton_kernel(c, orbit.period, orbit.side.astype(np.int64), t, ITERATIONS)

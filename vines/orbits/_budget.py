@@ -10,6 +10,7 @@ import numpy.typing as npt
 from vines.dynamics import Measures
 from vines.dynamics import _advance as column
 from vines.dynamics._constants import Constants
+from vines.dynamics._impact_law import after_impact_kernel
 from vines.dynamics._measures import measures_from
 from vines.dynamics._totals import window_totals
 from vines.kernels import entry_njit, zero_matrix
@@ -34,8 +35,7 @@ def _totals(c, duration, side, t, states):
         row[column.TIME] = t[j] if k < N else t[0] + duration
         row[column.PHASE] = (c.Omega * t[j]) % (2.0 * math.pi)
         row[column.X1], row[column.V1], row[column.X2], row[column.V2] = x1, v1, x2, v2
-        row[column.A_V1] = c.keep1 * v1 + c.pass1 * v2
-        row[column.A_V2] = c.pass2 * v1 + c.keep2 * v2
+        row[column.A_V1], row[column.A_V2] = after_impact_kernel(c.law, v1, v2)
         if k > 0:
             row[column.TAU] = row[column.TIME] - rows[k - 1, column.TIME]
     # The window begins just after the first impact, which is counted where it returns.

@@ -13,6 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from vines.dynamics._impact_law import impact_law, reversing
 from vines.errors import ParameterError
 from vines.model import Params
 
@@ -97,11 +98,12 @@ def family_of(mu: float, Omega: float, r: float, lam: float, period: int) -> Sym
             f"lam is {lam:g} at Omega = {Omega:g}, where impacts and oscillator resonate; give lam > 0"
         )
     q = 1 / weight
-    kappa = (1 + 2 * mu - r) / (1 + r)
+    law = impact_law(mu, r)
+    kappa = reversing(law)
     return SymmetricFamily(
         half=half,
-        alpha=2 * mu * q.imag / gamma - half / 2,
-        beta=(kappa + 2 * mu * ((s * q).imag / gamma - 1)) / Omega,
+        alpha=2 * law.ratio * q.imag / gamma - half / 2,
+        beta=(kappa + 2 * law.ratio * ((s * q).imag / gamma - 1)) / Omega,
         kappa=kappa,
         response=complex(lam * Omega, -1) / complex(1 - Omega**2, lam * Omega),
     )

@@ -10,11 +10,12 @@ import math
 
 import numpy as np
 
+from vines.dynamics._constants import oscillator
 from vines.dynamics._flight import derivatives, phasors, turn
+from vines.dynamics._impact_law import after_impact_kernel, impact_law_kernel
 from vines.dynamics._saltation import jacobian_kernel
 from vines.kernels import identity, linked_njit, new_matrix, sum_of
 from vines.orbits._turning import turning_points_kernel
-from vines.orbits._values import essentials
 
 __all__ = ["FLIP", "FOLD", "GRAZE", "STOP", "TORUS", "condition_kernel", "gap_kernel", "turnings_kernel"]
 
@@ -53,14 +54,12 @@ def _without_pair(M):
 @linked_njit
 def gap_kernel(values, t, states, flight, tau):
     """Return w, w' and w'' at time tau of a flight."""
-    c = essentials(values)
+    free, Omega = oscillator(1.0, values[1], values[2], values[4]), values[2]
     x1, v1, x2, v2 = states[flight, 0], states[flight, 1], states[flight, 2], states[flight, 3]
-    mu, r = values[0], values[3]
-    after = ((1.0 - r * mu) * v1 + mu * (1.0 + r) * v2) / (1.0 + mu)
-    ball = ((1.0 + r) * v1 + (mu - r) * v2) / (1.0 + mu)
-    zr, zi, qr, qi = phasors(c.free, c.Omega, x1, after, (c.Omega * t[flight]) % (2.0 * math.pi))
-    zr, zi, qr, qi = turn(c.free, c.Omega, zr, zi, qr, qi, tau)
-    x, v, a, _, _ = derivatives(c.free, c.Omega, zr, zi, qr, qi)
+    after, ball = after_impact_kernel(impact_law_kernel(values[0], values[3]), v1, v2)
+    zr, zi, qr, qi = phasors(free, Omega, x1, after, (Omega * t[flight]) % (2.0 * math.pi))
+    zr, zi, qr, qi = turn(free, Omega, zr, zi, qr, qi, tau)
+    x, v, a, _, _ = derivatives(free, Omega, zr, zi, qr, qi)
     return x - x2 - ball * tau, v - ball, a
 
 
@@ -112,9 +111,9 @@ def turnings_kernel(c, duration, t, states):
     for j in range(t.size):
         tau = t[j + 1] - t[j] if j + 1 < t.size else t[0] + duration - t[j]
         x1, v1, x2, v2 = states[j, 0], states[j, 1], states[j, 2], states[j, 3]
-        ball = c.pass2 * v1 + c.keep2 * v2
+        after, ball = after_impact_kernel(c.law, v1, v2)
         phase = (c.Omega * t[j]) % (2.0 * math.pi)
-        zr, zi, qr, qi = phasors(c.free, c.Omega, x1, c.keep1 * v1 + c.pass1 * v2, phase)
+        zr, zi, qr, qi = phasors(c.free, c.Omega, x1, after, phase)
         for at in turning_points_kernel(c, zr, zi, qr, qi, ball, tau):
             a, b, d, e = turn(c.free, c.Omega, zr, zi, qr, qi, at)
             x, _, bend, _, _ = derivatives(c.free, c.Omega, a, b, d, e)

@@ -13,6 +13,7 @@ import math
 import numpy as np
 
 from vines.kernels import linked_njit, max_abs, new_cube, new_matrix, new_vector, zero_matrix
+from vines.orbits._values import essentials_of
 
 __all__ = ["closing_kernel", "eliminate", "newton_kernel"]
 
@@ -56,7 +57,7 @@ def closing_kernel(c, duration, side, t):
 
     Parameters
     ----------
-    c : vines.dynamics._constants.Constants
+    c : vines.orbits._values.Essentials
     duration : float
         Period pT.
     side : (N,) int array
@@ -68,17 +69,17 @@ def closing_kernel(c, duration, side, t):
     regular : bool
         Whether the elimination went through.
     defect : (N,) float array
-        mu (v2⁺_j - v2_j) + d_j, zero on an orbit.
+        ratio (v2⁺_j - v2_j) + d_j, zero on an orbit.
     slope : (N, N) float array
         Its derivatives in the times.
     states : (N, 4) float array
         x1, v1, x2, v2 just before each impact.
     """
     N = t.size
-    gamma = c.free.gamma
-    s = complex(-c.free.half, gamma)
+    gamma = c.gamma
+    s = complex(-c.half, gamma)
     weight = 1.0 / (1.0 - cmath.exp(s * duration))
-    q = complex(c.free.qr, c.free.qi)
+    q = complex(c.qr, c.qi)
 
     # g, g', g'' of t_j - t_k modulo the period; on the diagonal g(0), and g' just before the kick.
     g = new_cube(3, N, N)
@@ -107,7 +108,7 @@ def closing_kernel(c, duration, side, t):
             ball[j, k] = (g[0, n, k] - g[0, j, k]) / dt[j]
 
     # Impact law d_j + e (v1_j - v2_j) = 0 with v2_j = v2⁺_{j-1}, solved for the kicks.
-    e = c.mu * c.pass2
+    e = c.pass1
     law = new_matrix(N, N)
     kicks = new_matrix(N, 1)
     for j in range(N):
@@ -152,10 +153,10 @@ def closing_kernel(c, duration, side, t):
         b = j - 1 if j > 0 else N - 1
         for k in range(N):
             moved[j, k] = -e * (dv[j, k] - dw[b, k])
-            momentum[j, k] = c.mu * (ball[j, k] - ball[b, k])
-            slope[j, k] = c.mu * (dw[j, k] - dw[b, k])
+            momentum[j, k] = c.ratio * (ball[j, k] - ball[b, k])
+            slope[j, k] = c.ratio * (dw[j, k] - dw[b, k])
         momentum[j, j] += 1.0
-        defect[j] = c.mu * (w[j] - w[b]) + d[j]
+        defect[j] = c.ratio * (w[j] - w[b]) + d[j]
         states[j, 0] = x[j]
         states[j, 1] = v[j]
         states[j, 2] = x[j] - side[j]
@@ -169,6 +170,14 @@ def closing_kernel(c, duration, side, t):
 def newton_kernel(c, duration, side, t, iterations):
     """Solve the closing equations by damped Newton steps.
 
+    Parameters
+    ----------
+    c : vines.dynamics._constants.Constants
+    duration, side, t
+        As for `closing_kernel`; the times to start from.
+    iterations : int
+        Most steps.
+
     Returns
     -------
     converged : bool
@@ -180,10 +189,11 @@ def newton_kernel(c, duration, side, t, iterations):
     """
     N = t.size
     t = t.copy()
-    regular, defect, slope, states = closing_kernel(c, duration, side, t)
+    essential = essentials_of(c)
+    regular, defect, slope, states = closing_kernel(essential, duration, side, t)
     size = max_abs(defect) if regular else math.inf
     # The equations are sums of parts as large as the steady motion without the ball.
-    rounding = 8.0 * _EPS * c.mu * (1.0 + math.hypot(c.free.qr, c.free.qi))
+    rounding = 8.0 * _EPS * c.law.ratio * (1.0 + math.hypot(c.free.qr, c.free.qi))
     for _ in range(iterations):
         step = defect.copy().reshape((N, 1))
         if not regular or not np.isfinite(size) or not eliminate(slope, step):
@@ -199,7 +209,7 @@ def newton_kernel(c, duration, side, t, iterations):
         largest = max_abs(step)
         while True:
             trial = t - share * step[:, 0]
-            regular, defect, slope, states = closing_kernel(c, duration, side, trial)
+            regular, defect, slope, states = closing_kernel(essential, duration, side, trial)
             better = max_abs(defect) if regular else math.inf
             if better < size or share * largest < 1e-12 * duration or share < 1e-3:
                 break
@@ -209,5 +219,5 @@ def newton_kernel(c, duration, side, t, iterations):
         t = trial
         size = better
         if share * largest < 1e-13 * duration or stalled:
-            return np.isfinite(size) and size < 1e-9 * c.mu, t, size, states
+            return np.isfinite(size) and size < 1e-9 * c.law.ratio, t, size, states
     return False, t, size, states

@@ -106,7 +106,7 @@ def linear_kernel(c, span, flip, side, tau, R):
         if step != 0:
             ball[j, N + 2] -= step / tau[j]
             factor *= tau[j]
-    e = c.mu * c.pass2
+    mu, e = c.law.ratio, c.law.pass1
     law = new_matrix(N, N)
     kicks = new_matrix(N, 3)
     for j in range(N):
@@ -120,9 +120,9 @@ def linear_kernel(c, span, flip, side, tau, R):
     for j in range(N):
         b, sign = (j - 1, 1.0) if j > 0 else (N - 1, float(flip))
         for m in range(3):
-            R[j, m] = c.mu * (ball[j, N + m] - sign * ball[b, N + m]) + kicks[j, m]
+            R[j, m] = mu * (ball[j, N + m] - sign * ball[b, N + m]) + kicks[j, m]
             for k in range(N):
-                R[j, m] += c.mu * (ball[j, k] - sign * ball[b, k]) * kicks[k, m]
+                R[j, m] += mu * (ball[j, k] - sign * ball[b, k]) * kicks[k, m]
     return factor
 
 

@@ -10,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from vines.dynamics import Measures
+from vines.dynamics._impact_law import after_impact, impact_law
 from vines.dynamics._trajectory import IMPACT
 from vines.model import Params, Word
 
@@ -152,9 +153,8 @@ class Orbit:
 
     def _after(self) -> Floats:
         """Return v1, v2 just after each impact (paper, eq. (12)), shape (N, 2)."""
-        mu, r = self.params.mu, self.params.r
-        law = np.array([[1 - r * mu, mu * (1 + r)], [1 + r, mu - r]]) / (1 + mu)
-        return self.states[:, [1, 3]] @ law.T
+        law = impact_law(self.params.mu, self.params.r)
+        return np.column_stack(after_impact(law, self.states[:, 1], self.states[:, 3]))
 
     def start(self) -> dict[str, float]:
         """Return a state just after the first impact from which `vines.simulate` follows the orbit.

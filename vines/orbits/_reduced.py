@@ -14,6 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from vines.dynamics._impact_law import impact_law, reversing
 from vines.model import Params
 
 __all__ = ["Reduced", "manifold_amplitude", "manifold_range", "reduced_orbits", "reduced_range"]
@@ -54,7 +55,7 @@ class Reduced:
     @property
     def w_dot(self) -> float:
         """Relative velocity w' = 2 V/(1 + r) just before the impact on L."""
-        return 2 * self.ball_speed / (1 + self.params.r)
+        return (1 + restitution(self.params.r)) * self.ball_speed
 
     @property
     def max_abs_x1(self) -> float:
@@ -93,7 +94,7 @@ class Reduced:
 
 def restitution(r: float) -> float:
     """Return kappa = (1 - r)/(1 + r), the velocity of the oscillator at the impact on L in units of V."""
-    return (1 - r) / (1 + r)
+    return reversing(impact_law(0.0, r))
 
 
 def _state(V: float, r: float) -> complex:
@@ -198,6 +199,7 @@ def _response(V: float, p: Params) -> Reduced:
 
 
 def _fast_multipliers(V: float, r: float) -> Complexes:
+    # The law of impact at mu = 0 twice, with the flights between: its trace, in closed form.
     trace = 2 * r + (1 + r) ** 2 * (math.pi / (2 * V) - math.pi**2 / 4)
     return _eigenvalues(trace, r**2)
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 from vines.dynamics._flight import derivatives, phasors, turn
+from vines.dynamics._impact_law import after_impact_kernel
 from vines.dynamics._saltation import jacobian_kernel
 from vines.kernels import linked_njit, new_cube, njit
 from vines.orbits._turning import turning_points_kernel
@@ -115,7 +116,7 @@ def survey_kernel(c, duration, side, t, states):
             abs(x2 + v2n * tau - states[k, 2]),
             abs(v2n - states[k, 3]),
         )
-        after = c.keep1 * v1 + c.pass1 * v2
+        after, _ = after_impact_kernel(c.law, v1, v2)
         distance, when, where = inspect_flight(c, side[j], x1, after, x2, v2n, phase, tau)
         clearance = min(clearance, distance)
         if where != 0 and wall == 0:

@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from vines.dynamics._constants import constants_kernel
+from vines.dynamics._impact_law import after_impact_kernel, reversing_kernel
 from vines.dynamics._integrals import largest_displacement, segment_integrals
 from vines.dynamics._saltation import jacobian_kernel
 from vines.errors import ParameterError
@@ -109,9 +110,9 @@ def _table_kernel(points, period, out):
         half = math.pi * period / Omega
         s = complex(-c.free.half, c.free.gamma)
         q = 1.0 / (1.0 + cmath.exp(s * half))
-        kappa = (1.0 + 2.0 * mu - r) / (1.0 + r)
-        alpha = 2.0 * mu * q.imag / c.free.gamma - half / 2.0
-        beta = (kappa + 2.0 * mu * ((s * q).imag / c.free.gamma - 1.0)) / Omega
+        kappa = reversing_kernel(c.law)
+        alpha = 2.0 * c.law.ratio * q.imag / c.free.gamma - half / 2.0
+        beta = (kappa + 2.0 * c.law.ratio * ((s * q).imag / c.free.gamma - 1.0)) / Omega
         response = complex(c.free.qr, c.free.qi)
         B2 = c.free.qr**2 + c.free.qi**2
         stiffness = alpha * alpha + beta * beta
@@ -148,7 +149,7 @@ def _table_kernel(points, period, out):
                 largest = max(largest, abs(multipliers[k]))
             row.max_multiplier = largest * largest
             row.stable = largest < 1.0
-            after = v1 - 2.0 * mu * V
+            after, _ = after_impact_kernel(c.law, v1, -V)
             clearance, _, wall = inspect_flight(c, 1, x1, after, x1 - 1.0, V, phase, half)
             row.min_clearance = clearance
             row.admissible = wall == 0 and clearance > 0.0
