@@ -104,3 +104,11 @@ def test_a_damaged_file_is_compiled_again(tmp_path: Path) -> None:
         path.write_bytes(path.read_bytes()[:40])
     assert _run(tmp_path, HELPER) == "32.0 ['between', 'called', 'kernel']"
     assert _run(tmp_path, HELPER) == "32.0 []"
+
+
+def test_wide_vectors_are_used_where_the_processor_has_them() -> None:
+    program = "import vines.dynamics, numba; from vines.kernels import WIDE; print(WIDE, numba.config.CPU_FEATURES)"
+    bare = {name: value for name, value in os.environ.items() if not name.startswith("NUMBA_CPU")}
+    done = subprocess.run([sys.executable, "-c", program], env=bare, capture_output=True, text=True, check=True)
+    wide, features = done.stdout.split(maxsplit=1)
+    assert (wide == "True") == features.strip().endswith("-prefer-256-bit")

@@ -1,5 +1,9 @@
 """How kernels are compiled, kept and joined: decorators, digests, the cache on disk. It knows no physics."""
 
+# Before anything that imports numba, which reads its settings then.
+from vines.kernels._settings import WIDE
+
+# isort: split
 from vines.kernels._announcement import expected
 from vines.kernels._arrays import (
     byte_vector,
@@ -21,7 +25,6 @@ from vines.kernels._arrays import (
 )
 from vines.kernels._cache import CACHE
 from vines.kernels._decorators import cold_njit, entry_njit, fused_njit, linked_njit, loop_njit, njit
-from vines.kernels._settings import WIDE
 from vines.kernels._tasks import Task, compile_tasks, do_task, is_warm
 
 __all__ = [
