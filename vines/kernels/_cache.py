@@ -25,6 +25,7 @@ from numba.core.caching import CompileResultCacheImpl, FunctionCache, _CacheLoca
 from vines.kernels._announcement import announce
 from vines.kernels._digest import digest_of
 from vines.kernels._linked import load_symbols, symbols_in
+from vines.kernels._settings import TARGET
 from vines.places import cache_folder
 
 __all__ = ["CACHE", "LazyCache", "asked_for", "is_there"]
@@ -131,8 +132,8 @@ class LazyCache:
 
     @functools.cached_property
     def digest(self) -> str:
-        """Digest of the kernel as it is loaded in this process."""
-        return digest_of(self._function, self._options)
+        """Digest of the kernel as it is loaded in this process, for the processor that it runs on."""
+        return digest_of(self._function, {**self._options, "target": TARGET})
 
     def _cache(self) -> _KernelCache:
         if self._made is None:

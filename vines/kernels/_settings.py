@@ -6,7 +6,7 @@ import os
 
 import llvmlite.binding
 
-__all__ = ["WIDE", "numba"]
+__all__ = ["TARGET", "WIDE", "numba"]
 
 WIDE = "+avx512f" in llvmlite.binding.get_host_cpu_features().flatten()
 """Whether the processor has vectors of eight doubles; LLVM would use only half of each unless told to."""
@@ -16,3 +16,12 @@ if WIDE and "NUMBA_CPU_FEATURES" not in os.environ and "NUMBA_CPU_NAME" not in o
     os.environ["NUMBA_CPU_FEATURES"] = llvmlite.binding.get_host_cpu_features().flatten() + ",-prefer-256-bit"
 
 import numba  # noqa: E402 - only now
+
+TARGET = " ".join(
+    (
+        numba.__version__,
+        os.environ.get("NUMBA_CPU_NAME") or llvmlite.binding.get_host_cpu_name(),
+        os.environ.get("NUMBA_CPU_FEATURES") or llvmlite.binding.get_host_cpu_features().flatten(),
+    )
+)
+"""What machine code is made by and for: version of numba, processor and its features."""
