@@ -151,7 +151,7 @@ def tests() -> list[str]:
     """Run the whole suite, the full-size variants included."""
     begin = time.perf_counter()
     done = subprocess.run(
-        [sys.executable, "-m", "pytest", "-n", "auto", "-q", "-p", "no:cacheprovider"],
+        [sys.executable, "-m", "pytest", "-n", "auto", "--dist", "loadfile", "-q", "-p", "no:cacheprovider"],
         capture_output=True,
         text=True,
         check=False,

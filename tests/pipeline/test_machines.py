@@ -182,11 +182,22 @@ class Cluster:
         self.environment = {**os.environ, "PYTHONPATH": str(code), "DASK_DISTRIBUTED__SCHEDULER__ALLOWED_FAILURES": "5"}
         self.processes = []
         self.file = folder / "scheduler.json"
+
+    def begin(self):
+        """Start a scheduler, and two workers as soon as it has written where it is."""
         self.scheduler = self.spawn(
             "scheduler", "--host", "127.0.0.1", "--port", "0", "--no-dashboard", "--scheduler-file", self.file
         )
-        wait_for(self.file.exists, self.scheduler)
+        wait_for(self.written, self.scheduler)
         self.address = json.loads(self.file.read_text())["address"]
+        self.workers = [self.worker(), self.worker()]
+
+    def written(self):
+        """Say whether the file of the scheduler is there as a whole."""
+        try:
+            return "address" in json.loads(self.file.read_text())
+        except (FileNotFoundError, json.JSONDecodeError):
+            return False
 
     def spawn(self, what, *arguments):
         command = [sys.executable, "-m", f"distributed.cli.dask_{what}", *map(str, arguments)]
@@ -214,7 +225,7 @@ def cluster(lab):
     """Give a real cluster with two worker processes."""
     made = Cluster(lab.folder, lab.package.parent)
     try:
-        made.workers = [made.worker(), made.worker()]
+        made.begin()
         yield made
     finally:
         made.close()

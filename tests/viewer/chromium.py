@@ -97,14 +97,14 @@ class Browser:
         data = self.call("Page.captureScreenshot", session=self._session, format="png")["data"]
         return base64.b64decode(data)
 
-    def at_rest(self, seconds=180.0):
-        """Return a picture once there is something to see and two in a row are equal."""
+    def at_rest(self, shows=lambda picture: True, seconds=180.0):
+        """Return a picture once there is something to see, what `shows` looks for too, and two in a row are equal."""
         deadline = time.monotonic() + seconds
         before = b""
         while time.monotonic() < deadline:
             time.sleep(1.5)
             now = self.picture()
-            if now == before and len(now) > 60_000:
+            if now == before and len(now) > 60_000 and shows(now):
                 return now
             before = now
         raise TimeoutError(f"the page did not come to rest within {seconds:g} s; it said {self.console[-5:]}")
