@@ -7,6 +7,8 @@ import subprocess
 import sys
 from pathlib import Path
 
+import pytest
+
 HELPER = """
 from vines.kernels import fused_njit, linked_njit, new_vector
 
@@ -106,8 +108,9 @@ def test_a_damaged_file_is_compiled_again(tmp_path: Path) -> None:
     assert _run(tmp_path, HELPER) == "32.0 []"
 
 
-def test_wide_vectors_are_used_where_the_processor_has_them() -> None:
-    program = "import vines.dynamics, numba; from vines.kernels import WIDE; print(WIDE, numba.config.CPU_FEATURES)"
+@pytest.mark.parametrize("first", ["vines.dynamics, numba", "numba, vines.dynamics"])
+def test_wide_vectors_are_used_where_the_processor_has_them(first: str) -> None:
+    program = f"import {first}; from vines.kernels import WIDE; print(WIDE, numba.config.CPU_FEATURES)"
     bare = {name: value for name, value in os.environ.items() if not name.startswith("NUMBA_CPU")}
     done = subprocess.run([sys.executable, "-c", program], env=bare, capture_output=True, text=True, check=True)
     wide, features = done.stdout.split(maxsplit=1)

@@ -16,6 +16,11 @@ if WIDE and "NUMBA_CPU_FEATURES" not in os.environ and "NUMBA_CPU_NAME" not in o
     os.environ["NUMBA_CPU_FEATURES"] = llvmlite.binding.get_host_cpu_features().flatten() + ",-prefer-256-bit"
 
 import numba  # noqa: E402 - only now
+import numba.core.config as settings  # noqa: E402
+
+# Somebody may have imported numba before; it asks for these when it compiles for the first time.
+settings.CPU_NAME = os.environ.get("NUMBA_CPU_NAME")  # pyright: ignore[reportAttributeAccessIssue]
+settings.CPU_FEATURES = os.environ.get("NUMBA_CPU_FEATURES")  # pyright: ignore[reportAttributeAccessIssue]
 
 TARGET = " ".join(
     (
