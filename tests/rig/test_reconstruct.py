@@ -52,7 +52,7 @@ def test_a_run_of_which_a_tenth_of_the_impacts_was_not_seen_is_not_accepted(dwel
 def test_soft_impacts_contradict_nothing(ringdown):
     """A heavy ball in chaos: impacts from .05 to 1.4 m/s, and slow flights in which its friction turns."""
     settings = RigSettings(
-        duration=12.0, settle=30.0, E=0.015 * 0.0457, m=3.807 * 0.08, sigma_r=0.006, r=0.68, r_exponent=0.16,
+        duration=20.0, settle=30.0, E=0.015 * 0.0457, m=3.807 * 0.08, sigma_r=0.006, r=0.68, r_exponent=0.16,
         friction=0.004,
     )  # fmt: skip
     recording, truth = simulate_rig(settings, 4)
