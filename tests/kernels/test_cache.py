@@ -115,3 +115,25 @@ def test_wide_vectors_are_used_where_the_processor_has_them(first: str) -> None:
     done = subprocess.run([sys.executable, "-c", program], env=bare, capture_output=True, text=True, check=True)
     wide, features = done.stdout.split(maxsplit=1)
     assert (wide == "True") == features.strip().endswith("-prefer-256-bit")
+
+
+def test_what_another_process_compiles_meanwhile_is_taken_over(tmp_path: Path) -> None:
+    """The second look into the cache, behind the lock, finds the kernel that the first look missed."""
+    _run(tmp_path, HELPER)
+    for path in (tmp_path / "cache" / "kernels" / "kernel").iterdir():
+        path.unlink()
+    program = """
+from vines.kernels import _cache, expected
+expected()
+look = _cache.LazyCache.load_overload
+seen = set()
+def missing_at_first(self, sig, target_context):
+    if id(self) not in seen:
+        seen.add(id(self))
+        return None
+    return look(self, sig, target_context)
+_cache.LazyCache.load_overload = missing_at_first
+import kernel
+print(kernel.kernel(1.0))
+"""
+    assert _run(tmp_path, HELPER, program=program) == "32.0"

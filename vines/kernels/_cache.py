@@ -158,7 +158,10 @@ class LazyCache:
         """Return what `compile_it` returns, or what another process has kept meanwhile; say that it takes its time."""
         with self._alone():
             found = self.load_overload(sig, target_context)
-            if found is None:
+            if found is not None:
+                # numba does this itself for what it loads, and while it compiles; here it believes that it compiled.
+                target_context.insert_user_function(found.entry_point, found.fndesc, [found.library])
+            else:
                 announce(CACHE)
                 found = compile_it()
                 # That it can't be written does no harm.
