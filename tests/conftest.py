@@ -1,6 +1,5 @@
 """What all tests share: compiled kernels from the project's cache, and one run of the quickstart to look at."""
 
-import importlib
 import os
 import shutil
 import signal
@@ -14,8 +13,6 @@ from vines.places import cache_folder
 
 # Tests keep their results in temporary folders; the kernels they use are those that `make run` compiled.
 os.environ.setdefault("NUMBA_CACHE_DIR", str(cache_folder()))
-# They are made for the vectors of this machine, which numba has to be told before anything else in a test loads it.
-importlib.import_module("vines.dynamics")
 os.environ["RERUN_ANALYTICS"] = "0"
 os.environ.pop("VINES_ROOT", None)
 os.environ.pop("VINES_DATA", None)

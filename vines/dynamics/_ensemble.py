@@ -13,6 +13,7 @@ from typing import Literal
 import numpy as np
 import numpy.typing as npt
 
+from vines.cores import cores
 from vines.dynamics import _advance as col
 from vines.dynamics import _lane_run as lanes
 from vines.dynamics import _totals as entry
@@ -227,8 +228,8 @@ def ensemble(
 def threads_allowed() -> int:
     """Return how many threads this process may use: its cores, one in a worker process of a pipeline."""
     named = os.environ.get("NUMBA_NUM_THREADS", "")
-    cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
-    return min(int(named), cores) if named.isdigit() and int(named) > 0 else cores
+    there = cores()
+    return min(int(named), there) if named.isdigit() and int(named) > 0 else there
 
 
 def each_thread(work: Callable[[slice], object], blocks: Iterable[slice], cores: int) -> None:

@@ -1,7 +1,7 @@
 """Arrays inside kernels, each way to make one compiled once.
 
 numba writes into every function that calls numpy.empty what would format the message of a failure: some 5,000
-instructions, more than most kernels have of their own. It is alike with reductions and products of matrices.
+instructions, more than most kernels have of their own. It is alike with reductions.
 """
 
 from __future__ import annotations
@@ -14,10 +14,8 @@ __all__ = [
     "byte_vector",
     "complex_matrix",
     "complex_vector",
-    "determinant",
     "identity",
     "integer_vector",
-    "matmul",
     "max_abs",
     "new_cube",
     "new_matrix",
@@ -112,15 +110,3 @@ def max_abs(values):
 def sum_of(values):
     """Return the sum of all values."""
     return np.sum(values)
-
-
-@linked_njit
-def matmul(left, right):
-    """Return the product of a matrix with a matrix or a vector."""
-    return np.dot(left, right)
-
-
-@linked_njit
-def determinant(values):
-    """Return the determinant of a square matrix."""
-    return np.linalg.det(values)

@@ -18,6 +18,7 @@ from dataclasses import dataclass
 from importlib import import_module
 from pathlib import Path
 
+from vines.cores import cores
 from vines.errors import KernelError
 from vines.kernels._announcement import expected
 from vines.kernels._cache import CACHE, asked_for, is_there
@@ -90,8 +91,7 @@ def compile_tasks(tasks: Iterable[Task], report: Callable[[str], object], jobs: 
     KernelError
         If a task fails.
     """
-    cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
-    with ThreadPoolExecutor(jobs or cores) as pool:
+    with ThreadPoolExecutor(jobs or cores()) as pool:
         running = {pool.submit(_in_a_process, task): task for task in tasks}
         for done in as_completed(running):
             report(f"  {running[done].text}: {done.result():.1f} s")

@@ -14,7 +14,7 @@ from vines.errors import StoreError
 from vines.pipeline._work import Chunk, Pace, Work
 from vines.pipeline._worker import Done, Task, compute_task, prepare_worker
 
-__all__ = ["Crew", "Engine", "Processes", "cores"]
+__all__ = ["Crew", "Engine", "Processes"]
 
 WORTH_SECONDS = 4.0
 """Work that would take one process longer than this is worth starting others, which costs each about 1.5 s."""
@@ -23,11 +23,6 @@ _LOOK_SECONDS = 1.0
 
 _Item = TypeVar("_Item")
 _Made = TypeVar("_Made")
-
-
-def cores() -> int:
-    """Return how many processor cores this process may use."""
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
 class Crew(Protocol):

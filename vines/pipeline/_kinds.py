@@ -52,9 +52,9 @@ class Kind:
         cannot be. Called with the corners of the declared box before anything is written.
     files : callable, optional
         ``files(options, root)`` returns the files whose contents belong to the key, such as published claims.
-    kernels : callable, optional
-        ``kernels(options, carried)`` names the kinds of tasks whose compiled kernels the body asks for, so that they
-        are compiled before the run, and no others.
+    kernels : tuple of str, or callable
+        The kinds of tasks whose compiled kernels the body asks for, so that they are compiled before the run, and no
+        others; ``kernels(options, carried)`` where it depends on the stage.
     """
 
     name: str
@@ -71,7 +71,7 @@ class Kind:
     pictures: bool = False
     check: Callable[[dict[str, float], Any], None] | None = None
     files: Callable[[Any, Path], tuple[Path, ...]] | None = None
-    kernels: Callable[[Any, bool], tuple[str, ...]] | None = None
+    kernels: tuple[str, ...] | Callable[[Any, bool], tuple[str, ...]] = ()
 
 
 _REGISTER: dict[str, Kind] = {}

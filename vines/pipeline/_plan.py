@@ -155,7 +155,9 @@ class Planner:
         self.keys[name] = key
         state, reason = self._state(prepared, wanted, done)
         then = other_versions(pin.get("versions", {})) if pin else ""
-        needed = stage.kind.kernels(stage.options, stage.carry is not None) if stage.kind.kernels is not None else ()
+        needed = stage.kind.kernels
+        if not isinstance(needed, tuple):
+            needed = needed(stage.options, stage.carry is not None)
         return StagePlan(name, stage.kind.name, state, reason, wanted, done, failed, key, then, kernels=needed)
 
     def set_key(self, name: str, key: str) -> None:

@@ -105,7 +105,8 @@ def run_pipeline(
 
 
 def _crew(engine: str, scheduler: str | None, jobs: int | None) -> Engine:
-    from vines.pipeline._engine import Engine, Processes, cores
+    from vines.cores import cores
+    from vines.pipeline._engine import Engine, Processes
 
     count = jobs if jobs is not None else cores()
     if engine == "local":

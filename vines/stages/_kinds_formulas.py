@@ -21,11 +21,6 @@ class DimensionlessOptions(msgspec.Struct, frozen=True, forbid_unknown_fields=Tr
     """A rig in SI units, Table 1 of the paper by default, and its dimensionless parameters; nothing to choose."""
 
 
-def _kernels(options: Any, carried: bool) -> tuple[str, ...]:
-    del options, carried
-    return ("orbits",)
-
-
 def _check_model(params: dict[str, float], options: Any) -> None:
     del options
     Params(**params)
@@ -50,7 +45,7 @@ def register_formulas() -> None:
             parameters=PARAMETERS,
             vary="grid",
             check=_check_model,
-            kernels=_kernels,
+            kernels=("orbits",),
         )
     )
     register(

@@ -77,16 +77,6 @@ class OptimumOptions(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     largest_multiplier: float = 1.0
 
 
-def _kernels(options: Any, carried: bool) -> tuple[str, ...]:
-    del options, carried
-    return ("orbits",)
-
-
-def _kernels_of_curves(options: Any, carried: bool) -> tuple[str, ...]:
-    del options, carried
-    return ("orbits", "curves")
-
-
 def _check_branch(params: dict[str, float], options: Any) -> None:
     from vines.model import Word
 
@@ -155,7 +145,7 @@ def register_orbits() -> None:
             parameters=PARAMETERS,
             vary="range",
             check=_check_branch,
-            kernels=_kernels,
+            kernels=("orbits",),
         )
     )
     register(
@@ -169,7 +159,7 @@ def register_orbits() -> None:
             parameters=PARAMETERS,
             vary="range",
             check=_check_curve,
-            kernels=_kernels_of_curves,
+            kernels=("orbits", "curves"),
         )
     )
     register(
@@ -183,7 +173,7 @@ def register_orbits() -> None:
             parameters={name: value for name, value in PARAMETERS.items() if name != "A"},
             vary="grid",
             check=_check_atlas,
-            kernels=_kernels,
+            kernels=("orbits",),
         )
     )
     register(
@@ -197,6 +187,6 @@ def register_orbits() -> None:
             parameters={**PARAMETERS, "b": 1.0},
             vary="range",
             check=_check_optimum,
-            kernels=_kernels,
+            kernels=("orbits",),
         )
     )

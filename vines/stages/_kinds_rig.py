@@ -71,11 +71,6 @@ def _check_seeded(params: dict[str, float], options: Any) -> None:
     _check_seed(options)
 
 
-def _kernels_of_compare(options: Any, carried: bool) -> tuple[str, ...]:
-    del options, carried
-    return COMPARE
-
-
 def _check_compare(params: dict[str, float], options: Any) -> None:
     del params
     _check_seed(options)
@@ -157,6 +152,6 @@ def register_rig() -> None:
             needs=True,
             logs=True,
             check=_check_compare,
-            kernels=_kernels_of_compare,
+            kernels=COMPARE,
         )
     )

@@ -82,20 +82,10 @@ class BasinsOptions(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     watch: int = 128
 
 
-def _kernels_of_runs(options: TrajectoryOptions, carried: bool) -> tuple[str, ...]:
-    del options, carried
-    return ("one_run", "runs")
-
-
 def _kernels_of_sweep(options: SweepOptions, carried: bool) -> tuple[str, ...]:
     # Lanes run the points that do not wait for each other, and random starts.
     alone = carried and not options.random
     return ("one_run",) if alone else ("one_run", "many_runs")
-
-
-def _kernels_of_basins(options: BasinsOptions, carried: bool) -> tuple[str, ...]:
-    del options, carried
-    return ("many_runs", "one_run", "runs")
 
 
 def _check_simulation(params: dict[str, float], options: Any) -> None:
@@ -148,7 +138,7 @@ def register_runs() -> None:
             carry=True,
             logs=True,
             check=_check_simulation,
-            kernels=_kernels_of_runs,
+            kernels=("one_run", "runs"),
         )
     )
     register(
@@ -176,6 +166,6 @@ def register_runs() -> None:
             tables=("attractors", "basins"),
             parameters=PARAMETERS,
             check=_check_basins,
-            kernels=_kernels_of_basins,
+            kernels=("many_runs", "one_run", "runs"),
         )
     )
