@@ -12,8 +12,8 @@ if __name__ == "__main__":
     spec = importlib.util.spec_from_file_location("lab_of_the_tests", Path(__file__).with_name("conftest.py"))
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)
-    engine = importlib.import_module("vines.pipeline._engine")
-    engine.WORTH_SECONDS = options.pop("worth", engine.WORTH_SECONDS)
+    processes = importlib.import_module("vines.pipeline._processes")
+    processes.WORTH_SECONDS = options.pop("worth", processes.WORTH_SECONDS)
     work = importlib.import_module("vines.pipeline._work")
     work.TARGET_SECONDS = options.pop("target", work.TARGET_SECONDS)
     if "shard" in options:

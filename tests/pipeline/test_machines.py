@@ -114,6 +114,18 @@ def test_ctrl_c_does_not_wait_for_a_point_that_takes_ten_minutes(lab, jobs):
     assert parts(lab) == 0
 
 
+@pytest.mark.parametrize("delay", [0.0, 0.4])
+def test_ctrl_c_says_one_line_while_workers_start_too(lab, delay):
+    lab.declare('[stages.up]\nkind = "toy"\nwait = 600.0\nvary.A = [0.1, 0.2, 0.3]\n')
+    process = start(lab, jobs=2, worth=0.0)
+    children = Path(f"/proc/{process.pid}/task/{process.pid}/children")
+    # the first is Python's own, which counts what processes share
+    wait_for(lambda: len(children.read_text().split()) >= 2, process)
+    time.sleep(delay)
+    os.killpg(process.pid, signal.SIGINT)
+    assert end(process, code=130) == "vines: stopped; what is finished is kept, the same command goes on\n"
+
+
 @pytest.mark.parametrize("jobs", [1, 2])
 def test_ctrl_c_stops_a_run_that_goes_on_later(lab, undisturbed, jobs):
     declared = lab.declare(SWEEP.replace("wait = 0.01", "wait = 0.03"))

@@ -139,7 +139,7 @@ def test_a_chain_may_start_from_a_point_of_another_stage(lab, tally):
 
 @pytest.mark.parametrize("form", [TOYS, CARRIED.replace("vary.A", "vary.mu = [0.1, 0.2, 0.3]\n    vary.A")])
 def test_one_and_two_processes_make_the_same_bytes(lab, monkeypatch, form):
-    monkeypatch.setattr("vines.pipeline._engine.WORTH_SECONDS", 0.0)
+    monkeypatch.setattr("vines.pipeline._processes.WORTH_SECONDS", 0.0)
     declared = lab.declare(form)
     lab.run(declared, jobs=1)
     alone = lab.bytes_of("up")
@@ -151,7 +151,7 @@ def test_one_and_two_processes_make_the_same_bytes(lab, monkeypatch, form):
 
 @pytest.mark.parametrize("form", [TOYS, CARRIED.replace("vary.A", "vary.mu = [0.1, 0.2, 0.3]\n    vary.A")])
 def test_a_worker_that_dies_loses_nothing(lab, monkeypatch, form):
-    monkeypatch.setattr("vines.pipeline._engine.WORTH_SECONDS", 0.0)
+    monkeypatch.setattr("vines.pipeline._processes.WORTH_SECONDS", 0.0)
     lab.run(lab.declare(form), jobs=1)
     undisturbed = lab.rows("up")
     declared = lab.declare(form.replace('"toy"', f'"toy"\n    die = "{lab.folder / "died"}"'))
@@ -300,8 +300,8 @@ import importlib, sys
 from pathlib import Path
 sys.path[:0] = [sys.argv[1], sys.argv[2]]
 if __name__ == "__main__":
-    import vines.pipeline._engine as engine
-    engine.WORTH_SECONDS = 0.0
+    import vines.pipeline._processes as processes
+    processes.WORTH_SECONDS = 0.0
     from conftest_of_the_lab import Lab
     lab = object.__new__(Lab)
     lab.folder = Path(sys.argv[3])

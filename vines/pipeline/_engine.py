@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import math
-import multiprocessing
-import os
 from collections.abc import Callable, Sequence
 from concurrent.futures import FIRST_COMPLETED, Executor, Future, wait
 from types import TracebackType
@@ -12,12 +10,10 @@ from typing import Protocol, TypeVar
 
 from vines.errors import StoreError
 from vines.pipeline._work import Chunk, Pace, Work
-from vines.pipeline._worker import Done, Task, compute_task, prepare_worker
+from vines.pipeline._worker import Done, Task, compute_task
 
-__all__ = ["Crew", "Engine", "Processes"]
+__all__ = ["Crew", "Engine"]
 
-WORTH_SECONDS = 4.0
-"""Work that would take one process longer than this is worth starting others, which costs each about 1.5 s."""
 _DEATHS = 3
 _LOOK_SECONDS = 1.0
 
@@ -62,62 +58,6 @@ class Crew(Protocol):
     def stop(self, *, now: bool) -> None:
         """End it; `now` leaves chunks unfinished."""
         ...
-
-
-class Processes:
-    """Worker processes on this machine.
-
-    Parameters
-    ----------
-    jobs : int
-        How many.
-    """
-
-    def __init__(self, jobs: int) -> None:
-        self.worth = WORTH_SECONDS
-        self._jobs = jobs
-        self._executor: Executor | None = None
-        self._before: set[object] = set()
-
-    def size(self) -> int:
-        """Return how many there may be."""
-        return self._jobs
-
-    def executor(self) -> Executor:
-        """Return the pool of processes."""
-        if self._executor is None:
-            from concurrent.futures import ProcessPoolExecutor
-
-            self._before = set(multiprocessing.active_children())
-            self._executor = ProcessPoolExecutor(
-                self._jobs,
-                mp_context=multiprocessing.get_context("spawn"),
-                initializer=prepare_worker,
-                initargs=(os.getpid(),),
-            )
-        return self._executor
-
-    def is_loss(self, error: BaseException) -> bool:
-        """Whether a process died; the others of its pool die with it, and a new pool takes over."""
-        from concurrent.futures.process import BrokenProcessPool
-
-        if not isinstance(error, BrokenProcessPool):
-            return False
-        self.stop(now=True)
-        return True
-
-    def look(self) -> None:
-        """Nothing to see: the pool itself tells when a process dies."""
-
-    def stop(self, *, now: bool) -> None:
-        """End the processes; a part that is not committed is not there, so nothing is half done."""
-        executor, self._executor = self._executor, None
-        if executor is None:
-            return
-        if now:
-            for child in set(multiprocessing.active_children()) - self._before:
-                child.terminate()
-        executor.shutdown(wait=not now, cancel_futures=now)
 
 
 class Engine:

@@ -106,7 +106,8 @@ def run_pipeline(
 
 def _crew(engine: str, scheduler: str | None, jobs: int | None) -> Engine:
     from vines.cores import cores
-    from vines.pipeline._engine import Engine, Processes
+    from vines.pipeline._engine import Engine
+    from vines.pipeline._processes import Processes
 
     count = jobs if jobs is not None else cores()
     if engine == "local":
