@@ -38,6 +38,7 @@ class ToyOptions(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 class SumOptions(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     label: str = "sum"
+    tally: str = ""
 
 
 def points(job):
@@ -79,6 +80,19 @@ def whole(job):
         raise RuntimeError("label is broken")
     (job.folder / "note.txt").write_text(job.options.label)
     return Batch(tables={"checks": [{"id": job.options.label, "our_value": total}]})
+
+
+def picture(job):
+    if job.options.label == "broken":
+        raise RuntimeError("label is broken")
+    if job.options.label == "dies" and multiprocessing.parent_process():
+        os._exit(1)
+    if job.options.tally:
+        with Path(job.options.tally).open("a") as stream:
+            stream.write(f"{os.getpid()}\\n")
+    for end in ("png", "svg"):
+        (job.folder / f"picture.{end}").write_text(" ".join(job.inputs))
+    return Batch()
 '''
 
 LAW = '''
@@ -146,6 +160,17 @@ class Lab:
                 body="toylab.bodies:whole",
                 tables=("checks",),
                 needs=True,
+            )
+        )
+        register(
+            Kind(
+                name="picture",
+                summary="a picture of what other stages made",
+                shape="whole",
+                options=bodies.SumOptions,
+                body="toylab.bodies:picture",
+                needs=True,
+                pictures=True,
             )
         )
 

@@ -295,6 +295,56 @@ def test_an_interrupt_keeps_what_is_stored(lab, tally):
     assert sum(read().values()) == 41 - stored
 
 
+PICTURES = """
+[stages.up]
+kind = "toy"
+vary.A = [0.1, 0.2]
+[stages.first]
+kind = "picture"
+needs = ["up"]
+LABEL
+[stages.second]
+kind = "picture"
+needs = ["up"]
+[stages.total]
+kind = "total"
+needs = ["up"]
+"""
+
+
+@pytest.mark.parametrize(("label", "apart"), [("", True), ('label = "dies"', False)])
+def test_a_picture_is_drawn_beside_later_stages(lab, tmp_path, label, apart):
+    tally = tmp_path / "tally"
+    form = PICTURES.replace("LABEL", f'{label}\ntally = "{tally}"')
+    declared = lab.declare(form)
+    summary = lab.run(declared, jobs=2)
+    assert [stage.name for stage in summary.stages] == ["up", "first", "second", "total"]
+    assert summary.ok
+    # a process that dies leaves it to this one
+    assert (int(tally.read_text()) != os.getpid()) == apart
+    assert plan(load(declared, root=lab.folder), lab.store)[1].state == "up_to_date"
+    together = lab.bytes_of("first")
+    lab.store = Store(lab.folder / "alone")
+    lab.run(declared, jobs=1)
+    assert lab.bytes_of("first") == together
+
+
+def test_a_picture_that_fails_in_another_process_fails_its_stage_alone(lab):
+    declared = lab.declare(PICTURES.replace("LABEL", 'label = "broken"'))
+    states = {stage.name: (stage.state, stage.reason) for stage in lab.run(declared, jobs=2).stages}
+    assert states["first"] == ("failed", "RuntimeError: label is broken")
+    assert [states[name][0] for name in ("second", "total")] == ["computed", "computed"]
+
+
+def test_a_script_without_a_guard_may_use_processes(lab):
+    lab.declare(PICTURES.replace("LABEL", ""))
+    (lab.folder / "script.py").write_text(SCRIPT.replace('if __name__ == "__main__":', "if True:"))
+    (lab.folder / "conftest_of_the_lab.py").write_text(Path(__file__).with_name("conftest.py").read_text())
+    command = [sys.executable, "script.py", str(lab.package.parent), str(lab.folder), str(lab.folder), "2"]
+    assert subprocess.run(command, cwd=lab.folder, timeout=120, check=False).returncode == 0
+    assert lab.store.pins("toys").keys() == {"up", "first", "second", "total"}
+
+
 SCRIPT = """
 import importlib, sys
 from pathlib import Path

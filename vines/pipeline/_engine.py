@@ -145,6 +145,40 @@ class Engine:
                 deaths = self._count(error, deaths)
         return [made[place] for place in range(len(items))]
 
+    def aside(self, function: Callable[[_Item], _Made], item: _Item) -> Future[_Made] | None:
+        """Let another process apply a function to an item; None if this one is alone.
+
+        Parameters
+        ----------
+        function : callable
+            Can be imported by its name.
+        item : object
+            Whole seconds of work.
+        """
+        if self.crew.size() < 2:
+            return None
+        try:
+            return self.crew.executor().submit(function, item)
+        except Exception as error:
+            self._count(error, 0)
+            return None
+
+    def outcome(self, future: Future[_Made]) -> _Made | None:
+        """Wait for what another process makes; None if that process died.
+
+        Raises
+        ------
+        EngineError
+            If the crew cannot go on.
+        """
+        try:
+            while not wait([future], timeout=_LOOK_SECONDS).done:
+                self.crew.look()
+            return future.result()
+        except Exception as error:
+            self._count(error, 0)
+            return None
+
     def __enter__(self) -> Engine:
         return self
 

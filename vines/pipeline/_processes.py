@@ -6,10 +6,12 @@ import contextlib
 import multiprocessing
 import os
 import signal
+import sys
 import threading
 from collections.abc import Iterator
 from concurrent.futures import Executor
 from multiprocessing.context import SpawnContext, SpawnProcess
+from types import ModuleType
 from typing import Any
 
 from vines.pipeline._worker import prepare_worker
@@ -20,6 +22,21 @@ WORTH_SECONDS = 4.0
 """Work that would take one process longer than this is worth starting others, which costs each about 1.5 s."""
 _PATIENCE = 0.5
 """How long an interrupted run waits for the pool's own threads, whose processes are dead by then."""
+
+
+@contextlib.contextmanager
+def _no_script() -> Iterator[None]:
+    """Let processes that start meanwhile not import the script that is being run.
+
+    What they compute can be imported by its name. A script without ``if __name__ == "__main__"`` would run the same
+    pipeline again in each of them, and wait there for the run that waits for them.
+    """
+    script = sys.modules["__main__"]
+    sys.modules["__main__"] = ModuleType("__main__")
+    try:
+        yield
+    finally:
+        sys.modules["__main__"] = script
 
 
 @contextlib.contextmanager
@@ -46,7 +63,7 @@ class _Undisturbed(SpawnProcess):
     """A process that Ctrl-C doesn't reach, not even while it starts: its parent decides when it ends."""
 
     def start(self) -> None:
-        with _signals_held():
+        with _signals_held(), _no_script():
             super().start()
 
 

@@ -3,16 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import TYPE_CHECKING, Any, Literal
+from functools import partial
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
 from vines.errors import SchemaError
 from vines.pipeline._declaration import Pipeline
 from vines.pipeline._events import Event, Report, RunSummary, StageOutcome, silent
 from vines.pipeline._plan import Planner, Prepared, StagePlan
+from vines.pipeline._whole import WholeTask, compute_whole, whole_task
 from vines.store import Store
 
 if TYPE_CHECKING:
+    from concurrent.futures import Future
+
     from vines.pipeline._engine import Engine
+    from vines.pipeline._kinds import Kind
     from vines.pipeline._shard import Shard
 
 __all__ = ["run_pipeline"]
@@ -95,13 +100,21 @@ def run_pipeline(
         # another process may have done some of it meanwhile
         run = _Run(planner.afresh(), _crew(engine, scheduler, jobs), retry_failed, merge, report)
         forced = set(order if named is None else named) if force else set()
+        left = {each.name for each in plans if each.name in forced or not _settled(each, retry_failed)}
+        heavy = [name for name in left if _is_heavy(pipeline.stages[name].kind)]
         with run.engine:
-            for name in order:
-                run.stage(name, force=name in forced)
+            for place, name in enumerate(order):
+                run.stage(name, force=name in forced, more=not set(heavy).isdisjoint(order[place + 1 :]))
+            run.finish()
         run.planner.code.save()
         if gone:
             store.unpin(pipeline.name, gone)
-    return RunSummary(pipeline.name, tuple(run.outcomes.values()))
+    return RunSummary(pipeline.name, tuple(run.outcomes[name] for name in order))
+
+
+def _is_heavy(kind: Kind) -> bool:
+    """Say whether a stage takes long enough for a picture to be drawn beside it."""
+    return kind.shape == "points" or kind.pictures
 
 
 def _crew(engine: str, scheduler: str | None, jobs: int | None) -> Engine:
@@ -145,6 +158,15 @@ def _share(
     return RunSummary(planner.pipeline.name, tuple(outcomes))
 
 
+class _Aside(NamedTuple):
+    """A stage of the whole shape that is being computed, perhaps by another process."""
+
+    prepared: Prepared
+    each: StagePlan
+    task: WholeTask
+    future: Future[str] | None
+
+
 class _Run:
     """One run, stage by stage."""
 
@@ -157,10 +179,14 @@ class _Run:
         self.report = report
         self.planner = planner
         self.outcomes: dict[str, StageOutcome] = {}
+        self.aside: dict[str, _Aside] = {}
 
-    def stage(self, name: str, *, force: bool) -> None:
-        """Bring one stage up to date."""
+    def stage(self, name: str, *, force: bool, more: bool) -> None:
+        """Bring one stage up to date; a picture may be drawn in another process while there is more to do."""
         stage = self.pipeline.stages[name]
+        for need in stage.after:
+            if need in self.aside:
+                self._end(need)
         lost = [need for need in stage.after if self.outcomes[need].state in ("failed", "skipped")]
         if lost:
             reason = f"stage {lost[0]}, which it needs, has no result"
@@ -174,10 +200,37 @@ class _Run:
             return
         self.report(_event("started", each, "forced" if force and not each.reason else each.reason))
         prepared = self.planner.prepare(name)
-        if stage.kind.shape == "whole":
-            outcome = self._whole(prepared, each, force=force)
+        if stage.kind.shape == "points":
+            self._done(prepared, self._points(prepared, each, force=force))
+        elif self.store.has(each.key) and not force:
+            self._done(prepared, StageOutcome(name, "computed", 1, 0, 0, each.key, each.reason))
         else:
-            outcome = self._points(prepared, each, force=force)
+            task = whole_task(prepared, self.store, self.planner, replace=force)
+            future = self.engine.aside(compute_whole, task) if more and stage.kind.pictures else None
+            self.aside[name] = _Aside(prepared, each, task, future)
+            if future is None:
+                self._end(name)
+
+    def finish(self) -> None:
+        """Wait for the pictures that are still being drawn."""
+        for name in list(self.aside):
+            self._end(name)
+
+    def _end(self, name: str) -> None:
+        """Note how a stage of the whole shape ended; compute it here if no other process did."""
+        prepared, each, task, future = self.aside.pop(name)
+        problem = None if future is None else self.engine.outcome(future)
+        if problem is None:
+            spread = partial(self.engine.spread, told=partial(self._part, name))
+            problem = compute_whole(task, spread)
+        if problem:
+            self._done(prepared, StageOutcome(name, "failed", 1, reason=problem))
+        else:
+            self._done(prepared, StageOutcome(name, "computed", 1, 1, 0, each.key, each.reason))
+
+    def _done(self, prepared: Prepared, outcome: StageOutcome) -> None:
+        """Pin the result of a stage and tell how it ended."""
+        name = outcome.name
         if outcome.key:
             self.planner.set_key(name, outcome.key)
             self.store.pin(self.pipeline.name, name, _pin(prepared, outcome))
@@ -185,19 +238,6 @@ class _Run:
         what = "failed" if outcome.state == "failed" else "done"
         text = outcome.reason if outcome.state == "failed" else outcome.remark
         self.report(Event(what, name, outcome.wanted, outcome.wanted, outcome.failed, text=text))
-
-    def _whole(self, prepared: Prepared, each: StagePlan, *, force: bool) -> StageOutcome:
-        from functools import partial
-
-        from vines.pipeline._whole import compute_whole
-
-        if self.store.has(each.key) and not force:
-            return StageOutcome(each.name, "computed", 1, 0, 0, each.key, each.reason)
-        spread = partial(self.engine.spread, told=partial(self._part, each.name))
-        problem = compute_whole(prepared, self.store, self.planner, spread, replace=force)
-        if problem:
-            return StageOutcome(each.name, "failed", 1, reason=problem)
-        return StageOutcome(each.name, "computed", 1, 1, 0, each.key, each.reason)
 
     def _part(self, name: str, done: int, of: int, processes: int) -> None:
         """Tell that a part of a stage of the whole shape is done."""

@@ -2,24 +2,58 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from vines.errors import SchemaError
-from vines.pipeline._jobs import Batch, Input, Range, Spread, WholeJob
+from vines.pipeline._jobs import Batch, Input, Range, Spread, WholeJob, one_by_one
 from vines.pipeline._worker import body_of
 from vines.store import Result, Store, describe_table, write_parquet
 
 if TYPE_CHECKING:
     from vines.pipeline._plan import Planner, Prepared
 
-__all__ = ["compute_whole"]
+__all__ = ["WholeTask", "compute_whole", "whole_task"]
 
 _PICTURES = ("picture.png", "picture.svg")
 
 
-def compute_whole(prepared: Prepared, store: Store, planner: Planner, spread: Spread, *, replace: bool) -> str:
-    """Compute a stage and store its result; return in one line why that failed, empty if it did not.
+@dataclass(frozen=True, slots=True)
+class WholeTask:
+    """A stage of the whole shape, ready to be computed here or in a worker process.
+
+    Attributes
+    ----------
+    kind, body : str
+        Its kind, and where the body of that is.
+    tables : tuple of str
+        The tables that it makes.
+    pictures : bool
+        Whether it makes pictures.
+    job : WholeJob
+        What the body is given; the folder is chosen where it is computed.
+    key, form : str, dict
+        The key of the result, and what it was made from.
+    data : Path
+        The folder of the store.
+    replace : bool
+        Whether to replace a result of the same key.
+    """
+
+    kind: str
+    body: str
+    tables: tuple[str, ...]
+    pictures: bool
+    job: WholeJob
+    key: str
+    form: dict[str, Any]
+    data: Path
+    replace: bool
+
+
+def whole_task(prepared: Prepared, store: Store, planner: Planner, *, replace: bool) -> WholeTask:
+    """Gather what a stage is computed from.
 
     Parameters
     ----------
@@ -29,39 +63,53 @@ def compute_whole(prepared: Prepared, store: Store, planner: Planner, spread: Sp
         Where the result goes.
     planner : Planner
         Knows the keys of the inputs.
-    spread : Spread
-        Shares the work of the body among processes, if the body asks for it.
     replace : bool
         Whether to replace a result of the same key.
     """
     stage = prepared.stage
     key = prepared.request
-    provenance = prepared.ingredients.provenance(key)
+    job = WholeJob(
+        options=stage.options,
+        params=dict(stage.params),
+        ranges={axis.name: Range(float(axis.ends[0]), float(axis.ends[1])) for axis in stage.axes},
+        inputs={need: _input(need, store.result(planner.keys[need])) for need in stage.needs},
+        files=prepared.ingredients.files,
+        folder=Path(),
+        provenance=prepared.ingredients.provenance(key),
+    )
+    spec = stage.kind
+    return WholeTask(
+        spec.name, spec.body, spec.tables, spec.pictures, job, key, prepared.ingredients.form, store.data, replace
+    )
+
+
+def compute_whole(task: WholeTask, spread: Spread = one_by_one) -> str:
+    """Compute a stage and store its result; return in one line why that failed, empty if it did not.
+
+    Parameters
+    ----------
+    task : WholeTask
+        The stage.
+    spread : Spread
+        Shares the work of the body among processes, if the body asks for it.
+    """
+    store = Store(task.data)
     with store.staging() as place:
         folder = place / "result"
         folder.mkdir()
-        job = WholeJob(
-            options=stage.options,
-            params=dict(stage.params),
-            ranges={axis.name: Range(float(axis.ends[0]), float(axis.ends[1])) for axis in stage.axes},
-            inputs={need: _input(need, store.result(planner.keys[need])) for need in stage.needs},
-            files=prepared.ingredients.files,
-            folder=folder,
-            provenance=provenance,
-            spread=spread,
-        )
+        job = replace(task.job, folder=folder, spread=spread)
         try:
-            for need in stage.needs:
-                store.result(planner.keys[need]).check_forms()
-            batch = body_of(stage.kind.body)(job)
-            about = _write(prepared, batch, folder, provenance)
+            for need in job.inputs.values():
+                store.result(need.key).check_forms()
+            batch = body_of(task.body)(job)
+            about = _write(task, batch, folder, job.provenance)
         except Exception as error:  # whatever it is, the other stages go on
             text = (str(error).splitlines() or [""])[0]
             return f"{type(error).__name__}: {text}"
         manifest = {
-            "kind": stage.kind.name,
-            "ingredients": prepared.ingredients.form,
-            "provenance": provenance,
+            "kind": task.kind,
+            "ingredients": task.form,
+            "provenance": job.provenance,
             "points": 1,
             "failed": 0,
             "tables": about,
@@ -69,7 +117,7 @@ def compute_whole(prepared: Prepared, store: Store, planner: Planner, spread: Sp
                 {"point_id": point, "file": name, "params": {}, "name": None} for point, name in batch.logs.items()
             ],
         }
-        store.commit(key, folder, manifest, replace=replace)
+        store.commit(task.key, folder, manifest, replace=task.replace)
     return ""
 
 
@@ -90,17 +138,16 @@ def _input(name: str, result: Result) -> Input:
     )
 
 
-def _write(prepared: Prepared, batch: Batch, folder: Path, provenance: dict[str, Any]) -> dict[str, Any]:
-    spec = prepared.stage.kind
-    unknown = set(batch.tables) - set(spec.tables)
+def _write(task: WholeTask, batch: Batch, folder: Path, provenance: dict[str, Any]) -> dict[str, Any]:
+    unknown = set(batch.tables) - set(task.tables)
     if unknown:
-        raise SchemaError(f"{spec.body}: returned table {min(unknown)!r}, which its kind does not name")
-    if spec.pictures:
+        raise SchemaError(f"{task.body}: returned table {min(unknown)!r}, which its kind does not name")
+    if task.pictures:
         missing = [name for name in _PICTURES if not (folder / name).is_file()]
         if missing:
-            raise SchemaError(f"{spec.body}: left no {missing[0]} in its folder")
+            raise SchemaError(f"{task.body}: left no {missing[0]} in its folder")
     about = {}
-    for name in spec.tables:
+    for name in task.tables:
         rows = _numbered(batch.tables.get(name, ()))
         count = write_parquet(folder / f"{name}.parquet", name, rows, provenance=provenance)
         about[name] = describe_table(name, count)
