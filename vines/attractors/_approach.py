@@ -4,10 +4,9 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
-
 from vines.attractors import _verdict as v
-from vines.attractors._contacts import repetition
+from vines.attractors._contacts import difference, repetition
+from vines.attractors._multipliers import carry_on, multipliers, square_of
 from vines.dynamics import _advance as col
 from vines.dynamics._flight import derivatives, phasors
 from vines.dynamics._impact_law import after_impact_kernel
@@ -17,13 +16,11 @@ from vines.kernels import (
     complex_vector,
     identity,
     integer_vector,
-    max_abs,
     new_cube,
     new_vector,
     njit,
     zero_vector,
 )
-from vines.orbits._eigenvalues import eigenvalues_kernel
 from vines.orbits._equations import newton_kernel
 
 __all__ = ["LARGEST_P", "NO_ORBIT", "STABLE", "UNSTABLE", "comes_to_orbit", "nearest_orbit", "note_coming"]
@@ -83,9 +80,9 @@ def nearest_orbit(c, rows, kept, p, lag, scale, tolerance):
     side = integer_vector(lag)
     guess = new_vector(lag)
     for k in range(lag):
-        row = rows[kept[count - lag + k]]
-        side[k] = 1 if row[col.SIDE] > 0.0 else -1
-        guess[k] = rows[first, col.PHASE] / c.Omega + (row[col.TIME] - rows[first, col.TIME])
+        i = kept[count - lag + k]
+        side[k] = 1 if rows[i, col.SIDE] > 0.0 else -1
+        guess[k] = rows[first, col.PHASE] / c.Omega + (rows[i, col.TIME] - rows[first, col.TIME])
         if k > 0 and not guess[k] > guess[k - 1]:
             return nothing
     if not guess[lag - 1] - guess[0] < duration:
@@ -95,12 +92,14 @@ def nearest_orbit(c, rows, kept, p, lag, scale, tolerance):
         return nothing
     distance = 0.0
     for k in range(lag):
-        row = rows[kept[count - lag + k]]
+        i = kept[count - lag + k]
         following = t[k + 1] if k + 1 < lag else t[0] + duration
         if not following > t[k] or not side[k] * (states[k, 1] - states[k, 3]) > 0.0:
             return nothing
-        distance = max(distance, abs(t[k] - guess[k]), abs(states[k, 0] - row[col.X1]) / scale)
-        distance = max(distance, abs(states[k, 1] - row[col.V1]) / scale, abs(states[k, 3] - row[col.V2]) / scale)
+        distance = max(distance, abs(t[k] - guess[k]), abs(states[k, 0] - rows[i, col.X1]) / scale)
+        distance = max(
+            distance, abs(states[k, 1] - rows[i, col.V1]) / scale, abs(states[k, 3] - rows[i, col.V2]) / scale
+        )
     if not distance < BESIDE:
         return nothing
 
@@ -115,8 +114,7 @@ def nearest_orbit(c, rows, kept, p, lag, scale, tolerance):
         event[col.PHASE] = c.Omega * t[k] % (2.0 * math.pi)
         jump_basis(c, event, Y)
     roots = complex_vector(4)
-    eigenvalues_kernel(Y.astype(np.complex128), roots)
-    largest = max_abs(roots)
+    largest = multipliers(Y, roots)
     if not largest < 1.0:
         return True, largest, distance, math.inf
 
@@ -131,31 +129,43 @@ def nearest_orbit(c, rows, kept, p, lag, scale, tolerance):
     away[1] = (rows[end, col.A_V1] - after1 - (a - c.lam * (after1 - v1)) * late) / scale
     away[2] = (rows[end, col.X2] - (x1 - side[lag - 1]) - after2 * late) / scale
     away[3] = (rows[end, col.A_V2] - after2) / scale
-    # The allowance for a state at one instant that goes with the tolerance of the contacts.
-    allowed = tolerance * _size(Y, away) / distance if distance > 0.0 else math.inf
-    powers = new_cube(DOUBLINGS, 4, 4)
-    powers[0] = Y
-    for j in range(1, DOUBLINGS):
-        powers[j] = powers[j - 1] @ powers[j - 1]
-    repetitions = 0.0
-    if distance > tolerance:
-        repetitions = 1.0
-        for j in range(DOUBLINGS - 1, -1, -1):
-            later = np.ascontiguousarray(powers[j]) @ away
-            if _size(Y, later) > allowed:
-                away = later
-                repetitions += 2.0**j
-    return True, largest, distance, p * repetitions
+    return True, largest, distance, p * _repetitions(Y, away, distance, tolerance)
 
 
 @cold_njit
-def _size(Y, away):
-    """Return the largest part of a difference now or at one of the next three returns: it may turn as it shrinks."""
-    size = max_abs(away)
-    for _ in range(3):
-        away = Y @ away
-        size = max(size, max_abs(away))
-    return size
+def _repetitions(Y, away, distance, tolerance):
+    """Return after how many repetitions a difference `away` to an orbit has shrunk as `distance` has to `tolerance`."""
+    if not distance > tolerance:
+        return 0.0
+    powers = new_cube(DOUBLINGS, 4, 4)
+    for i in range(4):
+        for j in range(4):
+            powers[0, i, j] = Y[i, j]
+    for k in range(DOUBLINGS - 1):
+        square_of(powers, k)
+    later, one, other = new_vector(4), new_vector(4), new_vector(4)
+    # The allowance for a state at one instant that goes with the tolerance of the contacts.
+    allowed = tolerance * _size(powers, away, one, other) / distance
+    repetitions = 1.0
+    for k in range(DOUBLINGS - 1, -1, -1):
+        carry_on(powers, k, away, later)
+        if _size(powers, later, one, other) > allowed:
+            away, later = later, away
+            repetitions += 2.0**k
+    return repetitions
+
+
+@njit
+def _size(powers, away, one, other):
+    """Return the largest part of a difference now or at one of the next three returns: it may turn as it shrinks.
+
+    The map of one return is the first of `powers`; `one` and `other` are room.
+    """
+    size = 0.0
+    for i in range(4):
+        size = max(size, abs(away[i]))
+    size = max(size, carry_on(powers, 0, away, one), carry_on(powers, 0, one, other))
+    return max(size, carry_on(powers, 0, other, one))
 
 
 @cold_njit
@@ -177,10 +187,10 @@ def comes_to_orbit(c, rows, kept, scale, near, tolerance, verdict):
         NO_ORBIT if none was found, STABLE, or UNSTABLE if only unstable ones are near.
     """
     seen = NO_ORBIT
-    blocks = new_vector(kept.shape[0])
     for p in range(1, LARGEST_P + 1):
-        lag, filled = repetition(rows, kept, p * 2.0 * math.pi / c.Omega, scale, blocks)
-        if filled == 0 or not blocks[filled - 1] < near:
+        span = p * 2.0 * math.pi / c.Omega
+        lag, filled = repetition(rows, kept, span)
+        if filled == 0 or not difference(rows, kept, lag, span, scale, 0) < near:
             continue
         found, largest, _, remaining = nearest_orbit(c, rows, kept, p, lag, scale, tolerance)
         if found and largest < 1.0:

@@ -13,10 +13,11 @@ from vines.attractors import _verdict as v
 from vines.attractors._attractor import Attractor
 from vines.attractors._look import look_at_block
 from vines.attractors._naming import attractor_from, word_of
-from vines.attractors._settle import NUDGE, ROUNDS, STRETCH, Patience
+from vines.attractors._settle import NUDGE, ROUNDS, Patience
 from vines.dynamics import _advance as col
 from vines.dynamics import _totals as entry
 from vines.dynamics import ensemble
+from vines.dynamics._advance import set_state
 from vines.dynamics._ensemble import (
     STATUS_NAMES,
     _measures,
@@ -258,15 +259,13 @@ class _Many:
         ran = np.full(n, float(self.how.settle))
         nudged = np.full(n, np.nan)
         for turn in range(ROUNDS + 1):
-            self.look(runs)
+            free = np.isnan(nudged[runs])
+            self.look(runs, np.stack([spare[runs], free], axis=1) if turn < ROUNDS else np.zeros((len(runs), 2)))
             found = self.verdicts[runs]
             found[:, v.NUDGED], found[:, v.PERIODS] = nudged[runs], ran[runs]
             self.verdicts[runs] = found
-            free = (found[:, v.UNSTABLE] > 0) & np.isnan(nudged[runs])
-            with np.errstate(invalid="ignore"):
-                come = ~free & (found[:, v.SETTLED] == 0) & (spare[runs] > 0)
-                come &= found[:, v.REMAINING] <= STRETCH * spare[runs]
-            if turn == ROUNDS or not np.any(free | come):
+            free, come = found[:, v.NEXT] == v.IS_FREED, found[:, v.NEXT] == v.WAITS
+            if not np.any(free | come):
                 return
             wait = _next_wait(np.where(come, found[:, v.REMAINING], 0.0))
             wait = np.where(come & (found[:, v.REMAINING] > spare[runs]), spare[runs], wait)
@@ -291,18 +290,22 @@ class _Many:
         )
         self.place(runs, later.final, later.codes)
 
-    def look(self, runs: npt.NDArray[np.int64]) -> None:
-        """Record every run and decide what it shows."""
+    def look(self, runs: npt.NDArray[np.int64], spare: Floats) -> None:
+        """Record every run and decide what it shows; `spare` says for how long each may go on, and whether freed."""
         size = min(BLOCK, max(16, -(-len(runs) // (4 * self.cores))))
         blocks = [slice(k, min(k + size, len(runs))) for k in range(0, len(runs), size)]
-        each_thread(lambda block: self._look_at(runs[block]), blocks, self.cores)
+        each_thread(lambda block: self._look_at(runs[block], spare[block]), blocks, self.cores)
 
-    def _look_at(self, runs: npt.NDArray[np.int64]) -> None:
-        verdicts, totals = np.empty((len(runs), v.VERDICT)), np.empty((len(runs), entry.TOTALS))
+    def _look_at(self, runs: npt.NDArray[np.int64], spare: Floats) -> None:
+        verdicts, totals = np.empty((len(runs), v.VERDICT)), np.zeros((len(runs), entry.TOTALS))
+        states = np.zeros((len(runs), col.STATE))
+        for state, (x1, v1, x2, v2, phase) in zip(states, self.states[runs].tolist(), strict=True):
+            set_state(state, x1, v1, x2, v2, phase, 0.0)
         sides, rows = look_at_block(
             self.parameters[runs],
-            self.states[runs],
+            states,
             self.waited[runs],
+            spare,
             self.stages,
             float(self.how.watch),
             self.how.cap,

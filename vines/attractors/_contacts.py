@@ -7,7 +7,7 @@ import numpy as np
 from vines.dynamics._advance import IMPACT, KIND, RUN, SIDE, STICK, TIME, V1, V2, X1
 from vines.kernels import integer_vector, linked_njit, njit
 
-__all__ = ["contacts", "repetition"]
+__all__ = ["contacts", "difference", "mirror_difference", "repetition"]
 
 
 @linked_njit
@@ -43,8 +43,10 @@ def _same_run(rows, i, j):
 
 
 @linked_njit
-def repetition(rows, kept, span, scale, blocks):
-    """Compare the contacts with those one `span` of time later.
+def repetition(rows, kept, span):
+    """Find how many contacts lie in one `span` of time, if their sides repeat after it.
+
+    Nothing else is compared, so that a run without repetition is told with few looks at its rows.
 
     Parameters
     ----------
@@ -52,43 +54,60 @@ def repetition(rows, kept, span, scale, blocks):
         Rows that are contacts.
     span : float
         p forcing periods.
-    scale : float
-        Size of velocities; differences of x1, v1, v2 are divided by it, those of time are taken as they are.
-    blocks : ndarray
-        Receives the largest difference in each whole repetition, from the first to the last.
 
     Returns
     -------
     (lag, filled)
-        Contacts in the span and blocks filled; (0, 0) if the sides do not repeat or there is not one whole repetition.
+        Contacts in the span and whole repetitions that can be compared with the one before; (0, 0) if the sides do not
+        repeat or there is not one.
     """
     n = kept.shape[0]
     if n < 2:
         return 0, 0
     target = rows[kept[0], TIME] + span
-    lag = 1
-    for i in range(1, n):
-        if abs(rows[kept[i], TIME] - target) <= abs(rows[kept[lag], TIME] - target):
-            lag = i
+    # The contact nearest to the target, the later one of two.
+    low, lag = 1, n - 1
+    while low < lag:
+        middle = (low + lag) // 2
+        if rows[kept[middle], TIME] < target:
+            low = middle + 1
+        else:
+            lag = middle
+    if lag > 1 and target - rows[kept[lag - 1], TIME] < abs(rows[kept[lag], TIME] - target):
+        lag -= 1
     pairs = n - lag
-    filled = min(pairs // lag, blocks.shape[0])
-    if filled < 1:
-        return 0, 0
-    # Counted from the end, so that the last block is the newest.
-    for b in range(filled):
-        worst = 0.0
-        for k in range(lag):
-            i = kept[pairs - 1 - (filled - 1 - b) * lag - k]
-            j = kept[n - 1 - (filled - 1 - b) * lag - k]
-            if rows[i, SIDE] != rows[j, SIDE]:
-                return 0, 0
-            difference = abs(rows[j, TIME] - rows[i, TIME] - span)
-            difference = max(difference, abs(rows[j, V1] - rows[i, V1]) / scale)
-            difference = max(difference, abs(rows[j, V2] - rows[i, V2]) / scale)
-            difference = max(difference, abs(rows[j, X1] - rows[i, X1]) / scale)
-            worst = max(worst, difference)
-        blocks[b] = worst
-    return lag, filled
+    filled = pairs // lag
+    for i in range(pairs - filled * lag, pairs):
+        if rows[kept[i], SIDE] != rows[kept[i + lag], SIDE]:
+            return 0, 0
+    return (lag, filled) if filled > 0 else (0, 0)
+
+
+@linked_njit
+def difference(rows, kept, lag, span, scale, age):
+    """Return the largest difference of the contacts of one repetition to those one `span` of time before.
+
+    Parameters
+    ----------
+    lag : int
+        Contacts in the span, as `repetition` gives it.
+    scale : float
+        Size of velocities; differences of x1, v1, v2 are divided by it, those of time are taken as they are.
+    age : int
+        Which repetition: 0 the newest, which ends with the last contact, 1 the one before it, and so on.
+    """
+    worst = 0.0
+    end = kept.shape[0] - age * lag
+    for k in range(end - lag, end):
+        i, j = kept[k - lag], kept[k]
+        worst = max(
+            worst,
+            abs(rows[j, TIME] - rows[i, TIME] - span),
+            abs(rows[j, V1] - rows[i, V1]) / scale,
+            abs(rows[j, V2] - rows[i, V2]) / scale,
+            abs(rows[j, X1] - rows[i, X1]) / scale,
+        )
+    return worst
 
 
 @linked_njit

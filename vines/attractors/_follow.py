@@ -6,13 +6,13 @@ import math
 
 from vines.attractors import _verdict as v
 from vines.attractors._approach import LARGEST_P, STABLE, comes_to_orbit, nearest_orbit, note_coming
-from vines.attractors._contacts import contacts, repetition
+from vines.attractors._contacts import contacts, difference, repetition
 from vines.attractors._judge import MAX_P, NEAR, note_decay, note_drift
 from vines.attractors._window import open_window, run_window
 from vines.dynamics import _advance as col
 from vines.dynamics._advance import shift_time
 from vines.dynamics._tangent import lyapunov_blocks
-from vines.kernels import cold_njit, identity, new_matrix, new_vector, zero_matrix
+from vines.kernels import cold_njit, identity, new_matrix, new_vector, njit
 
 __all__ = ["follow"]
 
@@ -36,7 +36,7 @@ GROWS = 1.05
 
 
 @cold_njit
-def follow(c, state, elapsed, periods, watch, cap, tolerance, verdict):
+def follow(c, state, elapsed, watch, cap, tolerance, rows, verdict):
     """Decide what a window left open; `verdict` is that of the window and is filled on.
 
     Parameters
@@ -44,78 +44,92 @@ def follow(c, state, elapsed, periods, watch, cap, tolerance, verdict):
     c : Constants
     state : ndarray
         The run at the end of the window; left as it is.
-    elapsed, periods : float
-        Length of the window, in time and in forcing periods.
+    elapsed : float
+        Length of the window in time.
     watch : float
         Forcing periods of the first stage.
     cap : int
         Most events in one forcing period.
     tolerance : float
         As for `judge_window`.
+    rows : ndarray, shape (m, ROW)
+        Room to work in; where it is not enough, more is taken.
     verdict : ndarray, shape (VERDICT,)
+
+    Returns
+    -------
+    ndarray
+        The room, for the next run.
     """
     period = 2.0 * math.pi / c.Omega
-    state = state.copy()
+    own = new_vector(col.STATE)
+    for k in range(col.STATE):
+        own[k] = state[k]
     Y = identity(4)
-    grown = zero_matrix(sum(LONGER) * BLOCKS, 5)
+    grown = new_matrix(sum(LONGER) * BLOCKS, 5)
     filled = 0
     passed = 0.0
     rate, error = 0.0, math.inf
     length, count = 0.0, 0
     verdict[v.REGIME] = v.UNSETTLED
-    rows = new_matrix(int(4.0 * watch) + 64, col.ROW)
     for stage in range(len(LONGER)):
-        shift_time(state, elapsed)
+        shift_time(own, elapsed)
         length = LONGER[stage] * watch * period
         elapsed = length
         passed += LONGER[stage] * watch
-        count = open_window(state, rows)
-        rows, count, code = run_window(c, state, length, cap, rows, count)
+        count = open_window(own, rows)
+        rows, count, code = run_window(c, own, length, cap, rows, count)
         if code != col.COMPLETE:
             verdict[v.REASON] = v.CAPPED_LATER
-            return
+            return rows
         # The first quarter of the first stage is left to the directions to align.
         skip = 0.25 * length if stage == 0 else 0.0
         blocks = LONGER[stage] * BLOCKS if stage else BLOCKS * 3 // 4
-        grown[filled : filled + blocks] = lyapunov_blocks(c, rows, count + 1, skip, length, blocks, Y)
-        filled += blocks
-        rate, error = _spectrum(grown[:filled], verdict)
+        part = lyapunov_blocks(c, rows, count + 1, skip, length, blocks, Y)
+        for b in range(blocks):
+            # Growth is booked with the block in which an event falls: a block without one says nothing.
+            if part[b, 4] > 0.0:
+                for j in range(5):
+                    grown[filled, j] = part[b, j]
+                filled += 1
+        rate, error = _spectrum(grown, filled, verdict)
         chaotic = rate > SURE * error
         if _beside_orbit(c, rows, count + 1, length, chaotic, stage == len(LONGER) - 1, tolerance, verdict):
             # Counted from the end of the window, not from here.
             verdict[v.REMAINING] += passed
-            return
+            return rows
         if chaotic:
             verdict[v.REGIME], verdict[v.SETTLED], verdict[v.REMAINING] = v.CHAOTIC, 1.0, 0.0
-            return
+            return rows
         if rate < -SURE * error:
             verdict[v.REMAINING] = math.log(1.0 / tolerance) / -rate / period
             verdict[v.REASON] = v.DECAYS
-            return
-    last = rows[count]
+            return rows
     event = count - 1
     while event > 0 and rows[event, col.KIND] not in (col.IMPACT, col.STICK):
         event -= 1
     quiet = length - rows[event, col.TIME]
-    if quiet > 0.25 * length and last[col.MODE] == 0.0:
-        note_drift(verdict, period, abs(last[col.A_V2]))
+    if quiet > 0.25 * length and rows[count, col.MODE] == 0.0:
+        note_drift(verdict, period, abs(rows[count, col.A_V2]))
         verdict[v.REMAINING] += passed
         verdict[v.REASON], verdict[v.VALUE] = v.RESTS, quiet / period
     elif error < FLAT:
         verdict[v.REGIME], verdict[v.SETTLED], verdict[v.REMAINING] = v.QUASIPERIODIC, 1.0, 0.0
     else:
         verdict[v.REASON], verdict[v.VALUE], verdict[v.OTHER] = v.UNDECIDED, rate, error
+    return rows
 
 
 @cold_njit
-def _spectrum(grown, verdict):
-    """Write the exponents of growth by blocks; return the largest and its error, that of a finite run included."""
-    # Growth is booked with the block in which an event falls: a block without one says nothing.
-    grown = grown[grown[:, 4] > 0.0]
-    n = grown.shape[0]
-    time = grown[:, 4].sum()
+def _spectrum(grown, n, verdict):
+    """Write the exponents of growth by n blocks; return the largest and its error, that of a finite run included."""
+    time = 0.0
+    for b in range(n):
+        time += grown[b, 4]
     for j in range(4):
-        total = grown[:, j].sum()
+        total = 0.0
+        for b in range(n):
+            total += grown[b, j]
         verdict[v.EXPONENTS + j] = total / time if math.isfinite(total) else -math.inf
     square = 0.0
     for b in range(n):
@@ -145,17 +159,20 @@ def _beside_orbit(c, rows, n, length, chaotic, last, tolerance, verdict):
     while opening < n and rows[opening, col.TIME] <= quarter:
         opening += 1
     early, late = contacts(rows, opening, 0.0), contacts(rows, n, length - quarter)
-    blocks = new_vector(max(early.shape[0], late.shape[0]))
     least = FAR
     undecided = False
     for p in range(1, MAX_P + 1):
-        lag, filled = repetition(rows, late, p * period, scale, blocks)
+        lag, passes = repetition(rows, late, p * period)
         # Multiples of the period of an orbit that was seen tell no more, unless they repeat much better.
-        if filled == 0 or not blocks[:filled].max() < least:
+        if passes == 0 or not difference(rows, late, lag, p * period, scale, 0) < least:
             continue
-        after, oldest, newest, passes = blocks[:filled].max(), blocks[0], blocks[filled - 1], filled
-        _, filled = repetition(rows, early, p * period, scale, blocks)
-        before = blocks[:filled].max() if filled > 0 else math.inf
+        after = _largest_difference(rows, late, lag, passes, p * period, scale)
+        if not after < least:
+            continue
+        newest = difference(rows, late, lag, p * period, scale, 0)
+        oldest = difference(rows, late, lag, p * period, scale, passes - 1)
+        earlier, filled = repetition(rows, early, p * period)
+        before = _largest_difference(rows, early, earlier, filled, p * period, scale) if filled > 0 else math.inf
         found, largest, _, remaining = False, math.inf, math.inf, math.inf
         if p <= LARGEST_P:
             found, largest, _, remaining = nearest_orbit(c, rows, late, p, lag, scale, tolerance)
@@ -183,3 +200,12 @@ def _beside_orbit(c, rows, n, length, chaotic, last, tolerance, verdict):
         if found:
             least = 0.2 * after
     return undecided
+
+
+@njit
+def _largest_difference(rows, kept, lag, filled, span, scale):
+    """Return the largest difference of any of the newest `filled` repetitions to the one before it."""
+    largest = 0.0
+    for age in range(filled):
+        largest = max(largest, difference(rows, kept, lag, span, scale, age))
+    return largest

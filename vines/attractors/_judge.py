@@ -4,15 +4,13 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
-
 from vines.attractors import _verdict as v
 from vines.attractors._approach import NO_ORBIT, comes_to_orbit, nearest_orbit, note_coming
-from vines.attractors._contacts import contacts, mirror_difference, repetition
+from vines.attractors._contacts import contacts, difference, mirror_difference, repetition
+from vines.attractors._multipliers import multipliers
 from vines.dynamics import _advance as col
 from vines.dynamics._tangent import tangent_product
 from vines.kernels import byte_vector, cold_njit, complex_vector, new_vector, njit, zero_integers
-from vines.orbits._eigenvalues import eigenvalues_kernel
 
 __all__ = ["MAX_P", "NEAR", "clear", "judge_window", "note_decay", "note_drift"]
 
@@ -39,13 +37,13 @@ FOREVER = 1e6
 """A ball that would take more than this many forcing periods to the next wall is called without impact."""
 
 
-@njit
+@cold_njit
 def clear(verdict):
     """Make a verdict say nothing yet."""
-    verdict[:] = 0.0
+    for k in range(v.VERDICT):
+        verdict[k] = math.nan if v.EXPONENTS <= k < v.MULTIPLIERS_IM + 4 else 0.0
     verdict[v.NUDGED] = math.nan
     verdict[v.LYAPUNOV_ERROR] = math.nan
-    verdict[v.EXPONENTS : v.MULTIPLIERS_IM + 4] = math.nan
 
 
 @cold_njit
@@ -71,23 +69,22 @@ def judge_window(c, rows, n, periods, tolerance, verdict):
         Sides of the contacts in one repetition, in order of time; empty if there is none.
     """
     clear(verdict)
-    none = byte_vector(0)
     kept = contacts(rows, n, 0.0)
     if kept.shape[0] == 0:
         _without_impact(c, rows, n, tolerance, verdict)
-        return none
+        return byte_vector(0)
     period = 2.0 * math.pi / c.Omega
     scale = _largest_speed(rows, n)
     verdict[v.SCALE] = scale
-    blocks = new_vector(kept.shape[0])
-    lasts = np.full(MAX_P + 1, math.inf)
+    lasts = new_vector(MAX_P + 1)
     lags = zero_integers(MAX_P + 1)
-    best, best_first, best_filled = 0, math.inf, 0
+    best, best_filled = 0, 0
     for p in range(1, min(MAX_P, int(periods / 2.0 + 1e-9)) + 1):
-        lag, filled = repetition(rows, kept, p * period, scale, blocks)
+        lasts[p] = math.inf
+        lag, filled = repetition(rows, kept, p * period)
         if filled == 0:
             continue
-        lags[p], lasts[p] = lag, blocks[filled - 1]
+        lags[p], lasts[p] = lag, difference(rows, kept, lag, p * period, scale, 0)
         # A run within the tolerance of its orbit repeats to twice that.
         if lasts[p] <= 2.5 * tolerance:
             least = p
@@ -95,18 +92,20 @@ def judge_window(c, rows, n, periods, tolerance, verdict):
                 least //= 2
             return _repeats(c, rows, kept, least, lags[least], lasts[least], tolerance, verdict)
         if best == 0 or lasts[p] < 0.5 * lasts[best]:
-            best, best_first, best_filled = p, blocks[0], filled
+            best, best_filled = p, filled
     verdict[v.REGIME] = v.OPEN
     verdict[v.REMAINING] = math.nan
-    if periods >= CLEAR and best > 0 and lasts[best] < NEAR and lasts[best] < 0.5 * best_first:
-        seen = comes_to_orbit(c, rows, kept, scale, NEAR, tolerance, verdict)
-        if seen == NO_ORBIT:
-            rate = math.log(best_first / lasts[best]) / ((best_filled - 1.0) * best)
-            note_decay(verdict, lasts[best], best, rate, tolerance)
-        # What comes near an unstable orbit will leave it again.
-        if verdict[v.REASON] == v.COMES:
-            verdict[v.REGIME] = v.UNSETTLED
-    return none
+    if periods >= CLEAR and best > 0 and lasts[best] < NEAR:
+        oldest = difference(rows, kept, lags[best], best * period, scale, best_filled - 1)
+        if lasts[best] < 0.5 * oldest:
+            seen = comes_to_orbit(c, rows, kept, scale, NEAR, tolerance, verdict)
+            if seen == NO_ORBIT:
+                rate = math.log(oldest / lasts[best]) / ((best_filled - 1.0) * best)
+                note_decay(verdict, lasts[best], best, rate, tolerance)
+            # What comes near an unstable orbit will leave it again.
+            if verdict[v.REASON] == v.COMES:
+                verdict[v.REGIME] = v.UNSETTLED
+    return byte_vector(0)
 
 
 @njit
@@ -140,33 +139,31 @@ def _largest_speed(rows, n):
 @cold_njit
 def _repeats(c, rows, kept, p, lag, last, tolerance, verdict):
     """Judge a run that repeats: it may still be creeping towards its orbit, or sit on an unstable one."""
-    none = byte_vector(0)
     count = kept.shape[0]
     span = p * 2.0 * math.pi / c.Omega
     first, end = kept[count - 1 - lag], kept[count - 1]
     roots = complex_vector(4)
-    eigenvalues_kernel(tangent_product(c, rows, first, end).astype(np.complex128), roots)
-    order = np.argsort(-np.abs(roots))
-    roots = roots[order]
+    largest = multipliers(tangent_product(c, rows, first, end), roots)
     for i in range(first + 1, end + 1):
         if rows[i, col.KIND] == col.STICK:
             # After a merge only the common motion is left, two directions of four; what else shows is rounding.
-            roots[2:] = 0.0
+            roots[2] = roots[3] = 0.0
             break
+    nearest = math.inf
     for k in range(4):
         size = abs(roots[k])
+        nearest = min(nearest, abs(1.0 - roots[k]))
         verdict[v.MULTIPLIERS_RE + k] = roots[k].real
         verdict[v.MULTIPLIERS_IM + k] = roots[k].imag
         verdict[v.EXPONENTS + k] = math.log(size) / span if size > 0.0 else -math.inf
     verdict[v.LYAPUNOV_ERROR] = 0.0
-    largest = abs(roots[0])
     if largest > 1.0 + UNSTABLE:
         verdict[v.UNSTABLE] = 1.0
         verdict[v.REMAINING] = p * math.log(NEAR / max(last, 1e-15)) / math.log(largest)
         verdict[v.REASON], verdict[v.VALUE] = v.ON_UNSTABLE, largest
-        return none
+        return byte_vector(0)
     # The difference of one repetition is |1 - multiplier| of the distance that is left, or less.
-    distance = last / np.min(np.abs(1.0 - roots)) if largest < 1.0 else math.inf
+    distance = last / nearest if largest < 1.0 else math.inf
     if distance > tolerance and last > ROUNDING:
         remaining = math.inf
         if largest < 1.0:
@@ -177,7 +174,7 @@ def _repeats(c, rows, kept, p, lag, last, tolerance, verdict):
         if distance > tolerance:
             verdict[v.REASON], verdict[v.VALUE], verdict[v.OTHER] = v.CREEPS, distance, largest
             verdict[v.REMAINING] = max(remaining, 1.0 * p)
-            return none
+            return byte_vector(0)
     sides = byte_vector(lag)
     for k in range(lag):
         sides[k] = 1 if rows[kept[count - lag + k], col.SIDE] > 0.0 else -1
@@ -192,19 +189,19 @@ def _repeats(c, rows, kept, p, lag, last, tolerance, verdict):
 @cold_njit
 def _without_impact(c, rows, n, tolerance, verdict):
     """Judge a run without impacts: a drifting ball will hit a wall one day; the oscillator's start must die out."""
-    last = rows[n - 1]
+    last = n - 1
     period = 2.0 * math.pi / c.Omega
     verdict[v.REGIME], verdict[v.LYAPUNOV_ERROR] = v.NO_IMPACT, 0.0
     verdict[v.EXPONENTS], verdict[v.EXPONENTS + 1] = 0.0, 0.0
     verdict[v.EXPONENTS + 2], verdict[v.EXPONENTS + 3] = -0.5 * c.lam, -0.5 * c.lam
-    if not note_drift(verdict, period, abs(last[col.A_V2]) if last[col.MODE] == 0.0 else 0.0):
+    if not note_drift(verdict, period, abs(rows[last, col.A_V2]) if rows[last, col.MODE] == 0.0 else 0.0):
         verdict[v.REGIME] = v.UNSETTLED
         return
     verdict[v.REASON], verdict[v.REMAINING] = v.NOTHING, 0.0
-    cosine, sine = math.cos(last[col.PHASE]), math.sin(last[col.PHASE])
+    cosine, sine = math.cos(rows[last, col.PHASE]), math.sin(rows[last, col.PHASE])
     q_re = c.free.qr * cosine - c.free.qi * sine
     q_im = c.free.qr * sine + c.free.qi * cosine
-    excess = math.hypot(last[col.X1] - q_re, last[col.V1] + c.Omega * q_im)
+    excess = math.hypot(rows[last, col.X1] - q_re, rows[last, col.V1] + c.Omega * q_im)
     if excess > max(tolerance, 1e-15):
         verdict[v.REASON], verdict[v.VALUE] = v.RINGS, excess
         verdict[v.REMAINING] = math.inf

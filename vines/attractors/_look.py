@@ -1,4 +1,4 @@
-"""Record a window and decide: one run, or a block of them in one call."""
+"""Record a window of each of many runs, decide what it shows, and say whether the run goes on."""
 
 from __future__ import annotations
 
@@ -7,43 +7,29 @@ import math
 from vines.attractors import _verdict as v
 from vines.attractors._follow import follow
 from vines.attractors._judge import clear, judge_window
-from vines.attractors._window import measure_window, open_window, run_window
+from vines.attractors._window import measure_window, open_window, run_window, with_room
 from vines.dynamics import _advance as col
-from vines.dynamics._advance import set_state
 from vines.dynamics._constants import constants_kernel
-from vines.kernels import byte_vector, cold_njit, entry_njit, new_matrix, zero_vector
+from vines.kernels import byte_vector, cold_njit, entry_njit, new_matrix, njit
 
-__all__ = ["look", "look_at_block"]
+__all__ = ["look_at_block"]
+
+STRETCH = 1.5
+"""Factor on the patience left up to which a run is taken on: far from its orbit it may be quicker than estimated."""
+
+
+ROOM = 512
+"""Rows of a window for which there is room at first."""
 
 
 @cold_njit
-def look(c, state, waited, stages, watch, cap, tolerance, rows, verdict):
+def _look(c, state, waited, stages, watch, cap, tolerance, rows, room, verdict):
     """Record a run from time 0 on, until it repeats or the last stage ends, and decide what it shows.
-
-    Parameters
-    ----------
-    c : Constants
-    state : ndarray
-        The run at time 0; on return at the end of the window.
-    waited : int
-        How the run came there: COMPLETE, or it had to stop, and then the window is only the instant of its stop.
-    stages : ndarray
-        Forcing periods after which to look whether it repeats; the last is the longest window.
-    watch : float
-        As for `follow`.
-    cap : int
-        Most events in one forcing period.
-    tolerance : float
-        As for `judge_window`.
-    rows : ndarray, shape (m, ROW)
-        Room for the window.
-    verdict : ndarray, shape (VERDICT,)
-        Overwritten.
 
     Returns
     -------
-    (rows, n, sides, totals)
-        The window's rows, their number, sides of the contacts in one repetition, and the totals of its measures.
+    (rows, n, room, sides)
+        The window's rows and their number, room for what is run on with, and sides of the contacts in one repetition.
     """
     period = 2.0 * math.pi / c.Omega
     sides = byte_vector(0)
@@ -53,76 +39,105 @@ def look(c, state, waited, stages, watch, cap, tolerance, rows, verdict):
         rows, count, code = run_window(c, state, stop, cap, rows, count)
         if waited != col.COMPLETE:
             code = waited
-        sides = judge_window(c, rows, count + 1, stages[stage], tolerance, verdict)
-        verdict[v.RECORDED] = stages[stage]
         if code != col.COMPLETE:
             clear(verdict)
             verdict[v.REGIME], verdict[v.REMAINING], verdict[v.REASON] = v.UNSETTLED, math.nan, v.CAPPED
             verdict[v.STATUS], verdict[v.RECORDED] = code, stages[stage]
             sides = byte_vector(0)
             break
+        sides = judge_window(c, rows, count + 1, stages[stage], tolerance, verdict)
+        verdict[v.RECORDED] = stages[stage]
         # A window without impacts may only be too short.
         if verdict[v.REGIME] != v.OPEN and verdict[v.SCALE] > 0.0:
             break
     if verdict[v.REGIME] == v.OPEN:
-        follow(c, state, verdict[v.RECORDED] * period, verdict[v.RECORDED], watch, cap, tolerance, verdict)
-    totals = measure_window(c, rows, count + 1, verdict)
-    last = rows[count]
-    verdict[v.FINAL], verdict[v.FINAL + 1] = last[col.X1], last[col.A_V1]
-    verdict[v.FINAL + 2], verdict[v.FINAL + 3], verdict[v.FINAL + 4] = last[col.X2], last[col.A_V2], last[col.PHASE]
-    return rows, count + 1, sides, totals
+        room = follow(c, state, verdict[v.RECORDED] * period, watch, cap, tolerance, room, verdict)
+    verdict[v.FINAL], verdict[v.FINAL + 1] = rows[count, col.X1], rows[count, col.A_V1]
+    verdict[v.FINAL + 2], verdict[v.FINAL + 3] = rows[count, col.X2], rows[count, col.A_V2]
+    verdict[v.FINAL + 4] = rows[count, col.PHASE]
+    return rows, count + 1, room, sides
+
+
+@njit
+def _what_next(verdict, spare, may_free):
+    """Say what becomes of a run: it is freed from an unstable orbit, waits for its attractor, or is taken as it is."""
+    if verdict[v.UNSTABLE] > 0.0 and may_free:
+        return v.IS_FREED
+    if verdict[v.SETTLED] == 0.0 and spare > 0.0 and verdict[v.REMAINING] <= STRETCH * spare:
+        return v.WAITS
+    return v.STAYS
 
 
 @entry_njit
-def look_at_block(parameters, starts, waited, stages, watch, cap, tolerance, impacts, verdicts, totals):
-    """Do as `look` for many runs.
+def look_at_block(parameters, states, waited, spare, stages, watch, cap, tolerance, impacts, verdicts, totals):
+    """Record runs from time 0 on, each until it repeats or the last stage ends, and decide what they show.
 
     Parameters
     ----------
-    parameters, starts : ndarray, shape (n, 5)
-        mu, A, Omega, r, lam and x1, v1, x2, v2, phase of each.
+    parameters : ndarray, shape (n, 5)
+        mu, A, Omega, r, lam of each.
+    states : ndarray, shape (n, STATE)
+        The runs at time 0; on return at the ends of their windows.
     waited : ndarray of int, shape (n,)
-        How each came there, as for `look`.
-    stages, watch, cap, tolerance
-        As for `look`.
+        How each came there: COMPLETE, or it had to stop, and then the window is only the instant of its stop.
+    spare : ndarray, shape (n, 2)
+        Forcing periods that each may still wait, and whether it may be freed from an unstable orbit.
+    stages : ndarray
+        Forcing periods after which to look whether a run repeats; the last is the longest window.
+    watch : float
+        As for `follow`.
+    cap : int
+        Most events in one forcing period.
+    tolerance : float
+        As for `judge_window`.
     impacts : bool
         Whether the recorded impacts are wanted.
     verdicts, totals : ndarray, shape (n, VERDICT) and (n, TOTALS)
-        Filled.
+        Filled; totals, and what else the window is measured for, only where a run stays as it is.
 
     Returns
     -------
     (sides, hits)
-        Sides of the contacts of all repetitions, one behind the other; rows of the impacts, the number of the run last.
+        Sides of the contacts of all repetitions, one behind the other; rows of the impacts of runs that stay, the
+        number of the run last.
     """
     n = parameters.shape[0]
-    rows = new_matrix(512, col.ROW)
-    state = zero_vector(col.STATE)
+    # Taken once: fresh memory costs as much as a short run.
+    rows, room = new_matrix(ROOM, col.ROW), new_matrix(ROOM, col.ROW)
     letters = byte_vector(4 * n)
     written = 0
     hits = new_matrix(16, col.ROW + 1)
     filled = 0
     for k in range(n):
-        p, s = parameters[k], starts[k]
-        c = constants_kernel(p[0], p[1], p[2], p[3], p[4])
-        set_state(state, s[0], s[1], s[2], s[3], s[4], 0.0)
-        rows, count, sides, total = look(c, state, waited[k], stages, watch, cap, tolerance, rows, verdicts[k])
-        totals[k] = total
+        c = constants_kernel(parameters[k, 0], parameters[k, 1], parameters[k, 2], parameters[k, 3], parameters[k, 4])
+        verdict = verdicts[k]
+        rows, count, room, sides = _look(c, states[k], waited[k], stages, watch, cap, tolerance, rows, room, verdict)
         if written + sides.shape[0] > letters.shape[0]:
-            more = byte_vector(2 * (written + sides.shape[0]))
-            more[:written] = letters[:written]
-            letters = more
-        letters[written : written + sides.shape[0]] = sides
+            letters = _longer(letters, written, 2 * (written + sides.shape[0]))
+        for i in range(sides.shape[0]):
+            letters[written + i] = sides[i]
         written += sides.shape[0]
+        verdict[v.NEXT] = _what_next(verdict, spare[k, 0], spare[k, 1] > 0.0)
+        if verdict[v.NEXT] != v.STAYS:
+            continue
+        measure_window(c, rows, count, verdict, totals[k])
         if not impacts:
             continue
         if filled + count > hits.shape[0]:
-            wider = new_matrix(2 * (filled + count), col.ROW + 1)
-            wider[:filled] = hits[:filled]
-            hits = wider
+            hits = with_room(hits, filled, 2 * (filled + count))
         for i in range(1, count):
             if rows[i, col.KIND] == col.IMPACT and rows[i, col.TIME] > 0.0:
-                hits[filled, : col.ROW] = rows[i]
+                for j in range(col.ROW):
+                    hits[filled, j] = rows[i, j]
                 hits[filled, col.ROW] = k
                 filled += 1
-    return letters[:written], hits[:filled].copy()
+    return letters[:written], hits[:filled]
+
+
+@cold_njit
+def _longer(letters, count, room):
+    """Return a vector of so many letters, the first `count` of which are those given."""
+    longer = byte_vector(room)
+    for i in range(count):
+        longer[i] = letters[i]
+    return longer

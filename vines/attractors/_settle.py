@@ -7,14 +7,14 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
 from vines.attractors import _verdict as v
 from vines.attractors._attractor import Attractor
-from vines.attractors._look import look
+from vines.attractors._look import look_at_block
 from vines.attractors._naming import attractor_from, word_of
 from vines.dynamics import _advance as col
-from vines.dynamics._advance import new_state, pass_over, set_state, shift_time, state_now
+from vines.dynamics import _totals as entry
+from vines.dynamics._advance import pass_over, set_state, shift_time
 from vines.dynamics._constants import constants
 from vines.dynamics._simulate import EVENTS_PER_PERIOD
 from vines.dynamics._start import check_start
@@ -22,13 +22,10 @@ from vines.dynamics._trajectory import impacts_of
 from vines.errors import StateError
 from vines.model import Params
 
-__all__ = ["NUDGE", "ROUNDS", "Patience", "settle", "settle_from", "wait_longer"]
+__all__ = ["NUDGE", "ROUNDS", "Patience", "settle", "settle_from"]
 
 ROUNDS = 8
 """How often a run may be taken on because it had not arrived."""
-
-STRETCH = 1.5
-"""Factor on the patience left up to which a run is taken on: far from its orbit it may be quicker than estimated."""
 
 NUDGE = 1e-6
 """Change of the ball's velocity that frees a run from an unstable orbit on which it sits exactly."""
@@ -181,44 +178,36 @@ def settle_from(
 def _settled(
     p: Params, begin: tuple[float, float, float, float, float], t: float, how: Patience, lyapunov: bool
 ) -> Attractor:
-    c, cap = constants(p), how.cap
-    state = new_state()
+    c = constants(p)
+    states = np.zeros((1, col.STATE))
+    state = states[0]
     set_state(state, *begin, 0.0)
-    room = np.empty((int(4 * how.record) + 64, col.ROW))
-    verdict = np.empty(v.VERDICT)
+    parameters = np.array([[p.mu, p.A, p.Omega, p.r, p.lam]])
+    room = np.empty((256, col.ROW))
+    verdicts, totals = np.empty((1, v.VERDICT)), np.zeros((1, entry.TOTALS))
+    verdict = verdicts[0]
     stages = np.array([float(how.record)])
+    sides, hits = np.empty(0, dtype=np.int8), np.empty((0, col.ROW + 1))
     wait, spare, ran, nudged = float(how.settle), float(how.patience), 0.0, math.nan
-    turn = 0
-    while True:
-        waited = pass_over(c, state, wait * p.period, cap, room)
+    for turn in range(ROUNDS + 1):
+        waited = np.array([pass_over(c, state, wait * p.period, how.cap, room)])
         shift_time(state, wait * p.period)
-        rows, count, sides, totals = look(c, state, waited, stages, float(how.watch), cap, how.tolerance, room, verdict)
+        left = np.array([[spare, math.isnan(nudged)]]) if turn < ROUNDS else np.zeros((1, 2))
+        sides, hits = look_at_block(
+            parameters, states, waited, left, stages, float(how.watch), how.cap, how.tolerance, True, verdicts, totals
+        )
         shift_time(state, how.record * p.period)
         ran += wait + how.record
-        again = wait_longer(verdict, how, spare, nudged)
-        turn += 1
-        if again is None or turn > ROUNDS:
+        if verdict[v.NEXT] == v.STAYS:
             break
-        wait, spare = again
-        if verdict[v.UNSTABLE] and math.isnan(nudged):
-            nudged = float(verdict[v.VALUE])
-            x1, v1, x2, v2, phase, _ = state_now(c, state, 0.0)
+        if verdict[v.NEXT] == v.IS_FREED:
+            wait, nudged = float(how.settle), float(verdict[v.VALUE])
+            x1, v1, x2, v2, phase = verdict[v.FINAL : v.FINAL + 5].tolist()
             set_state(state, x1, v1, x2, v2 + NUDGE, phase, 0.0)
+        else:
+            remaining = float(verdict[v.REMAINING])
+            wait = spare if remaining > spare else math.ceil(1.05 * remaining) + 1.0
+            spare -= wait
     verdict[v.NUDGED], verdict[v.PERIODS] = nudged, ran - how.record
-    hits = impacts_of(rows[1:count][rows[1:count, col.TIME] > 0.0])
     word = word_of(sides, int(verdict[v.P])) if len(sides) else None
-    return attractor_from(p, verdict, totals, word, hits, t, lyapunov)
-
-
-def wait_longer(
-    verdict: npt.NDArray[np.float64], how: Patience, spare: float, nudged: float
-) -> tuple[float, float] | None:
-    """Return how long to run on and what is left of the patience then; nothing if the run is taken as it is."""
-    if verdict[v.UNSTABLE] and math.isnan(nudged):
-        return float(how.settle), spare
-    if verdict[v.SETTLED] or not spare > 0.0 or not verdict[v.REMAINING] <= STRETCH * spare:
-        return None
-    wait = math.ceil(1.05 * float(verdict[v.REMAINING])) + 1.0
-    if verdict[v.REMAINING] > spare:
-        wait = spare
-    return wait, spare - wait
+    return attractor_from(p, verdict, totals[0], word, impacts_of(hits), t, lyapunov)

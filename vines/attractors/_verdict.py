@@ -34,16 +34,20 @@ __all__ = ["REGIMES", "VERDICT", "reason_text"]
     PERIODS,
     NUDGED,
     STICKING,
-) = range(23)
-EXPONENTS = 23
-MULTIPLIERS_RE = 27
-MULTIPLIERS_IM = 31
-FINAL = 35
-VERDICT = 40
+    NEXT,
+) = range(24)
+EXPONENTS = 24
+MULTIPLIERS_RE = 28
+MULTIPLIERS_IM = 32
+FINAL = 36
+VERDICT = 41
 
 UNSETTLED, PERIODIC, QUASIPERIODIC, CHAOTIC, NO_IMPACT, OPEN = range(6)
 REGIMES = ("unsettled", "periodic", "quasiperiodic", "chaotic", "no_impact")
 """Names of the regimes by number; OPEN is what a window leaves to a longer run."""
+
+STAYS, WAITS, IS_FREED = range(3)
+"""What becomes of a run after a look, under NEXT: it is taken as it is, waits, or is pushed off an unstable orbit."""
 
 RECURS = 0.9
 """Share of the forcing periods with sticking from which it counts as recurrent where the motion never repeats."""

@@ -8,13 +8,11 @@ from vines.attractors import _verdict as v
 from vines.dynamics import _advance as col
 from vines.dynamics import _totals as entry
 from vines.dynamics._advance import advance, begin, state_now
+from vines.dynamics._batches import BATCHES, standard_errors
 from vines.dynamics._totals import window_totals
-from vines.kernels import cold_njit, linked_njit, new_matrix, njit, zero_vector
+from vines.kernels import cold_njit, linked_njit, new_matrix, new_vector, njit
 
-__all__ = ["measure_window", "open_window", "run_window"]
-
-BLOCKS = 8
-"""Blocks of the recorded window from whose scatter standard errors are taken."""
+__all__ = ["measure_window", "open_window", "run_window", "with_room"]
 
 
 @njit
@@ -49,28 +47,33 @@ def run_window(c, state, stop, cap, rows, count):
     """
     count, code = advance(c, state, stop, cap, rows, count)
     while code == col.BUFFER_FULL:
-        wider = new_matrix(2 * rows.shape[0], col.ROW)
-        wider[:count] = rows[:count]
-        rows = wider
+        rows = with_room(rows, count, 2 * count)
         count, code = advance(c, state, stop, cap, rows, count)
     if count == rows.shape[0]:
-        wider = new_matrix(2 * rows.shape[0], col.ROW)
-        wider[:count] = rows[:count]
-        rows = wider
+        rows = with_room(rows, count, 2 * count)
     end = stop if code == col.COMPLETE else state[col.S_T] + state[col.S_CLEAR]
     x1, v1, x2, v2, phase, tau = state_now(c, state, end)
     last = rows[count]
-    last[:] = 0.0
-    last[col.KIND], last[col.TIME], last[col.TAU] = col.END, end, tau
-    last[col.PHASE], last[col.MODE] = phase, state[col.S_MODE]
+    last[col.KIND], last[col.SIDE], last[col.TIME], last[col.TAU] = col.END, 0.0, end, tau
+    last[col.PHASE], last[col.MODE], last[col.RUN] = phase, state[col.S_MODE], 0.0
     last[col.X1], last[col.V1], last[col.X2], last[col.V2] = x1, v1, x2, v2
     last[col.A_V1], last[col.A_V2] = v1, v2
     return rows, count, code
 
 
 @cold_njit
-def measure_window(c, rows, n, verdict):
-    """Return the totals of a window: over one repetition if it is periodic, else over all of it with its errors.
+def with_room(rows, count, room):
+    """Return an array of so many rows, the first `count` of which are those given."""
+    wider = new_matrix(room, rows.shape[1])
+    for i in range(count):
+        for j in range(rows.shape[1]):
+            wider[i, j] = rows[i, j]
+    return wider
+
+
+@cold_njit
+def measure_window(c, rows, n, verdict, total):
+    """Take the totals of a window: over one repetition if it is periodic, else over all of it with its errors.
 
     The share of its forcing periods in which the ball sticks goes to STICKING.
     """
@@ -80,36 +83,40 @@ def measure_window(c, rows, n, verdict):
         span = verdict[v.P] * period
         stop = _quiet_time(rows, n, span)
         verdict[v.STICKING] = _sticking_share(rows, n, stop - span, stop, period)
-        return window_totals(c, rows, n, stop - span, stop)
+        _add(total, window_totals(c, rows, n, stop - span, stop), True)
+        return
     verdict[v.STICKING] = _sticking_share(rows, n, 0.0, stop, period)
-    total = zero_vector(entry.TOTALS)
-    width = stop / BLOCKS
+    width = stop / BATCHES
+    for j in range(entry.TOTALS):
+        total[j] = 0.0
     if not width > 0.0:
+        # A run that had to stop before its window began.
         verdict[v.KINETIC_RATIO_ERROR] = verdict[v.MAX_ABS_X1_ERROR] = verdict[v.RMS_X1_ERROR] = math.nan
-        return total
-    values = new_matrix(3, BLOCKS)
-    for k in range(BLOCKS):
-        part = window_totals(c, rows, n, k * width, stop if k == BLOCKS - 1 else (k + 1) * width)
-        values[0, k] = c.mu * part[entry.V2_SQUARE] / part[entry.V1_SQUARE] if part[entry.V1_SQUARE] > 0.0 else math.nan
-        values[1, k] = part[entry.MAX_ABS_X1]
-        values[2, k] = math.sqrt(max(part[entry.X1_SQUARE] / part[entry.DURATION], 0.0))
-        if part[entry.MAX_ABS_X1] > total[entry.MAX_ABS_X1] or k == 0:
-            total[entry.MAX_ABS_X1] = part[entry.MAX_ABS_X1]
-            total[entry.T_MAX_ABS_X1] = part[entry.T_MAX_ABS_X1]
-        for j in range(entry.TOTALS):
-            if j not in (entry.MAX_ABS_X1, entry.T_MAX_ABS_X1):
-                total[j] += part[j]
-    verdict[v.KINETIC_RATIO_ERROR] = _error_of_mean(values[0])
-    verdict[v.MAX_ABS_X1_ERROR] = _error_of_mean(values[1])
-    verdict[v.RMS_X1_ERROR] = _error_of_mean(values[2])
-    return total
+        return
+    values, errors = new_matrix(BATCHES, 3), new_vector(3)
+    for k in range(BATCHES):
+        part = window_totals(c, rows, n, k * width, stop if k == BATCHES - 1 else (k + 1) * width)
+        values[k, 0] = c.mu * part[entry.V2_SQUARE] / part[entry.V1_SQUARE] if part[entry.V1_SQUARE] > 0.0 else math.nan
+        values[k, 1] = part[entry.MAX_ABS_X1]
+        values[k, 2] = math.sqrt(max(part[entry.X1_SQUARE] / part[entry.DURATION], 0.0))
+        _add(total, part, k == 0)
+    standard_errors(values, errors)
+    verdict[v.KINETIC_RATIO_ERROR], verdict[v.MAX_ABS_X1_ERROR], verdict[v.RMS_X1_ERROR] = (
+        errors[0],
+        errors[1],
+        errors[2],
+    )
 
 
 @cold_njit
-def _error_of_mean(values):
-    n = values.shape[0]
-    mean = values.sum() / n
-    return math.sqrt(((values - mean) ** 2).sum() / (n - 1) / n)
+def _add(total, part, first):
+    """Add the totals of a part of a window to those of the parts before it."""
+    larger = first or part[entry.MAX_ABS_X1] > total[entry.MAX_ABS_X1]
+    for j in range(entry.TOTALS):
+        if j in (entry.MAX_ABS_X1, entry.T_MAX_ABS_X1):
+            total[j] = part[j] if larger else total[j]
+        else:
+            total[j] = part[j] if first else total[j] + part[j]
 
 
 @cold_njit

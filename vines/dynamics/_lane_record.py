@@ -15,7 +15,7 @@ from vines.dynamics import _lane_fields as f
 from vines.dynamics._batches import BATCHES, standard_errors
 from vines.dynamics._lane_measures import open_measures
 from vines.dynamics._lane_segments import begin_segment, close_part, part_of
-from vines.dynamics._tangent import flow_basis, jump_basis, orthonormalise
+from vines.dynamics._tangent import DEAD, flow_basis, jump_basis, log_growth, orthonormalise
 from vines.dynamics._totals import DURATION, ENERGY_CHANGE, TOTALS, state_energy
 from vines.kernels import (
     entry_njit,
@@ -33,9 +33,6 @@ __all__ = ["DEPTH", "arrange", "close_record", "digest", "keep_row", "new_record
 
 DEPTH = 16
 """Rows of a lane that wait until they are digested; those of all lanes stay in the second cache."""
-
-DEAD = 1e-150
-"""Growth below which a direction counts as gone: sticking removes it exactly."""
 
 
 @linked_njit
@@ -105,7 +102,7 @@ def _digest_growth(c, rows, n, Y, growth, width):
     for j in range(1, n):
         batch = min(int(rows[j, col.TIME] / width), BATCHES - 1)
         if batch != running:
-            _log_growth(product, growth[running])
+            log_growth(product, growth[running])
             running = batch
         flow_basis(c, rows[j - 1, col.MODE], rows[j, col.TAU], Y)
         jump_basis(c, rows[j], Y)
@@ -114,16 +111,8 @@ def _digest_growth(c, rows, n, Y, growth, width):
         for k in range(4):
             product[k] *= gains[k]
             if not DEAD < product[k] < 1.0 / DEAD:
-                _log_growth(product, growth[running])
-    _log_growth(product, growth[running])
-
-
-@linked_njit
-def _log_growth(product, growth):
-    """Move growth from factors to logarithms: one logarithm for many events."""
-    for k in range(4):
-        growth[k] += math.log(product[k]) if product[k] > 0.0 else -math.inf
-        product[k] = 1.0
+                log_growth(product, growth[running])
+    log_growth(product, growth[running])
 
 
 @linked_njit

@@ -22,14 +22,20 @@ from vines.errors import StateError
 from vines.kernels import fused_njit, identity, linked_njit, zero_matrix, zero_vector
 
 __all__ = [
+    "DEAD",
     "flow_basis",
     "jump_basis",
+    "log_growth",
     "lyapunov_blocks",
     "lyapunov_spectrum",
     "orthonormalise",
     "tangent_map",
     "tangent_product",
 ]
+
+
+DEAD = 1e-150
+"""Growth below which a direction counts as gone: sticking removes it exactly."""
 
 
 @fused_njit
@@ -109,7 +115,7 @@ def orthonormalise(Y, gains):
             square += Y[i, j] * Y[i, j]
         length = math.sqrt(square)
         gains[j] = length
-        scale = 1.0 / length if length > 1e-150 else 0.0
+        scale = 1.0 / length if length > DEAD else 0.0
         for i in range(4):
             Y[i, j] *= scale
 
@@ -121,8 +127,11 @@ def lyapunov_blocks(c, rows, n, start, stop, blocks, Y):
     The columns of Y, orthonormal at the first row, are carried on in place; growth before `start` is not counted.
     """
     out = zero_matrix(blocks, 5)
-    gains = zero_vector(4)
+    gains, factors = zero_vector(4), zero_vector(4)
+    for j in range(4):
+        factors[j] = 1.0
     width = (stop - start) / blocks
+    block = -1
     for i in range(1, n):
         flow_basis(c, rows[i - 1, MODE], rows[i, TAU], Y)
         jump_basis(c, rows[i], Y)
@@ -130,10 +139,28 @@ def lyapunov_blocks(c, rows, n, start, stop, blocks, Y):
         t = rows[i, TIME]
         if t > start:
             b = min(int((t - start) / width), blocks - 1)
+            if b != block:
+                if block >= 0:
+                    log_growth(factors, out[block])
+                block = b
+            full = False
             for j in range(4):
-                out[b, j] += math.log(gains[j]) if gains[j] > 1e-150 else -math.inf
+                factors[j] *= gains[j] if gains[j] > DEAD else 0.0
+                full |= not DEAD < factors[j] < 1.0 / DEAD
+            if full:
+                log_growth(factors, out[block])
             out[b, 4] += min(rows[i, TAU], t - start)
+    if block >= 0:
+        log_growth(factors, out[block])
     return out
+
+
+@linked_njit
+def log_growth(factors, growth):
+    """Move growth from factors to logarithms: one logarithm for many events."""
+    for k in range(4):
+        growth[k] += math.log(factors[k]) if factors[k] > 0.0 else -math.inf
+        factors[k] = 1.0
 
 
 def tangent_map(run: Trajectory) -> npt.NDArray[np.float64]:

@@ -6,6 +6,8 @@ instructions, more than most kernels have of their own. It is alike with reducti
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
 from vines.kernels._decorators import linked_njit
@@ -102,8 +104,13 @@ def identity(n):
 
 @linked_njit
 def max_abs(values):
-    """Return the largest absolute value."""
-    return np.max(np.abs(values))
+    """Return the largest absolute value of a vector; nan if there is one in it."""
+    largest = 0.0
+    for k in range(values.shape[0]):
+        size = abs(values[k])
+        if size > largest or math.isnan(size):
+            largest = size
+    return largest
 
 
 @linked_njit

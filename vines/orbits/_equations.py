@@ -10,8 +10,6 @@ from __future__ import annotations
 import cmath
 import math
 
-import numpy as np
-
 from vines.kernels import linked_njit, max_abs, new_cube, new_matrix, new_vector, zero_matrix
 from vines.orbits._values import essentials_of
 
@@ -111,22 +109,29 @@ def closing_kernel(c, duration, side, t):
     e = c.pass1
     law = new_matrix(N, N)
     kicks = new_matrix(N, 1)
+    # Elimination overwrites what it is given, and the derivatives of the kicks need the same matrix.
+    again = new_matrix(N, N)
     for j in range(N):
         b = j - 1 if j > 0 else N - 1
         kicks[j, 0] = -e * (forced[1, j] - ball_0[b])
         for k in range(N):
             law[j, k] = e * (g[1, j, k] - ball[b, k])
         law[j, j] += 1.0
+        for k in range(N):
+            again[j, k] = law[j, k]
     defect = new_vector(N)
     slope = new_matrix(N, N)
     states = new_matrix(N, 4)
-    if not eliminate(law.copy(), kicks):
+    if not eliminate(law, kicks):
         return False, defect, slope, states
-    d = kicks[:, 0].copy()
-
-    x = forced[0] + np.ascontiguousarray(g[0]) @ d
-    v = forced[1] + np.ascontiguousarray(g[1]) @ d
-    w = ball_0 + ball @ d
+    w = new_vector(N)
+    for j in range(N):
+        x, v, w[j] = forced[0, j], forced[1, j], ball_0[j]
+        for k in range(N):
+            x += g[0, j, k] * kicks[k, 0]
+            v += g[1, j, k] * kicks[k, 0]
+            w[j] += ball[j, k] * kicks[k, 0]
+        states[j, 0], states[j, 1], states[j, 2] = x, v, x - side[j]
 
     # Derivatives in the times with the kicks held, then the kicks' own.
     dx = zero_matrix(N, N)
@@ -136,10 +141,10 @@ def closing_kernel(c, duration, side, t):
         dv[j, j] = forced[2, j]
         for k in range(N):
             if k != j:
-                dx[j, j] += d[k] * g[1, j, k]
-                dv[j, j] += d[k] * g[2, j, k]
-                dx[j, k] = -d[k] * g[1, j, k]
-                dv[j, k] = -d[k] * g[2, j, k]
+                dx[j, j] += kicks[k, 0] * g[1, j, k]
+                dv[j, j] += kicks[k, 0] * g[2, j, k]
+                dx[j, k] = -kicks[k, 0] * g[1, j, k]
+                dv[j, k] = -kicks[k, 0] * g[2, j, k]
     dw = new_matrix(N, N)
     for j in range(N):
         n = (j + 1) % N
@@ -156,13 +161,13 @@ def closing_kernel(c, duration, side, t):
             momentum[j, k] = c.ratio * (ball[j, k] - ball[b, k])
             slope[j, k] = c.ratio * (dw[j, k] - dw[b, k])
         momentum[j, j] += 1.0
-        defect[j] = c.ratio * (w[j] - w[b]) + d[j]
-        states[j, 0] = x[j]
-        states[j, 1] = v[j]
-        states[j, 2] = x[j] - side[j]
+        defect[j] = c.ratio * (w[j] - w[b]) + kicks[j, 0]
         states[j, 3] = w[b]
-    eliminate(law.copy(), moved)
-    slope += momentum @ moved
+    eliminate(again, moved)
+    for j in range(N):
+        for k in range(N):
+            for i in range(N):
+                slope[j, k] += momentum[j, i] * moved[i, k]
     return True, defect, slope, states
 
 
@@ -188,27 +193,32 @@ def newton_kernel(c, duration, side, t, iterations):
     states : (N, 4) float array
     """
     N = t.size
-    t = t.copy()
+    begin, t, trial = t, new_vector(N), new_vector(N)
+    for j in range(N):
+        t[j] = begin[j]
     essential = essentials_of(c)
     regular, defect, slope, states = closing_kernel(essential, duration, side, t)
     size = max_abs(defect) if regular else math.inf
     # The equations are sums of parts as large as the steady motion without the ball.
     rounding = 8.0 * _EPS * c.law.ratio * (1.0 + math.hypot(c.free.qr, c.free.qi))
     for _ in range(iterations):
-        step = defect.copy().reshape((N, 1))
-        if not regular or not np.isfinite(size) or not eliminate(slope, step):
+        step = new_matrix(N, 1)
+        for j in range(N):
+            step[j, 0] = defect[j]
+        if not regular or not math.isfinite(size) or not eliminate(slope, step):
             return False, t, size, states
         # No flight time may shrink to less than a fifth of itself in one step.
-        share = 1.0
+        share, largest = 1.0, 0.0
         for j in range(N):
+            largest = max(largest, abs(step[j, 0]))
             n = (j + 1) % N
             dt = t[n] - t[j] if n > j else t[n] - t[j] + duration
             change = step[j, 0] - step[n, 0]
             if change < -0.8 * dt / share:
                 share = -0.8 * dt / change
-        largest = max_abs(step)
         while True:
-            trial = t - share * step[:, 0]
+            for j in range(N):
+                trial[j] = t[j] - share * step[j, 0]
             regular, defect, slope, states = closing_kernel(essential, duration, side, trial)
             better = max_abs(defect) if regular else math.inf
             if better < size or share * largest < 1e-12 * duration or share < 1e-3:
@@ -216,8 +226,9 @@ def newton_kernel(c, duration, side, t, iterations):
             share *= 0.5
         # Next to a bifurcation the steps stay larger than that, but the defect can't fall below its rounding.
         stalled = better >= 0.5 * size and better <= rounding
-        t = trial
+        for j in range(N):
+            t[j] = trial[j]
         size = better
         if share * largest < 1e-13 * duration or stalled:
-            return np.isfinite(size) and size < 1e-9 * c.law.ratio, t, size, states
+            return math.isfinite(size) and size < 1e-9 * c.law.ratio, t, size, states
     return False, t, size, states
