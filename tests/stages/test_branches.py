@@ -5,7 +5,7 @@ import pytest
 
 import vines
 from vines.stages import run
-from vines.stages._diagram import _threaded
+from vines.stages.plots._diagram import _threaded
 
 SMALL = """
 title = "small"

@@ -9,8 +9,8 @@ from vines.figures._style import FAMILIES
 from vines.logs import read
 from vines.pipeline import Input
 from vines.stages import find_logs, load_pipeline, run
-from vines.stages._run_panels import run_curves
-from vines.stages._sheet import sheet
+from vines.stages.plots._run_panels import run_curves
+from vines.stages.plots._sheet import sheet
 from vines.store import Store
 
 

@@ -11,10 +11,10 @@ import numpy as np
 from vines.errors import VinesError
 from vines.pipeline import kind
 from vines.pipeline._code import CodeDigests
-from vines.stages._kinds import register_kinds
 from vines.stages.audit._again import PointsAgain, start_again
 from vines.stages.audit._located import locate_again
 from vines.stages.audit._resolved import resolve_again
+from vines.stages.kinds._register import register_kinds
 
 if TYPE_CHECKING:
     from vines.stages.audit._compare import Comparison
