@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from vines.errors import DeclarationError, UnknownNameError, nearest
-from vines.pipeline import Pipeline, find, load, load_collection
+from vines.pipeline import Pipeline, file_of, find, load, load_collection
 from vines.places import find_root
-from vines.stages.api._sense import check_name, check_stages
 from vines.stages.kinds._register import register_kinds
 
 if TYPE_CHECKING:
@@ -69,12 +69,9 @@ def load_pipeline(name: str | Declaration, overrides: Mapping[str, Any] | None =
     root = find_root()
     if isinstance(name, str):
         path = find(name, root)
-        check_name(path, root)
-        pipeline = load(path, overrides, root=root)
-    else:
-        pipeline = name.load(overrides, root=root)
-    check_stages(pipeline)
-    return pipeline
+        _check_name(path, root)
+        return load(path, overrides, root=root)
+    return name.load(overrides, root=root)
 
 
 def load_parts(
@@ -109,12 +106,19 @@ def load_parts(
     ]
 
 
+def _check_name(path: Path, root: Path) -> None:
+    """Refuse a file that would take the name, and so the results, of a pipeline that the project has."""
+    known = file_of(path.stem, root)
+    if known is not None and known.resolve() != path.resolve():
+        raise DeclarationError(f"{path}: the pipeline {path.stem!r} is declared in {known} already; rename this file")
+
+
 def _collection(name: str | Declaration) -> Collection | None:
     if not isinstance(name, str):
         return None
     root = find_root()
     path = find(name, root)
-    check_name(path, root)
+    _check_name(path, root)
     return load_collection(path, root)
 
 

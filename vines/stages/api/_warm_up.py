@@ -5,14 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 from typing import TYPE_CHECKING
 
+from vines.stages.kinds.compare import COMPARE
+
 if TYPE_CHECKING:
     from vines.kernels import Task
     from vines.pipeline import StagePlan
 
-__all__ = ["COMPARE", "compile_cold", "compile_if_cold", "warm_up"]
-
-COMPARE = ("orbits", "one_run", "many_runs", "scatter")
-"""What the comparison of a measured run with the model asks for."""
+__all__ = ["compile_cold", "compile_if_cold", "warm_up"]
 
 
 def _tasks() -> dict[str, Task]:

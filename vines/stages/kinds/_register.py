@@ -1,23 +1,15 @@
-"""The kinds of stages that vines knows: light specifications, without numba, pyarrow, rerun or matplotlib.
-
-A body is named by its dotted path and imported only when there is something to compute.
-"""
+"""The kinds of stages that vines knows: a file each, called as the kind; those with an underscore are shared."""
 
 from __future__ import annotations
 
-from vines.stages.kinds._formulas import register_formulas
-from vines.stages.kinds._orbits import register_orbits
-from vines.stages.kinds._rig import register_rig
-from vines.stages.kinds._runs import register_runs
-from vines.stages.kinds._shown import register_shown
+import functools
+
+from vines.pipeline import KINDS
 
 __all__ = ["register_kinds"]
 
 
+@functools.cache
 def register_kinds() -> None:
     """Make the kinds of vines known to declarations; calling it again changes nothing."""
-    register_runs()
-    register_orbits()
-    register_formulas()
-    register_shown()
-    register_rig()
+    KINDS.add_modules("vines.stages.kinds", "KIND")

@@ -1,4 +1,4 @@
-"""Bifurcation diagrams: from the tables of stages to what the figure draws."""
+"""Impacts and orbits of stages over one parameter as the dots, lines and markers of a diagram."""
 
 from __future__ import annotations
 
@@ -10,33 +10,16 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.compute as pc
 
-from vines.figures import SYMBOLS, BranchLine, ImpactDots, Marker, bifurcation_figure
+from vines.figures import BranchLine, ImpactDots, Marker
 from vines.model import Word
-from vines.pipeline import Input
+from vines.stages.plots._caption import listed, shared_params
 
 if TYPE_CHECKING:
-    from matplotlib.figure import Figure
+    from vines.pipeline import Input
 
-__all__ = ["bifurcation_diagram", "diagram_parts", "family_label", "family_of", "listed", "shared_params"]
+__all__ = ["diagram_parts", "family_label", "family_of"]
 
 EVENT = "pair_turns_real"
-
-
-def bifurcation_diagram(inputs: Mapping[str, Input], options: Any) -> Figure:
-    """Draw stages with impacts as dots, those with orbits as lines.
-
-    Parameters that all stages share stand in the caption; those that differ in the labels, so that no curve is shown
-    under another's parameters.
-    """
-    stages = list(inputs.values())
-    return bifurcation_figure(
-        stages[0].axes[0],
-        *diagram_parts(stages, mirror=options.mirror),
-        panels=options.panels or ("w_dot", "dt"),
-        caption=options.title or listed(shared_params(stages)),
-        width=options.width,
-        window=options.window,
-    )
 
 
 def diagram_parts(
@@ -65,12 +48,6 @@ def diagram_parts(
         [line for stage, rows in chosen for line in _lines(stage, rows, axis, shared, mirror)],
         [mark for stage, rows in chosen for mark in _markers(stage, rows, axis, marks, events=events, mirror=mirror)],
     )
-
-
-def shared_params(stages: Sequence[Input]) -> dict[str, float]:
-    """Return the parameters that all stages share."""
-    first, *others = (stage.params for stage in stages)
-    return {name: value for name, value in first.items() if all(other.get(name) == value for other in others)}
 
 
 def _chosen(stage: Input, families: Collection[str]) -> list[dict[str, Any]]:
@@ -235,7 +212,3 @@ def _numpy(table: pa.Table) -> Any:
 def _label(what: str, stage: Input, shared: dict[str, float]) -> str:
     own = {name: value for name, value in stage.params.items() if name not in shared}
     return f"{what}, {listed(own)}" if own else what
-
-
-def listed(params: dict[str, float]) -> str:
-    return ",  ".join(f"${SYMBOLS[name]} = {value:.4g}$" for name, value in params.items())

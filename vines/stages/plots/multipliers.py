@@ -1,32 +1,45 @@
-"""From branches to the moduli of their multipliers as a figure shows them."""
+"""The plot ``multipliers``: moduli of the Floquet multipliers along branches."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Annotated
 
-import numpy as np
-import pyarrow.compute as pc
+from msgspec import Meta
 
 from vines.errors import DeclarationError, nearest
-from vines.figures import MultiplierLines, multiplier_figure
-from vines.pipeline import Input
-from vines.stages.plots._diagram import family_label, family_of, listed
+from vines.stages.plots._checks import check_window, one_axis
+from vines.stages.plots._plot import Plot, PlotOptions
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-__all__ = ["multiplier_lines", "multipliers"]
+    from vines.figures import MultiplierLines
+    from vines.pipeline import Input, Pipeline, Stage
+
+__all__ = ["PLOT", "MultipliersOptions", "multiplier_lines"]
 
 
-def multipliers(inputs: Mapping[str, Input], options: Any) -> Figure:
-    """Draw a panel for each branch, or for each that `panels` names by its label, such as ``1:1 symmetric``.
+class MultipliersOptions(PlotOptions, frozen=True, tag="multipliers"):
+    """Stages of kind `branch` over one parameter: a panel for each branch, side by side."""
 
-    Raises
-    ------
-    DeclarationError
-        If there is no branch of that label.
-    """
+    panels: Annotated[
+        tuple[str, ...], Meta(description="Labels of the branches shown, such as '1:1 symmetric'; all if empty")
+    ] = ()
+    window: Annotated[tuple[float, float] | None, Meta(description="The part of the parameter that is shown")] = None
+
+
+def _check(stage: Stage, pipeline: Pipeline) -> None:
+    check_window(stage.options)
+    one_axis(stage, pipeline)
+    if not any("branches" in pipeline.stages[name].kind.tables for name in stage.needs):
+        raise DeclarationError("multipliers are those of branches; name a stage of kind 'branch' in needs")
+
+
+def _draw(inputs: Mapping[str, Input], options: MultipliersOptions) -> Figure:
+    from vines.figures import multiplier_figure
+    from vines.stages.plots._caption import listed
+
     stages = [stage for stage in inputs.values() if "branches" in stage.tables]
     return multiplier_figure(
         stages[0].axes[0],
@@ -54,6 +67,12 @@ def multiplier_lines(stages: Iterable[Input], labels: Sequence[str]) -> list[Mul
 
 
 def _branches(stage: Input) -> list[MultiplierLines]:
+    import numpy as np
+    import pyarrow.compute as pc
+
+    from vines.figures import MultiplierLines
+    from vines.stages.plots._diagram import family_label, family_of
+
     axis = stage.axes[0]
     orbits, bifurcations = stage.table("orbits"), stage.table("bifurcations")
     lines = []
@@ -71,3 +90,11 @@ def _branches(stage: Input) -> list[MultiplierLines]:
             )
         )
     return lines
+
+
+PLOT = Plot(
+    summary="moduli of the multipliers along branches",
+    options=MultipliersOptions,
+    draw=_draw,
+    check=_check,
+)

@@ -1,56 +1,55 @@
-"""From the tables of sweeps to the panels of a response: all attractors, each drawn once."""
+"""Sweeps carried along one axis as the panels of a response: all attractors, each drawn once."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
 import pyarrow as pa
 import pyarrow.compute as pc
 
-from vines.figures import FOUND, EnergyCurve, EnergyPanel, VelocityPanel, response_figure
-from vines.pipeline import Input
+from vines.figures import FOUND, EnergyCurve, EnergyPanel, VelocityPanel
+from vines.model import PARAMETER_NAMES
 from vines.stages.bodies._distinct import Seen, all_attractors
-from vines.stages.plots._diagram import listed
+from vines.stages.plots._caption import listed
 
 if TYPE_CHECKING:
-    from matplotlib.figure import Figure
+    from vines.pipeline import Input
+    from vines.stages.plots.response import ResponseCell
 
-__all__ = ["response"]
-
-NAMES = ("mu", "A", "Omega", "r", "lam")
+__all__ = ["response_panels"]
 
 
-def response(inputs: Mapping[str, Input], options: Any) -> Figure:
-    """Draw the declared cells; parameters that all share stand above everything, others where they matter."""
-    cells = [(_stages(cell, inputs), cell) for cell in options.cells]
-    fixed = [_fixed(stages, cell) for stages, cell in cells]
+def response_panels(
+    cells: Sequence[ResponseCell], inputs: Mapping[str, Input]
+) -> tuple[list[EnergyPanel | VelocityPanel], dict[str, float]]:
+    """Return a panel for each cell, and the parameters that all share; others stand where they matter."""
+    chosen = [(_stages(cell, inputs), cell) for cell in cells]
+    fixed = [_fixed(stages, cell) for stages, cell in chosen]
     shared = {name: fixed[0][name] for name in fixed[0] if all(f.get(name) == fixed[0][name] for f in fixed)}
     panels = []
-    for (stages, cell), known in zip(cells, fixed, strict=True):
+    for (stages, cell), known in zip(chosen, fixed, strict=True):
         caption = listed({name: value for name, value in known.items() if name not in shared})
         panels.append((_velocities if cell.show == "w_dot" else _energy)(stages, cell, caption))
-    return response_figure(
-        panels, columns=options.columns, caption=options.title or listed(shared), width=options.width
-    )
+    return panels, shared
 
 
-def _stages(cell: Any, inputs: Mapping[str, Input]) -> list[Input]:
+def _stages(cell: ResponseCell, inputs: Mapping[str, Input]) -> list[Input]:
     """Return the stages of a cell, those carried upwards first: they tell which attractor is "another" one."""
     return sorted((inputs[name] for name in cell.of), key=lambda stage: stage.direction == "down")
 
 
-def _rows(stage: Input, cell: Any, table: str) -> pa.Table:
+def _rows(stage: Input, cell: ResponseCell, table: str) -> pa.Table:
     rows = stage.table(table)
     for name, value in cell.where.items():
         rows = rows.filter(pc.field(name) == value)
     return rows
 
 
-def _fixed(stages: list[Input], cell: Any) -> dict[str, float]:
+def _fixed(stages: list[Input], cell: ResponseCell) -> dict[str, float]:
     """Return the parameters that have one value in all points of a cell."""
-    values = {name: set[float]() for name in NAMES}
+    values = {name: set[float]() for name in PARAMETER_NAMES}
     for stage in stages:
         rows = _rows(stage, cell, "points")
         for name, found in values.items():
@@ -58,11 +57,11 @@ def _fixed(stages: list[Input], cell: Any) -> dict[str, float]:
     return {name: found.pop() for name, found in values.items() if len(found) == 1}
 
 
-def _energy(stages: list[Input], cell: Any, caption: str) -> EnergyPanel:
+def _energy(stages: list[Input], cell: ResponseCell, caption: str) -> EnergyPanel:
     axis = stages[0].carried
     points = [_rows(stage, cell, "points") for stage in stages]
     others = [_rows(stage, cell, "attractors") for stage in stages]
-    differing = [name for name in NAMES if name != axis and name not in _fixed(stages, cell)]
+    differing = [name for name in PARAMETER_NAMES if name != axis and name not in _fixed(stages, cell)]
     groups = _groups(points[0], differing)
     curves = [
         _curve(
@@ -110,7 +109,7 @@ def _curve(axis: str, points: list[pa.Table], others: list[pa.Table], label: str
     )
 
 
-def _velocities(stages: list[Input], cell: Any, caption: str) -> VelocityPanel:
+def _velocities(stages: list[Input], cell: ResponseCell, caption: str) -> VelocityPanel:
     axis = stages[0].carried
     tables = [_rows(stage, cell, "impacts").select([axis, "w_dot", "side", "attractor"]) for stage in stages]
     together = pa.concat_tables(tables)

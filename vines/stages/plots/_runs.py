@@ -8,7 +8,7 @@ from collections.abc import Iterable
 from vines.figures import RunCurves
 from vines.logs import read
 from vines.pipeline import Input
-from vines.stages.plots._diagram import listed
+from vines.stages.plots._caption import listed
 
 __all__ = ["run_curves"]
 

@@ -1,50 +1,75 @@
-"""Figures of a rig: from the tables of reconstructed and compared runs, and of branches, to what is drawn."""
+"""The plot ``rig_branches``: reconstructed runs on branches of the model over the forcing amplitude."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Mapping
-from typing import TYPE_CHECKING, Any
+from collections.abc import Iterable, Mapping
+from typing import TYPE_CHECKING, Annotated, Any
 
-import numpy as np
+from msgspec import Meta
 
-from vines.figures import (
-    MEASURES,
-    BranchLine,
-    RigCycle,
-    RigPoints,
-    rig_branches_figure,
-    rig_cycles_figure,
-    rig_residual_figure,
-    rig_waits_figure,
-)
-from vines.pipeline import Input
-from vines.stages.plots._diagram import diagram_parts, family_label, family_of, listed, shared_params
+from vines.errors import DeclarationError
+from vines.figures import MEASURES, RIG_PANELS
+from vines.stages.plots._checks import check_panels, check_window, needs_table
+from vines.stages.plots._plot import Plot, PlotOptions
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-__all__ = ["PLOTS", "impact_places", "rig_branches", "rig_cycles", "rig_residual", "rig_waits"]
+    from vines.figures import BranchLine, RigPoints
+    from vines.pipeline import Input, Pipeline, Stage
+
+__all__ = ["PLOT", "RigBranchesOptions", "impact_places"]
 
 Row = dict[str, Any]
 
 
-def rig_branches(inputs: Mapping[str, Input], options: Any) -> Figure:
-    """Draw what was measured over the amplitude on the branches of the model."""
+class RigBranchesOptions(PlotOptions, frozen=True, tag="rig_branches"):
+    """Stages of kind `reconstruct` as points with error bars, branches over A as lines, a panel a quantity.
+
+    With a stage of kind `compare` what the model gives at the measured parameters stands beside each run.
+    """
+
+    panels: Annotated[tuple[str, ...], Meta(min_length=1, description=f"Quantities shown: {', '.join(RIG_PANELS)}")] = (
+        "max_abs_x1",
+        "w_dot",
+        "phase",
+    )
+    window: Annotated[
+        tuple[float, float] | None, Meta(description="The part of the amplitudes that is shown; all runs if left out")
+    ] = None
+
+
+def _check(stage: Stage, pipeline: Pipeline) -> None:
+    check_window(stage.options)
+    needs_table(stage, pipeline, "reconstructions", "reconstruct")
+    check_panels(stage.options, RIG_PANELS)
+    for name in stage.needs:
+        axes = [axis.name for axis in pipeline.stages[name].axes]
+        if axes not in ([], ["A"]):
+            raise DeclarationError(f"rig points lie over A; {name} varies {' and '.join(axes)}")
+
+
+def _draw(inputs: Mapping[str, Input], options: RigBranchesOptions) -> Figure:
+    from vines.figures import rig_branches_figure
+    from vines.stages.plots._caption import listed, shared_params
+    from vines.stages.plots._diagram import diagram_parts
+    from vines.stages.plots._rig import reconstructed, tables_of
+
     branches = [stage for stage in inputs.values() if "orbits" in stage.tables]
-    runs = _reconstructed(inputs)
-    impacts = [row for stage in _of(inputs, "reconstructions") for row in stage.table("rig_impacts").to_pylist()]
+    runs = reconstructed(inputs)
+    impacts = [row for stage in tables_of(inputs, "reconstructions") for row in stage.table("rig_impacts").to_pylist()]
     model = {
         row["run_id"]: row
-        for stage in _of(inputs, "comparisons")
+        for stage in tables_of(inputs, "comparisons")
         for row in stage.table().to_pylist()
         if row["basis"] == "measured" and row["rank"] == 0
     }
     lines = diagram_parts(branches, mirror=True)[1] if branches else []
     lines += [line for stage in branches for line in _measure_lines(stage)]
-    chosen = options.panels or ("max_abs_x1", "w_dot", "phase")
     points = {
-        name: _whole_runs(runs, name, model) if name in MEASURES else _places(runs, impacts, name) for name in chosen
+        name: _whole_runs(runs, name, model) if name in MEASURES else _places(runs, impacts, name)
+        for name in options.panels
     }
     return rig_branches_figure(
         points,
@@ -57,18 +82,13 @@ def rig_branches(inputs: Mapping[str, Input], options: Any) -> Figure:
     )
 
 
-def _of(inputs: Mapping[str, Input], table: str) -> list[Input]:
-    return [stage for stage in inputs.values() if table in stage.tables]
-
-
-def _reconstructed(inputs: Mapping[str, Input]) -> list[Row]:
-    """Return the rows of all runs that could be reconstructed."""
-    rows = [row for stage in _of(inputs, "reconstructions") for row in stage.table().to_pylist()]
-    return [row for row in rows if row["status"] == "ok"]
-
-
 def _measure_lines(stage: Input) -> Iterable[BranchLine]:
     """Yield a line for the quantities of whole orbits of each branch."""
+    import numpy as np
+
+    from vines.figures import BranchLine
+    from vines.stages.plots._diagram import family_label, family_of
+
     orbits = stage.table("orbits").to_pylist()
     for branch in stage.table("branches").to_pylist():
         mine = [row for row in orbits if row["branch_id"] == branch["branch_id"]]
@@ -83,20 +103,29 @@ def _measure_lines(stage: Input) -> Iterable[BranchLine]:
 
 
 def _whole_runs(runs: list[Row], name: str, model: Mapping[str, Row]) -> RigPoints:
+    import numpy as np
+
+    from vines.figures import RigPoints
+    from vines.stages.plots._rig import column
+
     told = [row for row in runs if row[name] is not None]
     beside = [model.get(row["run_id"], {}) for row in told]
     return RigPoints(
         **_where(told),
-        y=_column(told, name),
-        u_y=_column(told, f"u_{name}"),
+        y=column(told, name),
+        u_y=column(told, f"u_{name}"),
         side=np.zeros(len(told), dtype=np.int64),
-        model=_column(beside, f"model_{name}"),
-        u_model=_column(beside, f"u_model_{name}"),
+        model=column(beside, f"model_{name}"),
+        u_model=column(beside, f"u_model_{name}"),
     )
 
 
 def _places(runs: list[Row], impacts: list[Row], name: str) -> RigPoints:
     """Return a quantity of the impacts in each place of the pattern of each run; nothing where no pattern holds."""
+    import numpy as np
+
+    from vines.figures import RigPoints
+
     told: list[Row] = []
     found: list[tuple[float, float, int]] = []
     for run in runs:
@@ -126,6 +155,8 @@ def impact_places(impacts: list[Row], word: list[str]) -> list[list[Row]]:
     >>> [[row["side"] for row in place] for place in impact_places(train, ["LR"])]
     [[1, 1, 1, 1], [-1, -1, -1, -1]]
     """
+    import numpy as np
+
     periods: dict[int, list[Row]] = {}
     for row in impacts:
         periods.setdefault(row["period"], []).append(row)
@@ -145,6 +176,8 @@ def impact_places(impacts: list[Row], word: list[str]) -> list[list[Row]]:
 
 def _mean(place: list[Row], run: Row, name: str) -> tuple[float, float, int]:
     """Return mean, standard uncertainty and side of a quantity of the impacts in one place."""
+    import numpy as np
+
     side = int(place[0]["side"])
     count = len(place)
     if name == "phase":
@@ -160,69 +193,21 @@ def _mean(place: list[Row], run: Row, name: str) -> tuple[float, float, int]:
 
 
 def _where(runs: list[Row]) -> dict[str, Any]:
+    import numpy as np
+
+    from vines.stages.plots._rig import column
+
     return {
-        "x": _column(runs, "A"),
-        "u_x": _column(runs, "u_A"),
+        "x": column(runs, "A"),
+        "u_x": column(runs, "u_A"),
         "protocol": np.array([row["protocol"] for row in runs], dtype=str),
         "good": np.array([row["accepted"] and row["holds"] for row in runs], dtype=bool),
     }
 
 
-def _column(rows: list[Row], name: str) -> np.ndarray:
-    return np.array([math.nan if row.get(name) is None else row[name] for row in rows], dtype=float)
-
-
-def rig_residual(inputs: Mapping[str, Input], options: Any) -> Figure:
-    """Draw the residual of each run over its temperature."""
-    runs = _reconstructed(inputs)
-    return rig_residual_figure(
-        _column(runs, "temperature"),
-        _column(runs, "residual"),
-        _column(runs, "noise"),
-        [row["protocol"] for row in runs],
-        np.array([row["accepted"] for row in runs], dtype=bool),
-        caption=options.title,
-        width=options.width,
-    )
-
-
-def _cycles(inputs: Mapping[str, Input]) -> list[RigCycle]:
-    """Return the nearest branch beside each run at measured parameters, in the order of the runs' names."""
-    found: list[RigCycle] = []
-    for stage in _of(inputs, "rig_cycles"):
-        told = {row["point_id"]: row for row in stage.table("comparisons").to_pylist()}
-        for row in stage.table("rig_cycles").to_pylist():
-            if row["rank"] or row["basis"] != "measured":
-                continue
-            about = told[row["point_id"]]
-            columns = {name: np.array(row[name]) for name in ("w", "w_dot", "model_w", "model_w_dot")}
-            found.append(
-                RigCycle(
-                    title=f"{row['run_id']}: {row['branch']}, {about['verdict'].replace('_', ' ')}",
-                    edges=np.array(row["wait_edges"]),
-                    share=np.array(row["wait_share"]),
-                    model_share=np.array(row["model_wait_share"]),
-                    rms=(about["rms_w"] or math.nan, about["rms_w_dot"] or math.nan),
-                    **columns,
-                )
-            )
-    return sorted(found, key=lambda cycle: cycle.title)
-
-
-def rig_cycles(inputs: Mapping[str, Input], options: Any) -> Figure:
-    """Draw w' over w of runs and model."""
-    return rig_cycles_figure(_cycles(inputs), caption=options.title, width=options.width)
-
-
-def rig_waits(inputs: Mapping[str, Input], options: Any) -> Figure:
-    """Draw the times between impacts of runs and model."""
-    return rig_waits_figure(_cycles(inputs), caption=options.title, width=options.width)
-
-
-PLOTS: dict[str, Callable[[Mapping[str, Input], Any], Figure]] = {
-    "rig_branches": rig_branches,
-    "rig_cycles": rig_cycles,
-    "rig_residual": rig_residual,
-    "rig_waits": rig_waits,
-}
-"""What draws each plot of a rig."""
+PLOT = Plot(
+    summary="reconstructed runs on branches of the model",
+    options=RigBranchesOptions,
+    draw=_draw,
+    check=_check,
+)

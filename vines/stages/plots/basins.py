@@ -1,29 +1,44 @@
-"""From the tables of a stage of the kind ``basins`` to its picture."""
+"""The plot ``basins``: to which attractor each start comes, as a map of the starts."""
 
 from __future__ import annotations
 
 import math
-from typing import Any
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
 
-import numpy as np
+from vines.stages.plots._checks import one_stage
+from vines.stages.plots._plot import Plot, PlotOptions
 
-from vines.errors import DeclarationError
-from vines.figures import BasinMap
-from vines.pipeline import Input
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
-__all__ = ["basin_map"]
+    from vines.figures import BasinMap
+    from vines.pipeline import Input, Pipeline, Stage
+
+__all__ = ["PLOT", "BasinsOptions"]
 
 
-def basin_map(stage: Input) -> BasinMap:
-    """Return what is drawn of a basins stage.
+class BasinsOptions(PlotOptions, frozen=True, tag="basins"):
+    """One stage with basins: a hue for each attractor, darker where its mirror image is reached."""
 
-    Raises
-    ------
-    DeclarationError
-        If the stage is of another kind.
-    """
-    if "basins" not in stage.tables:
-        raise DeclarationError(f"plot basins needs a stage of the kind basins; {stage.name!r} is {stage.kind!r}")
+
+def _check(stage: Stage, pipeline: Pipeline) -> None:
+    one_stage(stage, pipeline, lambda one: "basins" in one.kind.tables, "one stage of kind basins")
+
+
+def _draw(inputs: Mapping[str, Input], options: BasinsOptions) -> Figure:
+    from vines.figures import basins_figure
+
+    (stage,) = inputs.values()
+    return basins_figure(_map(stage), title=options.title, width=options.width)
+
+
+def _map(stage: Input) -> BasinMap:
+    """Return what is drawn of a stage with basins."""
+    import numpy as np
+
+    from vines.figures import BasinMap
+
     cells = stage.table("basins")
     column = {name: cells[name].to_numpy(zero_copy_only=False) for name in cells.column_names}
     told = {row["attractor"]: row for row in stage.table("attractors").to_pylist()}
@@ -60,3 +75,11 @@ def _name(row: dict[str, Any]) -> str:
 def _rounded(value: float) -> float:
     """Return a number to two digits."""
     return float(f"{value:.2g}")
+
+
+PLOT = Plot(
+    summary="to which attractor each start comes, a map of the starts",
+    options=BasinsOptions,
+    draw=_draw,
+    check=_check,
+)
