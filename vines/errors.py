@@ -19,6 +19,7 @@ __all__ = [
     "OrbitNotFound",
     "PackageMissingError",
     "ParameterError",
+    "PlugInError",
     "QueryError",
     "RigError",
     "RunFailed",
@@ -81,6 +82,10 @@ class KernelError(VinesError, RuntimeError):
 
 class PackageMissingError(VinesError, ModuleNotFoundError):
     """A package that computing does without is needed and not installed; the message says what to install."""
+
+
+class PlugInError(VinesError, ImportError):
+    """What an installed package brings to vines cannot be used."""
 
 
 class LogError(VinesError, ValueError):

@@ -56,7 +56,7 @@ def test_a_status_of_all_reads_each_text_and_each_source_once(root, monkeypatch)
     from collections import Counter
 
     from vines.pipeline import _code, _include
-    from vines.stages import _claims
+    from vines.stages.bodies import _claims
 
     _include._loads.cache_clear()
     _claims._claims.cache_clear()
@@ -83,7 +83,7 @@ def test_a_status_of_all_reads_each_text_and_each_source_once(root, monkeypatch)
     assert texts[(root / "pipelines" / "claims.toml").read_text()] == 1
     assert texts[(root / "pipelines" / "quickstart.toml").read_text()] == 1
     assert set(texts.values()) == {1}
-    assert "vines.stages._figure" in sources
+    assert "vines.stages.plots._figure" in sources
     assert set(sources.values()) == {1}
 
 

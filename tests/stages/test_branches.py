@@ -5,7 +5,7 @@ import pytest
 
 import vines
 from vines.stages import run
-from vines.stages._diagram import _threaded
+from vines.stages.plots._diagram import _threaded
 
 SMALL = """
 title = "small"
@@ -49,6 +49,9 @@ plot = "multipliers"
 panels = ["1:1 symmetric", "1:1 asymmetric"]
 needs = ["one_one"]
 """
+
+
+MODULI = 'plot = "multipliers"\npanels = ["1:1 symmetric", "1:1 asymmetric"]'
 
 
 @pytest.fixture(scope="module")
@@ -119,7 +122,10 @@ def test_where_there_is_no_family_it_is_said(small):
         ("switch = 2", "switch = -1", "switch >= 0"),
         ("seeds = 3", "seeds = 1", "seeds >= 2"),
         ("window = [0.015, 0.022]", "window = [0.022, 0.015]", "lower end first"),
-        ('plot = "multipliers"', 'plot = "chart"', "a chart draws stages of kind 'curve'"),
+        (MODULI, 'plot = "chart"', "a chart draws stages of kind 'curve'"),
+        ('plot = "multipliers"', 'plot = "chart"', "unknown key 'panels': allowed: kind, needs, plot, title, width"),
+        ('plot = "multipliers"', 'plot = "multiplier"', "plot: unknown plot 'multiplier': did you mean 'multipliers'"),
+        ('plot = "multipliers"', "", "'plot' is missing; allowed: basins, bifurcation"),
     ],
 )
 def test_senseless_declarations_are_refused_before_anything_runs(small, old, new, said):

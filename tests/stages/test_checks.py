@@ -9,8 +9,8 @@ import pytest
 from tests.project import REPOSITORY
 from vines.cli._check import page, summary
 from vines.errors import DeclarationError
-from vines.stages._check import verdict
-from vines.stages._claims import REASONS, Claim, read_claims
+from vines.stages.bodies._check import verdict
+from vines.stages.bodies._claims import REASONS, Claim, read_claims
 
 CLAIMS = read_claims(REPOSITORY / "pipelines" / "claims.toml")
 

@@ -3,7 +3,7 @@
 import pyarrow as pa
 import pytest
 
-from vines.stages._distinct import all_attractors, one_attractor
+from vines.stages.bodies._distinct import all_attractors, one_attractor
 
 PERIODIC = {"regime": "periodic", "name": "2:1", "n": 2, "m": 1, "p": 1, "kinetic_ratio": 1.0, "max_abs_x1": 0.5}
 CHAOTIC = {

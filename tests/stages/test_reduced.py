@@ -23,10 +23,6 @@ needs = ["map"]
 kind = "reduced"
 params.mu = 0.01
 vary.A = [0.015]
-[stages.wrong]
-kind = "figure"
-plot = "reduced"
-needs = ["line"]
 """
 
 
@@ -63,6 +59,7 @@ def test_rows_hold_both_and_their_errors(small):
 
 
 def test_a_figure_needs_two_axes(small):
-    done = small.vines("run", "small", "wrong", check=False)
+    (small.root / "pipelines" / "small.toml").write_text(SMALL.replace('needs = ["map"]', 'needs = ["line"]'))
+    done = small.vines("run", "small", check=False)
     assert done.returncode != 0
     assert "an error map needs stages of kind 'reduced' that vary two" in " ".join((done.stdout + done.stderr).split())

@@ -6,7 +6,7 @@ from html.parser import HTMLParser
 import pytest
 
 from tests.viewer.chromium import chromium
-from vines.stages._report_page import Figure, Head, Run, Section, StageFacts, page
+from vines.stages.reports._page import Figure, Head, Run, Section, StageFacts, page
 
 SVG = b'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 40 20"><rect width="40" height="20" fill="#c8102e"/></svg>'
 

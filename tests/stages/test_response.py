@@ -34,8 +34,8 @@ def test_a_response_is_accepted():
         ({"where": {"A": 0.2}}, "up has no A = 0.2; the nearest of its 2 values is 0.1"),
         ({"where": {"Omega": 1.1}}, "up has no Omega = 1.1; the nearest of its 1 values is 1"),
         ({"where": {"omega": 1.0}}, "up has no omega"),
-        ({"plot": "sheet"}, "energies are shown by plot = 'response'"),
-        ({"plot": "bifurcation"}, "cells belong to plot = 'sheet' or 'response'"),
+        ({"plot": "sheet"}, "a sheet shows ends, gap, .* or phase$"),
+        ({"plot": "bifurcation"}, "unknown key 'cells'"),
         ({"colours": ["pink"]}, "pink"),
     ],
 )

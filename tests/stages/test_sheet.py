@@ -9,8 +9,8 @@ from vines.figures._style import FAMILIES
 from vines.logs import read
 from vines.pipeline import Input
 from vines.stages import find_logs, load_pipeline, run
-from vines.stages._run_panels import run_curves
-from vines.stages._sheet import sheet
+from vines.stages.plots._runs import run_curves
+from vines.stages.plots.sheet import PLOT
 from vines.store import Store
 
 
@@ -38,7 +38,7 @@ def inputs(root, pipeline, names):
 def drawn(root, pipeline, stage):
     """Return the figure of a sheet from finished stages."""
     declared = load_pipeline(pipeline).stages[stage]
-    return sheet(inputs(root, pipeline, declared.needs), declared.options)
+    return PLOT.draw(inputs(root, pipeline, declared.needs), declared.options)
 
 
 def test_fig2_has_a_row_a_run_and_each_run_opens_as_a_log(root):
@@ -222,8 +222,8 @@ of = ["run"]
         ('show = "ends"', 'show = "w_dot"', "vary one and the same parameter"),
         ('show = "ends"\nof = ["run"]', 'show = "multipliers"\nof = ["branch"]', "name it in families"),
         ('show = "ends"', 'show = "end"', "end"),
-        ('plot = "sheet"', 'plot = "sheet"\ncolumns = 0', "columns >= 1"),
-        ('plot = "sheet"', 'plot = "bifurcation"', "plot = 'sheet'"),
+        ('plot = "sheet"', 'plot = "sheet"\ncolumns = 0', "columns: expected int >= 1"),
+        ('plot = "sheet"', 'plot = "bifurcation"', "unknown key 'cells'"),
     ],
 )
 def test_a_wrong_sheet_is_one_line(root, old, new, said):

@@ -16,12 +16,13 @@ if TYPE_CHECKING:
     from vines.pipeline._ingredients import what_changed
     from vines.pipeline._jobs import Batch, Input, Job, Point, Points, Range, WholeJob
     from vines.pipeline._journal import Journal
-    from vines.pipeline._kinds import Kind, kind, kinds, register
+    from vines.pipeline._kinds import KINDS, Kind, kind, kinds, register
     from vines.pipeline._plan import StagePlan, code_digests, plan, pool_keys
     from vines.pipeline._run import run_pipeline
     from vines.pipeline._shard import Shard
 
 __all__ = [
+    "KINDS",
     "Axis",
     "Batch",
     "Carry",
@@ -77,6 +78,7 @@ _HOME = {
     "Input": "vines.pipeline._jobs",
     "Job": "vines.pipeline._jobs",
     "Journal": "vines.pipeline._journal",
+    "KINDS": "vines.pipeline._kinds",
     "Kind": "vines.pipeline._kinds",
     "Pipeline": "vines.pipeline._declaration",
     "Point": "vines.pipeline._jobs",

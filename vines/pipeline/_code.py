@@ -12,6 +12,7 @@ import os
 import stat
 import sys
 import time
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -49,7 +50,7 @@ class CodeDigests:
     _sources: dict[str, Source | None] = field(default_factory=dict)
     _roots: dict[str, str] = field(default_factory=dict)
     _bodies: dict[str, dict[str, str]] = field(default_factory=dict)
-    _digests: dict[str, str] = field(default_factory=dict)
+    _digests: dict[tuple[str, ...], str] = field(default_factory=dict)
 
     def modules(self, body: str) -> dict[str, str]:
         """Return the digest of each module that a body's results depend on, by name.
@@ -68,7 +69,7 @@ class CodeDigests:
             start = body.partition(":")[0]
             followed = {start.partition(".")[0], "vines"}
             if self._file(start) is None:
-                raise DeclarationError(f"the body {body!r} of a stage kind does not exist; install vines again")
+                raise DeclarationError(f"the body {body!r} of a stage kind does not exist; install its package again")
             found: dict[str, str] = {}
             open_ends = [[start, ""]]
             visited: set[tuple[str, str]] = set()
@@ -81,11 +82,15 @@ class CodeDigests:
             self._bodies[body] = dict(sorted(found.items()))
         return self._bodies[body]
 
-    def digest(self, body: str) -> str:
-        """Return one digest for a body: SHA-256 over its modules."""
-        if body not in self._digests:
-            self._digests[body] = key_of([body, self.modules(body)])
-        return self._digests[body]
+    def modules_of_all(self, bodies: Iterable[str]) -> dict[str, str]:
+        """Return the digests of the modules of several bodies."""
+        return dict(sorted({name: code for body in bodies for name, code in self.modules(body).items()}.items()))
+
+    def digest(self, *bodies: str) -> str:
+        """Return one digest for a body, or for one and what it calls beside its imports: SHA-256 over the modules."""
+        if bodies not in self._digests:
+            self._digests[bodies] = key_of([*bodies, self.modules_of_all(bodies)])
+        return self._digests[bodies]
 
     def save(self) -> None:
         """Write the cache if something new was read. That it cannot be written does no harm."""
@@ -184,7 +189,7 @@ class CodeDigests:
 
 
 def _root_of(top: str) -> str:
-    """Return the folder of a package of the highest level; empty if there is none."""
+    """Return the folder of a package of the highest level, or the file of a module without its suffix; else nothing."""
     if top in sys.modules:
         spec = sys.modules[top].__spec__
     else:
@@ -192,4 +197,6 @@ def _root_of(top: str) -> str:
 
         spec = find_spec(top)
     places = spec.submodule_search_locations if spec is not None else None
-    return str(next(iter(places))) if places else ""
+    if places:
+        return str(next(iter(places)))
+    return spec.origin.removesuffix(".py") if spec is not None and spec.origin is not None else ""

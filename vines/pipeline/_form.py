@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import inspect
+from collections.abc import Iterator
 from typing import Any
 
 import msgspec
@@ -64,11 +65,39 @@ def json_schema() -> dict[str, Any]:
             },
         },
         "not": {"required": ["pipelines", "stages"]},
-        "$defs": {name: _stage(known[name]) for name in sorted(known)} | {"axis": _axis()},
+        "$defs": {key: form for name in sorted(known) for key, form in _kind(known[name])} | {"axis": _axis()},
     }
 
 
-def _stage(spec: Kind) -> dict[str, Any]:
+def _kind(spec: Kind) -> Iterator[tuple[str, Any]]:
+    """Yield the definitions of a kind: of its stages, and where a key names a variant, of the stages of each."""
+    if spec.variants is None:
+        yield spec.name, _stage(spec, spec.options)
+        return
+    variants = spec.variants.all()
+    key, names = spec.variant, sorted(variants)
+    yield (
+        spec.name,
+        {
+            "type": "object",
+            "description": _described(spec.options, spec.summary),
+            "required": ["kind", key],
+            "properties": {"kind": {"const": spec.name, "description": spec.summary}, key: {"enum": names}},
+            "allOf": [
+                {"if": {"properties": {key: {"const": name}}}, "then": {"$ref": f"#/$defs/{spec.name}.{name}"}}
+                for name in names
+            ],
+        },
+    )
+    for name in names:
+        yield f"{spec.name}.{name}", _stage(spec, variants[name].options)
+
+
+def _described(options: type[msgspec.Struct], otherwise: str) -> str:
+    return inspect.cleandoc(vars(options).get("__doc__") or otherwise)
+
+
+def _stage(spec: Kind, options: type[msgspec.Struct]) -> dict[str, Any]:
     properties: dict[str, Any] = {"kind": {"const": spec.name, "description": spec.summary}}
     axes = list(spec.parameters)
     if spec.parameters:
@@ -102,18 +131,18 @@ def _stage(spec: Kind) -> dict[str, Any]:
             "items": {"type": "string", "pattern": f"^{NAME.pattern}$"},
             "uniqueItems": True,
         }
-    properties |= _options(spec)
+    properties |= _options(options)
     return {
         "type": "object",
-        "description": inspect.cleandoc(vars(spec.options).get("__doc__") or spec.summary),
+        "description": _described(options, spec.summary),
         "additionalProperties": False,
         "properties": properties,
     }
 
 
-def _options(spec: Kind) -> dict[str, Any]:
-    """Return the options of a kind; structs inside them stand where they are used."""
-    (reference,), parts = msgspec.json.schema_components([spec.options], ref_template="{name}")
+def _options(options: type[msgspec.Struct]) -> dict[str, Any]:
+    """Return the options of a stage; structs inside them stand where they are used."""
+    (reference,), parts = msgspec.json.schema_components([options], ref_template="{name}")
     return {
         name: _inlined(form, parts) for name, form in parts[reference["$ref"]]["properties"].items() if name != "kind"
     }

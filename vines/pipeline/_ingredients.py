@@ -90,6 +90,7 @@ def gather(stage: Stage, inputs: Mapping[str, str], origin: str, code: CodeDiges
     """
     spec = stage.kind
     files = spec.files(stage.options, root) if spec.files is not None else ()
+    bodies = spec.bodies(stage.options)
     # the stage that the start comes from is known by the identity of its point, whatever the stage is called
     carry = (
         None
@@ -106,7 +107,7 @@ def gather(stage: Stage, inputs: Mapping[str, str], origin: str, code: CodeDiges
         "inputs": [[need, inputs[need]] for need in stage.needs],
         "tables": {name: schema.digest(name) for name in spec.tables},
         "files": {path.name: _digest(path) for path in files},
-        "code": {"digest": code.digest(spec.body), "modules": code.modules(spec.body)},
+        "code": {"digest": code.digest(*bodies), "modules": code.modules_of_all(bodies)},
     }
     if stage.zipped:
         form["zip"] = [list(names) for names in stage.zipped]

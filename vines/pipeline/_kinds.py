@@ -7,12 +7,13 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
-from vines.errors import DeclarationError, nearest
+from vines.doors import Register
+from vines.errors import DeclarationError, VinesError
 
 if TYPE_CHECKING:
     import msgspec
 
-__all__ = ["Kind", "kind", "kinds", "register"]
+__all__ = ["KINDS", "Kind", "kind", "kinds", "register"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,6 +53,17 @@ class Kind:
         cannot be. Called with the corners of the declared box before anything is written.
     files : callable, optional
         ``files(options, root)`` returns the files whose contents belong to the key, such as published claims.
+    fits : callable, optional
+        ``fits(stage, pipeline)``, a `Stage` and the `Pipeline` that it is in, raises
+        :class:`vines.errors.DeclarationError` when the stage cannot be together with those that it needs. Called when
+        everything else of a declaration is right.
+    variants : Register, optional
+        Of a kind whose options depend on what one key names, such as the plot of a figure, the things that it may
+        name, each with `options` that are a subclass of the `options` here. The key is the tag field of both.
+    code : callable, optional
+        ``code(options)`` returns what the body calls beside its imports, as `body`, so that its code counts too.
+    again : {"", "points", "starts"}
+        What of it ``vines verify --recompute`` can compute again in seconds from a row alone: a point, or a start.
     kernels : tuple of str, or callable
         The kinds of tasks whose compiled kernels the body asks for, so that they are compiled before the run, and no
         others; ``kernels(options, carried)`` where it depends on the stage.
@@ -71,36 +83,68 @@ class Kind:
     pictures: bool = False
     check: Callable[[dict[str, float], Any], None] | None = None
     files: Callable[[Any, Path], tuple[Path, ...]] | None = None
+    fits: Callable[[Any, Any], None] | None = None
+    variants: Register[Any] | None = None
+    code: Callable[[Any], tuple[str, ...]] | None = None
+    again: Literal["", "points", "starts"] = ""
     kernels: tuple[str, ...] | Callable[[Any, bool], tuple[str, ...]] = ()
 
+    def __post_init__(self) -> None:
+        if self.shape == "points" and (not self.tables or self.needs or self.pictures or self.vary == "range"):
+            raise DeclarationError(
+                f"kind {self.name!r}: a kind of the points shape has a primary table, no needs and no pictures, "
+                "and varies a grid"
+            )
+        if self.shape == "whole" and (self.carry or self.vary == "grid"):
+            raise DeclarationError(f"kind {self.name!r}: only a kind of the points shape varies a grid or carries")
+        if ":" not in self.body:
+            raise DeclarationError(f"kind {self.name!r}: body is {self.body!r}; write 'package.module:function'")
 
-_REGISTER: dict[str, Kind] = {}
+    @property
+    def variant(self) -> str:
+        """The key that names the variant; empty if the options are always the same."""
+        return (self.options.__struct_config__.tag_field or "") if self.variants is not None else ""
+
+    def options_of(self, table: Mapping[str, Any]) -> type[msgspec.Struct]:
+        """Return the form of the options of a stage that is declared by this table.
+
+        Raises
+        ------
+        DeclarationError
+            If the key that names the variant is missing or names none.
+        """
+        if self.variants is None:
+            return self.options
+        if self.variant not in table:
+            raise DeclarationError(f"{self.variant!r} is missing; allowed: {', '.join(sorted(self.variants.names()))}")
+        try:
+            return self.variants.get(str(table[self.variant])).options
+        except VinesError as error:
+            raise DeclarationError(f"{self.variant}: {error}") from None
+
+    def bodies(self, options: Any) -> tuple[str, ...]:
+        """Return everything whose code counts in the keys of a stage with these options, as `body`."""
+        return (self.body, *(self.code(options) if self.code is not None else ()))
+
+
+KINDS: Register[Kind] = Register("kind", "vines.kinds", Kind, DeclarationError)
+"""The kinds that are known. Another package brings one by an entry point of the group ``vines.kinds``."""
 
 
 def register(new: Kind) -> Kind:
-    """Make a kind known to declarations and return it. The last registration of a name counts.
-
-    Raises
-    ------
-    DeclarationError
-        If the specification contradicts itself.
-    """
-    if new.shape == "points" and (not new.tables or new.needs or new.pictures or new.vary == "range"):
-        raise DeclarationError(
-            f"kind {new.name!r}: a kind of the points shape has a primary table, no needs and no pictures, "
-            "and varies a grid"
-        )
-    if new.shape == "whole" and (new.carry or new.vary == "grid"):
-        raise DeclarationError(f"kind {new.name!r}: only a kind of the points shape varies a grid or carries")
-    if ":" not in new.body:
-        raise DeclarationError(f"kind {new.name!r}: body is {new.body!r}; write 'package.module:function'")
-    _REGISTER[new.name] = new
-    return new
+    """Make a kind known to declarations and return it. The last registration of a name counts."""
+    return KINDS.add(new)
 
 
 def kinds() -> dict[str, Kind]:
-    """Return the registered kinds by name, in the order of registration."""
-    return dict(_REGISTER)
+    """Return all kinds by name: those of vines, those registered, those of installed packages.
+
+    Raises
+    ------
+    PlugInError
+        If what an installed package brings is no kind, or cannot be loaded.
+    """
+    return KINDS.all()
 
 
 def kind(name: str) -> Kind:
@@ -110,8 +154,7 @@ def kind(name: str) -> Kind:
     ------
     DeclarationError
         If there is none; the message names the nearest.
+    PlugInError
+        If an installed package brings it, but not so that it can be used.
     """
-    try:
-        return _REGISTER[name]
-    except KeyError:
-        raise DeclarationError(f"unknown kind {name!r}: {nearest(name, _REGISTER)}") from None
+    return KINDS.get(name)

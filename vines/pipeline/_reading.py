@@ -79,6 +79,8 @@ def read_form(
     assert pipeline.order  # finds circles
     for stage in stages.values():
         _check_box(stage, f"{path}: stages.{stage.name}")
+    for stage in stages.values():
+        _check_fit(stage, pipeline)
     return pipeline
 
 
@@ -111,18 +113,23 @@ def _stage(name: str, table: dict[str, Any], spec: Kind, common: dict[str, Any],
     where = f"{path}: stages.{name}"
     if not NAME.fullmatch(name):
         raise DeclarationError(f"{where}: a stage cannot be called {name!r}; a name is [a-z][a-z0-9_]*")
-    fields = _fields(spec.options)
+    try:
+        form = spec.options_of(table)
+    except DeclarationError as error:
+        raise DeclarationError(f"{where}: {error}") from None
+    fields = _fields(form)
     general = [key for key in GENERAL if _allows(spec, key)]
-    _known(table, [*general, *(field.encode_name for field in fields)], where)
+    own_keys = filter(None, (spec.variant, *(field.encode_name for field in fields)))
+    _known(table, [*general, *own_keys], where)
     zipped = read_zipped(table["zip"], table.get("vary", {}), f"{where}.zip") if "zip" in table else ()
     axes = _axes(table.get("vary", {}), spec, where, {name for names in zipped for name in names})
     _check_zipped(zipped, axes, where)
     params = _params(table.get("params", {}), spec, common, axes, path, where)
     own = {key: value for key, value in table.items() if key not in GENERAL}
-    _known_inside(own, spec.options, where)
+    _known_inside(own, form, where)
     plain = {key: _plain(value, f"{where}.{key}") for key, value in own.items()}
     try:
-        options = msgspec.convert(plain, spec.options)
+        options = msgspec.convert(plain, form)
     except msgspec.ValidationError as error:
         raise DeclarationError(_say(error, where)) from None
     carry = read_carry(table["carry"], axes, f"{where}.carry") if "carry" in table else None
@@ -228,6 +235,15 @@ def _check_box(stage: Stage, where: str) -> None:
             stage.kind.check(params, stage.options)
         except VinesError as error:
             raise type(error)(f"{where}: {error}") from None
+
+
+def _check_fit(stage: Stage, pipeline: Pipeline) -> None:
+    if stage.kind.fits is None:
+        return
+    try:
+        stage.kind.fits(stage, pipeline)
+    except VinesError as error:
+        raise type(error)(f"{pipeline.path}: stages.{stage.name}: {error}") from None
 
 
 def _extremes(axis: Axis) -> tuple[float, ...]:

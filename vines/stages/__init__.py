@@ -7,22 +7,22 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from vines.stages._asking import checks, list_tables, query, rows_of, save_query, table
-    from vines.stages._export import export
-    from vines.stages._finding import all_logs, find_logs, recordings_folder
-    from vines.stages._found import found
-    from vines.stages._keeping import Difference, clean, declaration_schema, diff, graph
-    from vines.stages._kinds import register_kinds
-    from vines.stages._opening import open_store
-    from vines.stages._orbit_log import orbit_log
-    from vines.stages._parts import load_pipeline, members_of
-    from vines.stages._report import report
-    from vines.stages._rig_by_hand import Compared, Derived, compare_run, reconstruct_run
-    from vines.stages._rig_running import ingest_folder
-    from vines.stages._running import list_pipelines, run, status, status_of_each
-    from vines.stages._study import init_study
-    from vines.stages._warm_up import compile_cold, compile_if_cold, warm_up
+    from vines.stages.api._asking import checks, list_tables, query, rows_of, save_query, table
+    from vines.stages.api._export import export
+    from vines.stages.api._finding import all_logs, find_logs, recordings_folder
+    from vines.stages.api._found import found
+    from vines.stages.api._keeping import Difference, clean, declaration_schema, diff, graph
+    from vines.stages.api._opening import open_store
+    from vines.stages.api._orbit_log import orbit_log
+    from vines.stages.api._parts import load_pipeline, members_of
+    from vines.stages.api._running import list_pipelines, run, status, status_of_each
+    from vines.stages.api._study import init_study
+    from vines.stages.api._warm_up import compile_cold, compile_if_cold, warm_up
     from vines.stages.audit import Verification, verify
+    from vines.stages.kinds._register import register_kinds
+    from vines.stages.reports._report import report
+    from vines.stages.rig._by_hand import Compared, Derived, compare_run, reconstruct_run
+    from vines.stages.rig._running import ingest_folder
 
 __all__ = [
     "Compared",
@@ -67,41 +67,41 @@ __all__ = [
 _HOME = {
     "Verification": "audit",
     "verify": "audit",
-    "all_logs": "_finding",
-    "orbit_log": "_orbit_log",
-    "recordings_folder": "_finding",
-    "Compared": "_rig_by_hand",
-    "Derived": "_rig_by_hand",
-    "compare_run": "_rig_by_hand",
-    "Difference": "_keeping",
-    "checks": "_asking",
-    "compile_cold": "_warm_up",
-    "compile_if_cold": "_warm_up",
-    "clean": "_keeping",
-    "declaration_schema": "_keeping",
-    "diff": "_keeping",
-    "export": "_export",
-    "find_logs": "_finding",
-    "found": "_found",
-    "graph": "_keeping",
-    "ingest_folder": "_rig_running",
-    "init_study": "_study",
-    "list_pipelines": "_running",
-    "list_tables": "_asking",
-    "load_pipeline": "_parts",
-    "members_of": "_parts",
-    "open_store": "_opening",
-    "query": "_asking",
-    "reconstruct_run": "_rig_by_hand",
-    "register_kinds": "_kinds",
-    "report": "_report",
-    "rows_of": "_asking",
-    "run": "_running",
-    "save_query": "_asking",
-    "status": "_running",
-    "status_of_each": "_running",
-    "table": "_asking",
-    "warm_up": "_warm_up",
+    "all_logs": "api._finding",
+    "orbit_log": "api._orbit_log",
+    "recordings_folder": "api._finding",
+    "Compared": "rig._by_hand",
+    "Derived": "rig._by_hand",
+    "compare_run": "rig._by_hand",
+    "Difference": "api._keeping",
+    "checks": "api._asking",
+    "compile_cold": "api._warm_up",
+    "compile_if_cold": "api._warm_up",
+    "clean": "api._keeping",
+    "declaration_schema": "api._keeping",
+    "diff": "api._keeping",
+    "export": "api._export",
+    "find_logs": "api._finding",
+    "found": "api._found",
+    "graph": "api._keeping",
+    "ingest_folder": "rig._running",
+    "init_study": "api._study",
+    "list_pipelines": "api._running",
+    "list_tables": "api._asking",
+    "load_pipeline": "api._parts",
+    "members_of": "api._parts",
+    "open_store": "api._opening",
+    "query": "api._asking",
+    "reconstruct_run": "rig._by_hand",
+    "register_kinds": "kinds._register",
+    "report": "reports._report",
+    "rows_of": "api._asking",
+    "run": "api._running",
+    "save_query": "api._asking",
+    "status": "api._running",
+    "status_of_each": "api._running",
+    "table": "api._asking",
+    "warm_up": "api._warm_up",
 }
 
 

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from vines import schema
+from vines.pipeline import kind
 from vines.stages.audit._compare import (
     TOLERANCE,
     Comparison,
@@ -26,8 +27,6 @@ __all__ = ["PointsAgain", "start_again"]
 
 _STATE = ("x1", "v1", "x2", "v2", "phase")
 _REGULAR = ("periodic", "no_impact")
-_KINDS = ("sweep", "trajectory", "reduced")
-"""Kinds whose points are each computed for themselves in at most seconds."""
 _PROMPT = 600
 """Forcing periods within which a start comes to its attractor without a chaotic transient."""
 _SAME = 1e-6
@@ -43,7 +42,7 @@ class PointsAgain:
     @staticmethod
     def can(result: Result) -> bool:
         """Say whether points of this result can be computed again from their rows."""
-        return result.manifest["kind"] in _KINDS
+        return kind(result.manifest["kind"]).again == "points"
 
     def compare(self, result: Result, table: str, place: int) -> Comparison:
         """Compute the point of a row again and compare the rows that it has in the table.
@@ -96,7 +95,7 @@ def _compute(result: Result, row: dict[str, Any]) -> dict[str, list[dict[str, An
     """Call the body of the stage for one point, which starts where its row says."""
     import msgspec
 
-    from vines.pipeline import Job, Points, kind
+    from vines.pipeline import Job, Points
     from vines.pipeline._worker import body_of
     from vines.store import Ids
 

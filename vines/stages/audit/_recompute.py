@@ -11,10 +11,10 @@ import numpy as np
 from vines.errors import VinesError
 from vines.pipeline import kind
 from vines.pipeline._code import CodeDigests
-from vines.stages._kinds import register_kinds
 from vines.stages.audit._again import PointsAgain, start_again
 from vines.stages.audit._located import locate_again
 from vines.stages.audit._resolved import resolve_again
+from vines.stages.kinds._register import register_kinds
 
 if TYPE_CHECKING:
     from vines.stages.audit._compare import Comparison
@@ -109,10 +109,12 @@ def _same_code(result: Result, codes: CodeDigests) -> bool:
 
 def _can(result: Result, table: str) -> bool:
     """Say whether a row of the table has what is needed to compute it again."""
-    of = result.manifest["kind"]
-    if table in ("orbits", "bifurcations") or (table == "attractors" and of == "basins"):
-        return True
-    return of == "basins" if table == "basins" else PointsAgain.can(result)
+    return table in ("orbits", "bifurcations") or _from_starts(result, table) or PointsAgain.can(result)
+
+
+def _from_starts(result: Result, table: str) -> bool:
+    """Say whether a row of the table stands for starts, which are settled again."""
+    return kind(result.manifest["kind"]).again == "starts" and table in ("attractors", "basins")
 
 
 def _again(source: _Source, place: int, points: PointsAgain, rng: np.random.Generator) -> Comparison:
@@ -122,7 +124,7 @@ def _again(source: _Source, place: int, points: PointsAgain, rng: np.random.Gene
             return resolve_again(source.result, place, rng)
         case "bifurcations":
             return locate_again(source.result, place)
-        case "attractors" | "basins" if source.result.manifest["kind"] == "basins":
+        case table if _from_starts(source.result, table):
             return start_again(source.result, source.table, place)
         case _:
             return points.compare(source.result, source.table, place)

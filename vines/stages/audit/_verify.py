@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from vines.errors import StoreError, UnknownNameError
-from vines.stages._opening import open_store
-from vines.stages._stored import stored_pipelines
+from vines.stages.api._opening import open_store
+from vines.stages.api._stored import stored_pipelines
 from vines.stages.audit._files import check_files, check_provenance, check_schema
 from vines.stages.audit._ledger import Ledger, Line
 from vines.stages.audit._links import check_links

@@ -1,0 +1,1 @@
+"""What users call: run, status, tables, queries, logs, what lies in the store."""

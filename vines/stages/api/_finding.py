@@ -1,0 +1,84 @@
+"""From the name of a log to its file, and where recordings of logs are kept."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from vines.errors import FileMissingError, UnknownNameError, nearest
+from vines.places import cache_folder
+from vines.stages.api._opening import open_store
+
+__all__ = ["all_logs", "find_logs", "recordings_folder"]
+
+
+def recordings_folder() -> Path:
+    """Return the folder of recordings (.rrd) that can be made again from their logs."""
+    return cache_folder() / "rrd"
+
+
+def all_logs() -> list[Path]:
+    """Return the MCAP files of all logs of the catalogue.
+
+    Raises
+    ------
+    UnknownNameError
+        If nothing with logs has been run.
+    """
+    found = [path for logs in _pinned().values() for path in logs.values()]
+    if not found:
+        raise UnknownNameError("there are no logs: nothing with logs has been run here; try 'vines run quickstart'")
+    return list(dict.fromkeys(found))
+
+
+def _pinned() -> dict[str, dict[str, Path]]:
+    """Return for each stage that is pinned its logs by their points."""
+    store = open_store()
+    return {
+        f"{pipeline}.{stage}": store.result(pin["result"]).logs
+        for pipeline, stages in store.pinned().items()
+        for stage, pin in stages.items()
+        if store.has(pin["result"]) and store.result(pin["result"]).logs
+    }
+
+
+def find_logs(name: str) -> list[Path]:
+    """Return the MCAP files of a log name.
+
+    Parameters
+    ----------
+    name : str
+        ``<pipeline>.<stage>`` (all its logs), ``<pipeline>.<stage>/<point>`` (all of that point), a log id, or a path.
+
+    Raises
+    ------
+    FileMissingError
+        If it is a path and there is no such file.
+    UnknownNameError
+        If there is no such pipeline, stage or log, or if it has not been run.
+    """
+    if name.endswith(".mcap") or Path(name).is_file():
+        path = Path(name)
+        if not path.is_file():
+            raise FileMissingError(
+                f"{name}: there is no such file; 'vines query \"select * from logs\"' lists the logs"
+            )
+        return [path]
+    logs = _pinned()
+    stage, _, point = name.partition("/")
+    if stage in logs:
+        if not point:
+            return list(logs[stage].values())
+        found = [path for key, path in logs[stage].items() if key.startswith(point)]
+        # A run of a rig has several logs: as measured, and of the model.
+        own = [path for key, path in logs[stage].items() if key.startswith(f"{point}/")]
+        if len(found) == 1 or own:
+            return own or found
+        raise UnknownNameError(
+            f"stage {stage!r} has {len(found)} logs of point {point!r}: {nearest(point, logs[stage])}"
+        )
+    by_id = {key: path for paths in logs.values() for key, path in paths.items()}
+    if name in by_id:
+        return [by_id[name]]
+    if not logs:
+        raise UnknownNameError(f"no log {name!r}: nothing with logs has been run here; try 'vines run quickstart'")
+    raise UnknownNameError(f"no log {name!r}: {nearest(name, logs)}")

@@ -1,0 +1,226 @@
+"""The short screen at the end of a run: what was found, where it lies, and what to type next."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections import Counter
+from collections.abc import Iterable
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from vines.stages.api._opening import open_store
+from vines.stages.api._parts import load_parts
+
+if TYPE_CHECKING:
+    import pyarrow as pa
+
+    from vines.pipeline import Pipeline
+    from vines.stages.api._parts import Part
+    from vines.store import Result, Store
+
+__all__ = ["found"]
+
+
+MOST = 6
+"""Bifurcations of a stage that the screen lists before it only counts them."""
+
+
+def found(name: str) -> list[str]:
+    """Return the lines of the screen.
+
+    What was found is read from the result tables once and kept in the cache, under a name made of the keys of the
+    results, so that a run with nothing to do stays quick.
+    """
+    store = open_store()
+    parts = load_parts(name)
+    if parts[0].collection:
+        return _of_all(store, parts)
+    pipeline = parts[0].pipeline.name
+    results = _results(store, parts[0].pipeline)
+    if not results:
+        return []
+    findings = _cached(store, pipeline, results)
+    lines = ["Found", *(f"  {line}" for line in findings), "", "Files", *_files(store, results), "", "Next"]
+    return lines + [_step(command, what) for command, what in _next(pipeline, results)]
+
+
+def _results(store: Store, declared: Pipeline) -> dict[str, Result]:
+    pins = store.pins(declared.name)
+    return {
+        stage: store.result(pins[stage]["result"])
+        for stage in declared.stages
+        if stage in pins and store.has(pins[stage]["result"])
+    }
+
+
+def _of_all(store: Store, parts: list[Part]) -> list[str]:
+    """Return what a collection has: its pictures, and how many of the published values are reproduced."""
+    results = {part.pipeline.name: _results(store, part.pipeline) for part in parts}
+    pictures = {name: list(_pictures(found)) for name, found in results.items()}
+    lines = [f"  {name}: {_short(picture)} (and .svg)" for name, each in pictures.items() for picture in each]
+    lines = ["Files", *lines, ""] if lines else []
+    together = {f"{name}.{stage}": result for name, found in results.items() for stage, result in found.items()}
+    checked = _verdicts(together)
+    if checked:
+        lines = ["Found", f"  {checked}", "", *lines, "Next"]
+        lines.append(_step(f"vines check {parts[0].collection}", "compare with the published values"))
+    return lines
+
+
+def _step(command: str, what: str) -> str:
+    return f"  {command:68s} {what}"
+
+
+def _cached(store: Store, pipeline: str, results: dict[str, Result]) -> list[str]:
+    source = {"results": {stage: r.key for stage, r in results.items()}, "text": Path(__file__).read_text("utf-8")}
+    identity = hashlib.sha256(json.dumps(source).encode()).hexdigest()[:20]
+    file = store.cache / "found" / f"{pipeline}-{identity}.json"
+    try:
+        return json.loads(file.read_text("utf-8"))
+    except (OSError, ValueError):
+        pass
+    lines = list(_findings(results))
+    file.parent.mkdir(parents=True, exist_ok=True)
+    file.write_text(json.dumps(lines), encoding="utf-8")
+    return lines
+
+
+def _findings(results: dict[str, Result]) -> Iterable[str]:
+    for stage, result in results.items():
+        if "atlas" in result.tables:
+            yield f"{_atlas(result.table('atlas').to_pylist())}  ({stage})"
+        elif "bifurcations" in result.tables:
+            rows = result.table("bifurcations").to_pylist()
+            for row in rows[:MOST]:
+                what = row["type"].replace("_", " ")
+                yield f"{what} at {row['parameter']} = {row['value']:.6g} on the {row['name']} orbit  ({stage})"
+            if len(rows) > MOST:
+                yield f"and {len(rows) - MOST} more bifurcations and events: vines query 'select * from bifurcations'"
+        if "curves" in result.tables:
+            yield from (f"{line}  ({stage})" for line in _curves(result.table("curves").to_pylist()))
+        if "reconstructions" in result.tables:
+            rows = result.table("reconstructions").to_pylist()
+            accepted = sum(bool(row["accepted"]) for row in rows)
+            yield f"{len(rows)} runs of a rig, {accepted} of them pass every gate and check  ({stage})"
+        if "comparisons" in result.tables:
+            yield from (f"{line}  ({stage})" for line in _compared(result.table("comparisons").to_pylist()))
+        if "points" in result.tables:
+            yield f"{_attractors(result.table('points'))}  ({stage})"
+    checked = _verdicts(results)
+    if checked:
+        yield checked
+
+
+def _verdicts(results: dict[str, Result]) -> str:
+    """Return how many published values are reproduced; empty if none were checked."""
+    verdicts = Counter(
+        row["verdict"] for r in results.values() if "checks" in r.tables for row in r.table("checks").to_pylist()
+    )
+    return f"{verdicts['reproduced']} of {sum(verdicts.values())} published values reproduced" if verdicts else ""
+
+
+def _compared(rows: list[dict[str, Any]]) -> Iterable[str]:
+    """Yield the verdicts on the runs of a rig, at measured and at calibrated parameters."""
+    for basis in ("measured", "calibrated"):
+        counts = Counter(row["verdict"] for row in rows if row["basis"] == basis and row["rank"] == 0)
+        if counts:
+            listed = ", ".join(f"{count} {verdict.replace('_', ' ')}" for verdict, count in sorted(counts.items()))
+            yield f"rig beside the model at {basis} parameters: {listed}"
+
+
+def _atlas(rows: list[dict[str, Any]]) -> str:
+    """Return what an atlas found on all its lines."""
+    orbits, stable, branches = (sum(row[name] or 0 for row in rows) for name in ("orbits", "stable", "branches"))
+    failed = sum(row["status"] == "failed" for row in rows)
+    lines = f"{len(rows)} lines" + (f", {failed} of them failed" if failed else "")
+    return f"{orbits} orbits on {branches} branches, {stable} of them stable, on {lines}"
+
+
+def _curves(rows: list[dict[str, Any]]) -> Iterable[str]:
+    """Yield what each curve is and which special points are on it."""
+    for name in dict.fromkeys(row["curve_id"] for row in rows):
+        mine = [row for row in rows if row["curve_id"] == name]
+        first, (one, two) = mine[0], (mine[0]["parameter_1"], mine[0]["parameter_2"])
+        special = [
+            f"{row['special'].replace('_', ' ')} at {one} = {row[one]:.6g}, {two} = {row[two]:.6g}"
+            for row in mine
+            if row["special"]
+        ]
+        side = "symmetric " if first["symmetric"] else ""
+        points = len(mine) - len(special)
+        yield f"{first['type'].replace('_', ' ')} of {side}{first['name']} in ({one}, {two}): {points} points" + (
+            f", {'; '.join(special)}" if special else ""
+        )
+
+
+def _attractors(points: pa.Table) -> str:
+    """Return what the points of a stage settled to, the most frequent first."""
+    import pyarrow.compute as pc
+
+    failed = points.filter(pc.field("status") == "failed")
+    if failed.num_rows:
+        reason = failed["reason"][0].as_py()
+        return f"{failed.num_rows} of {points.num_rows} points failed, the first because: {reason}"
+    if points.num_rows == 1:
+        return _one_attractor(points.to_pylist()[0])
+    # Counted in columns: a sweep may have a million points.
+    counts: Counter[str] = Counter()
+    for group in points.group_by(["settled", "name", "regime", "status"]).aggregate([([], "count_all")]).to_pylist():
+        counts[_kind(group)] += group["count_all"]
+    listed = ", ".join(f"{count} {kind}" for kind, count in counts.most_common(6))
+    return f"{points.num_rows} points: {listed}"
+
+
+def _one_attractor(row: dict[str, Any]) -> str:
+    side = "" if row["symmetric"] is None else ("symmetric " if row["symmetric"] else "asymmetric ")
+    alias = f" (the paper's {row['alias']})" if row["alias"] != row["name"] else ""
+    bought = "" if row["reduction"] is None else f", max|x1| {row['reduction']:.3g} of that with no ball"
+    return f"{side}{_kind(row)}{alias} at {_place(row)}{bought}"
+
+
+def _kind(row: dict[str, Any]) -> str:
+    return row["name"] if row["settled"] and row["name"] else row["regime"] or row["status"]
+
+
+def _place(row: dict[str, Any]) -> str:
+    """Return the parameters that a reader tells runs apart by."""
+    return f"mu = {row['mu']:g}, A = {row['A']:g}, Omega = {row['Omega']:g}"
+
+
+def _files(store: Store, results: dict[str, Result]) -> Iterable[str]:
+    tables = sum(len(result.tables) for result in results.values())
+    logs = [path for result in results.values() for path in result.logs.values()]
+    yield f"  {_short(store.data / 'results')}: {tables} Parquet tables" + (f", {len(logs)} MCAP logs" if logs else "")
+    for picture in _pictures(results):
+        yield f"  {_short(picture)} (and .svg)"
+
+
+def _pictures(results: dict[str, Result]) -> Iterable[Path]:
+    yield from (r.folder / "picture.png" for r in results.values() if (r.folder / "picture.png").is_file())
+
+
+def _next(pipeline: str, results: dict[str, Result]) -> Iterable[tuple[str, str]]:
+    logged = [stage for stage, result in results.items() if result.logs]
+    if logged:
+        several = f" (one of {len(logged)}, also {logged[1]})" if logged[1:] else ""
+        yield f"vines view {pipeline}.{logged[0]}", f"see a run in the Rerun viewer{several}"
+    for stage, result in results.items():
+        beside = [name for name in result.logs if name.endswith("/measured")]
+        if beside:
+            run = beside[0].removesuffix("/measured")
+            yield f"vines view {pipeline}.{stage}/{run} --overlay", "a measured run over the model's"
+    if any("points" in result.tables for result in results.values()):
+        yield 'vines query "select A, name, reduction from points order by A"', "ask the tables in SQL"
+    if any("comparisons" in result.tables for result in results.values()):
+        yield f"vines report {pipeline}", "verdicts, calibration and figures on one page"
+    if any("checks" in result.tables for result in results.values()):
+        yield f"vines check {pipeline}", "compare with the published values"
+
+
+def _short(path: Path) -> str:
+    """Return a path as seen from the current folder where that is shorter."""
+    try:
+        return str(path.relative_to(Path.cwd()))
+    except ValueError:
+        return str(path)

@@ -1,0 +1,201 @@
+"""Running pipelines and saying where they stand."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any, Literal
+
+from vines.errors import EngineError, PackageMissingError, VinesError
+from vines.pipeline import available, code_digests, plan
+from vines.places import find_root
+from vines.stages.api._opening import open_store
+from vines.stages.api._parts import Part, load_parts, members_of
+
+if TYPE_CHECKING:
+    from vines.pipeline import CodeDigests, Declaration, Event, RunSummary, StageOutcome, StagePlan
+    from vines.store import Store
+
+__all__ = ["list_pipelines", "run", "status", "status_of_each"]
+
+
+def run(
+    name: str | Declaration,
+    *,
+    stages: Iterable[str] | None = None,
+    overrides: Mapping[str, Any] | None = None,
+    jobs: int | None = None,
+    engine: Literal["local", "dask"] = "local",
+    scheduler: str | None = None,
+    shard: str | None = None,
+    merge: bool = False,
+    force: bool = False,
+    retry_failed: bool = False,
+    report: Callable[[Event], None] | None = None,
+) -> RunSummary:
+    """Compute what a pipeline still lacks, or all pipelines of a collection, one after the other.
+
+    Parameters
+    ----------
+    name : str or Declaration
+        Name of a pipeline or collection, the path of a declaration, or one made in Python.
+    stages : iterable of str, optional
+        Only these stages and those they need; of a collection only these pipelines, or ``<pipeline>.<stage>``.
+    overrides : mapping, optional
+        Values by dotted key that replace those of the file, such as ``{"stages.up.vary.A.count": 801}``; in a
+        collection the name of the pipeline stands first, ``{"fig3.params.r": 0.6}``.
+    jobs : int, optional
+        Number of processes; all cores if left out, one where the work is too small to pay for more.
+    engine : {"local", "dask"}
+        Processes of this machine, or a dask cluster.
+    scheduler : str, optional
+        Address of a dask scheduler, such as ``tcp://node1:8786``; without one dask gets a cluster of its own here.
+    shard : str, optional
+        ``"i/n"``: compute the i-th of n shares of the points, put no result together. Shards may run at the same time.
+    merge : bool
+        Put results together from what shards computed; compute no point.
+    force : bool
+        Compute everything again.
+    retry_failed : bool
+        Try the points again that failed.
+    report : callable, optional
+        Gets an event for everything that happens.
+
+    Returns
+    -------
+    RunSummary
+        Stage by stage what was there and what was computed; in a collection stages are ``<pipeline>.<stage>``.
+
+    Raises
+    ------
+    DeclarationError, ParameterError, StateError, UnknownNameError
+        Before anything is computed or written.
+    RunFailed
+        After the run, if points or stages failed; the rest is stored.
+    PackageMissingError
+        If dask is asked for and not installed.
+    EngineError
+        If the scheduler of dask does not answer any more; what was computed is stored.
+    """
+    parts = load_parts(name, stages, overrides)
+    from vines.pipeline import RunSummary, Shard
+
+    asked: dict[str, Any] = {
+        "jobs": jobs,
+        "engine": engine,
+        "scheduler": scheduler,
+        "shard": Shard.read(shard) if shard is not None else None,
+        "merge": merge,
+        "force": force,
+        "retry_failed": retry_failed,
+    }
+    outcomes = [outcome for part in parts for outcome in _run_part(part, asked, report)]
+    label = next((part.collection or part.pipeline.name for part in parts), str(name))
+    summary = RunSummary(label, tuple(outcomes))
+    summary.check()
+    return summary
+
+
+def _run_part(part: Part, asked: dict[str, Any], report: Callable[[Event], None] | None) -> Iterable[StageOutcome]:
+    """Run one pipeline. In a collection an error of one, such as a damaged result, is an outcome: the others go on."""
+    from vines.pipeline import Event, Journal, StageOutcome, run_pipeline, silent
+
+    tell = report or silent
+
+    def told(event: Event) -> None:
+        tell(replace(event, stage=part.prefix + event.stage) if event.stage else event)
+
+    store = open_store()
+    name = part.pipeline.name
+    try:
+        with Journal(store.logs, name, {"stages": part.stages, **asked, "set": part.overrides}, told) as journal:
+            summary = run_pipeline(part.pipeline, store, stages=part.stages, **asked, report=journal)
+    except (EngineError, PackageMissingError):
+        raise
+    except VinesError as error:
+        if not part.collection:
+            raise
+        tell(Event("failed", name, text=str(error)))
+        return [StageOutcome(name, "failed", reason=str(error))]
+    return [replace(outcome, name=part.prefix + outcome.name) for outcome in summary.stages]
+
+
+def list_pipelines() -> list[dict[str, Any]]:
+    """Return name, title, source and number of stages of the pipelines of the project and of those that ship.
+
+    A collection has no stages, and its pipelines under ``pipelines``.
+    """
+    from vines.pipeline import with_included
+
+    rows = []
+    for name, path in available(find_root()).items():
+        try:
+            form = with_included(path)
+        except VinesError as error:
+            rows.append({"name": name, "title": f"cannot be read: {error}", "source": "", "stages": 0, "pipelines": []})
+            continue
+        stages = form.get("stages")
+        rows.append(
+            {
+                "name": name,
+                "title": str(form.get("title", "")),
+                "source": str(form.get("source", "")),
+                "stages": len(stages) if isinstance(stages, dict) else 0,
+                "pipelines": list(form.get("pipelines", [])),
+            }
+        )
+    return rows
+
+
+def status(
+    name: str | Declaration, *, stages: Iterable[str] | None = None, overrides: Mapping[str, Any] | None = None
+) -> list[StagePlan]:
+    """Return where each stage of a pipeline stands, with the reason why it is stale.
+
+    In a collection stages are ``<pipeline>.<stage>``; points that two pipelines share are wanted by both.
+    """
+    store = open_store()
+    return _plans(load_parts(name, stages, overrides), store, code_digests(store))
+
+
+def status_of_each(name: str | None = None) -> tuple[dict[str, list[StagePlan]], dict[str, str]]:
+    """Return where the stages of several pipelines stand; the sources of their kinds are looked at once for all.
+
+    Parameters
+    ----------
+    name : str, optional
+        A pipeline, or a collection for those in it; all pipelines there are if left out.
+
+    Returns
+    -------
+    plans : dict of str to list of StagePlan
+        By name of the pipeline.
+    unreadable : dict of str to str
+        Why the others cannot be read.
+
+    Raises
+    ------
+    VinesError
+        If the named pipeline itself cannot be read.
+    """
+    names = [row["name"] for row in list_pipelines() if not row["pipelines"]] if name is None else members_of(name)
+    store = open_store()
+    code = code_digests(store)
+    plans: dict[str, list[StagePlan]] = {}
+    unreadable: dict[str, str] = {}
+    for each in map(str, names):
+        try:
+            plans[each] = _plans(load_parts(each), store, code)
+        except VinesError as error:
+            if each == name:
+                raise
+            unreadable[each] = str(error)
+    return plans, unreadable
+
+
+def _plans(parts: Iterable[Part], store: Store, code: CodeDigests) -> list[StagePlan]:
+    return [
+        replace(each, name=part.prefix + each.name)
+        for part in parts
+        for each in plan(part.pipeline, store, part.stages, code=code)
+    ]

@@ -1,0 +1,127 @@
+"""The attractors that coexist at the points of a sweep: those of their own starts, and those of random starts."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from vines.attractors import Attractor, Classified, classify_many, share_error
+from vines.dynamics import no_ball
+from vines.model import PARAMETER_NAMES, Params, Word
+from vines.stages.bodies._rows import STATE
+
+__all__ = ["attractor_rows", "coexisting", "random_starts"]
+
+SAME = 1e-6
+"""Two periodic attractors of one name are one, or mirror images, if their max|x1| and K2/K1 differ by less."""
+
+
+def coexisting(
+    own: Sequence[Attractor],
+    *,
+    random: int,
+    seed: int,
+    settle: float,
+    record: float,
+    watch: float,
+    impacts: bool = False,
+) -> list[list[tuple[Attractor, int]]]:
+    """Return for each point its attractors, no two alike, and how many of the random starts came to each.
+
+    Parameters
+    ----------
+    own : sequence of Attractor
+        Those of the points' own starts; each comes first in its list.
+    random : int
+        Number of random starts at each point: the oscillator within twice its amplitude without a ball (at most 3), the
+        ball anywhere in the cavity and as fast.
+    seed : int
+        Seed; the starts of a point follow from it and the parameters alone.
+    settle, record, watch : float
+        Forcing periods, as for the points themselves.
+    impacts : bool
+        Whether the attractors of random starts keep their impacts.
+    """
+    found = [[(attractor, 0)] for attractor in own]
+    if not random:
+        return found
+    starts = np.concatenate([random_starts(attractor.params, random, seed) for attractor in own])
+    columns = np.array([[getattr(attractor.params, name) for name in PARAMETER_NAMES] for attractor in own])
+    many = classify_many(
+        dict(zip(PARAMETER_NAMES, np.repeat(columns, random, axis=0).T, strict=True)),
+        dict(zip(STATE, starts.T, strict=False)),
+        settle=settle,
+        record=record,
+        watch=watch,
+        impacts=impacts,
+    )
+    ratio, size = many.measures["kinetic_ratio"].tolist(), many.measures["max_abs_x1"].tolist()
+    regimes, settled = many.regime.tolist(), many.settled.tolist()
+    for point, listed in enumerate(found):
+        for k in range(point * random, (point + 1) * random):
+            word: Word | None = many.words[k]
+            kind = (regimes[k], settled[k], word.p if word else 0, sorted((word.n, word.m)) if word else [])
+            _count(listed, kind, (size[k], ratio[k]), many, k)
+    return found
+
+
+def _count(
+    listed: list[tuple[Attractor, int]], kind: tuple[Any, ...], sizes: tuple[float, float], many: Classified, k: int
+) -> None:
+    """Count run k with the attractor that it came to, or list it as a new one."""
+    for at, (known, count) in enumerate(listed):
+        # n:m and its mirror image m:n are one attractor.
+        sides = sorted((known.n or 0, known.m or 0)) if known.p else []
+        same = kind == (known.regime, known.settled, known.p or 0, sides)
+        if same and known.p:
+            pairs = zip((known.measures.max_abs_x1, known.measures.kinetic_ratio), sizes, strict=True)
+            same = all(abs(x - y) <= SAME * (1.0 + abs(x)) for x, y in pairs)
+        if same:
+            listed[at] = (known, count + 1)
+            return
+    listed.append((many.attractor(k), 1))
+
+
+def random_starts(p: Params, random: int, seed: int) -> np.ndarray:
+    """Return random starts, shape (random, 4): x1, v1, x2, v2."""
+    bits = np.array(list(p.as_dict().values())).view(np.uint32)
+    rng = np.random.default_rng([seed, *bits.tolist()])
+    size = float(np.clip(2.0 * no_ball(p), 0.1, 3.0))
+    starts = np.empty((random, 4))
+    for k in range(random):
+        x1, v1, v2 = rng.uniform(-size, size, 3).tolist()
+        starts[k] = x1, v1, x1 - float(rng.uniform(-1.0, 1.0)), v2
+    return starts
+
+
+def attractor_rows(point_id: str, found: list[tuple[Attractor, int]], random: int) -> list[dict[str, Any]]:
+    """Return rows of the table ``attractors``; shares are null where no start was drawn."""
+    rows = []
+    for k, (attractor, count) in enumerate(found):
+        p, m = attractor.params, attractor.measures
+        share = count / random if random else None
+        yardstick = no_ball(p)
+        rows.append(
+            {
+                "point_id": point_id,
+                **p.as_dict(),
+                "attractor": k,
+                "fraction": share,
+                "fraction_error": share_error(share, random) if share is not None else None,
+                "regime": attractor.regime,
+                "name": attractor.name,
+                "alias": Word(attractor.word).alias if attractor.word else None,
+                "word": attractor.word,
+                "symmetric": attractor.symmetric,
+                "kinetic_ratio": m.kinetic_ratio,
+                "max_abs_x1": m.max_abs_x1,
+                "rms_x1": m.rms_x1,
+                "reduction": m.max_abs_x1 / yardstick if yardstick > 0 else None,
+                "impacts_per_period": m.impacts_per_period,
+                "sticks_per_period": m.sticks_per_period,
+                **{f"end_{name}": attractor.final[name] for name in ("x1", "v1", "x2", "v2", "phase")},
+            }
+        )
+    return rows

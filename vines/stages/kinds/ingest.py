@@ -1,0 +1,56 @@
+"""The kind ``ingest``: what was measured."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import msgspec
+
+from vines.errors import ParameterError
+from vines.pipeline import Kind
+
+__all__ = ["KIND", "IngestOptions"]
+
+
+class IngestOptions(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """Run folders at or below `folder` (from the root of the project), or those that the needed stage made.
+
+    `log_rate` is the number of samples a second of a channel in the logs at most; 0 keeps all.
+    """
+
+    folder: str = ""
+    log_rate: float = 2048.0
+
+
+def _check(params: dict[str, float], options: Any) -> None:
+    del params
+    if options.log_rate < 0:
+        raise ParameterError(f"log_rate is {options.log_rate:g}, allowed is log_rate >= 0")
+
+
+def _run_files(options: Any, root: Path) -> tuple[Path, ...]:
+    """Return every file of the run folders, because the result depends on their contents."""
+    if not options.folder:
+        return ()
+    from vines.rig import find_runs, read_folder
+
+    files: list[Path] = []
+    for path in find_runs(root / options.folder):
+        folder = read_folder(path)
+        files += [path / "run.json", path / "channels.tsv", *folder.raw_files, *folder.sidecars]
+    return tuple(files)
+
+
+KIND = Kind(
+    name="ingest",
+    summary="run folders of a rig in SI units: raw files kept, MCAP logs, and what was measured",
+    shape="whole",
+    options=IngestOptions,
+    body="vines.stages.rig._ingest:compute",
+    tables=("rig_runs", "rig_channels"),
+    needs=True,
+    logs=True,
+    check=_check,
+    files=_run_files,
+)

@@ -1,0 +1,47 @@
+"""The kind ``reconstruct``: what follows from what was measured."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import msgspec
+
+from vines.errors import DeclarationError
+from vines.pipeline import Kind, Pipeline, Stage
+from vines.stages.kinds._seed import check_seed
+
+__all__ = ["KIND", "ReconstructOptions"]
+
+
+class ReconstructOptions(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """Every run with the ball of the needed stages of kind `ingest`; `seed` is that of the draws for uncertainties."""
+
+    seed: int = 0
+
+
+def _check(params: dict[str, float], options: Any) -> None:
+    del params
+    check_seed(options)
+
+
+def _fits(stage: Stage, pipeline: Pipeline) -> None:
+    for need in stage.needs:
+        if pipeline.stages[need].kind.name != "ingest":
+            raise DeclarationError(
+                f"it reconstructs what stages of kind ingest keep; {need} is none, remove it from needs",
+            )
+    if not stage.needs:
+        raise DeclarationError("it reconstructs what was ingested; name a stage of kind ingest in needs")
+
+
+KIND = Kind(
+    name="reconstruct",
+    summary="runs of a rig brought to the quantities of the model, with uncertainties, gates and their impacts",
+    shape="whole",
+    options=ReconstructOptions,
+    body="vines.stages.rig._reconstruct:compute",
+    tables=("reconstructions", "rig_impacts"),
+    needs=True,
+    check=_check,
+    fits=_fits,
+)

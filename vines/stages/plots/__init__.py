@@ -1,0 +1,8 @@
+"""Plots, a file each, and what they share; a file without underscore is the plot of that name.
+
+A plot is one registered thing: its options, what it needs, and how rows become a picture. docs/pipelines.md.
+"""
+
+from vines.stages.plots._plot import PLOTS, Plot, PlotOptions, plot_of, register
+
+__all__ = ["PLOTS", "Plot", "PlotOptions", "plot_of", "register"]

@@ -1,0 +1,15 @@
+"""Body of the kind ``figure``: tables of other stages into a picture."""
+
+from __future__ import annotations
+
+from vines.figures import save
+from vines.pipeline import Batch, WholeJob
+from vines.stages.plots._plot import plot_of
+
+__all__ = ["compute"]
+
+
+def compute(job: WholeJob) -> Batch:
+    """Draw the needed stages."""
+    save(plot_of(job.options).draw(job.inputs, job.options), job.folder)
+    return Batch()

@@ -1,0 +1,80 @@
+"""What a plot is, and which plots there are."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Annotated, Any
+
+import msgspec
+
+from vines.doors import Register
+from vines.errors import DeclarationError
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+    from vines.pipeline import Input, Pipeline, Stage
+
+__all__ = ["PLOTS", "Plot", "PlotOptions", "plot_of", "register"]
+
+
+class PlotOptions(msgspec.Struct, frozen=True, forbid_unknown_fields=True, tag_field="plot"):
+    """A picture of the needed stages; which further options there are depends on the plot."""
+
+    title: Annotated[str, msgspec.Meta(description="Written above; the parameters that all stages share if empty")] = ""
+    width: Annotated[float, msgspec.Meta(gt=0, description="Width of the picture [inch]")] = 7.0
+
+
+@dataclass(frozen=True, slots=True)
+class Plot:
+    """A way to draw stages: everything that is known of it.
+
+    The module of `draw` imports numpy, pyarrow and vines.figures inside functions only: declarations are checked, and
+    lists made, without them.
+
+    Attributes
+    ----------
+    summary : str
+        One line for lists.
+    options : type of PlotOptions
+        The keys that a figure of this plot may have. Its tag is the name of the plot: what a declaration writes after
+        ``plot =``.
+    draw : callable
+        ``draw(inputs, options)`` makes the picture of the needed stages, in the order declared. It is a function of a
+        module; what that imports counts in the key of the figure.
+    check : callable, optional
+        ``check(stage, pipeline)`` raises :class:`vines.errors.DeclarationError` if the needed stages, ``stage.needs``,
+        cannot be drawn so; called when the declaration is read.
+
+    Examples
+    --------
+    >>> PLOTS.get("chart").name
+    'chart'
+    """
+
+    summary: str
+    options: type[PlotOptions]
+    draw: Callable[[Mapping[str, Input], Any], Figure]
+    check: Callable[[Stage, Pipeline], None] | None = None
+
+    @property
+    def name(self) -> str:
+        """What a declaration writes after ``plot =``."""
+        return str(self.options.__struct_config__.tag)
+
+
+PLOTS: Register[Plot] = Register("plot", "vines.plots", Plot, DeclarationError)
+"""The plots that are known. Another package brings one by an entry point of the group ``vines.plots``."""
+
+PLOTS.add_modules("vines.stages.plots", "PLOT")
+
+
+def register(new: Plot) -> Plot:
+    """Make a plot known to declarations and return it. The last registration of a name counts."""
+    return PLOTS.add(new)
+
+
+def plot_of(options: msgspec.Struct) -> Plot:
+    """Return the plot that options belong to."""
+    return PLOTS.get(str(options.__struct_config__.tag))

@@ -1,0 +1,39 @@
+"""The plot ``rig_cycles``: w' over w of runs and of the model."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING
+
+from vines.stages.plots._checks import needs_table
+from vines.stages.plots._plot import Plot, PlotOptions
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+    from vines.pipeline import Input, Pipeline, Stage
+
+__all__ = ["PLOT", "RigCyclesOptions"]
+
+
+class RigCyclesOptions(PlotOptions, frozen=True, tag="rig_cycles"):
+    """Stages of kind `compare`: w' over w of each run and of the nearest branch, a panel a run."""
+
+
+def _check(stage: Stage, pipeline: Pipeline) -> None:
+    needs_table(stage, pipeline, "rig_cycles", "compare")
+
+
+def _draw(inputs: Mapping[str, Input], options: RigCyclesOptions) -> Figure:
+    from vines.figures import rig_cycles_figure
+    from vines.stages.plots._rig import cycles_of
+
+    return rig_cycles_figure(cycles_of(inputs), caption=options.title, width=options.width)
+
+
+PLOT = Plot(
+    summary="w' over w of runs and of the model",
+    options=RigCyclesOptions,
+    draw=_draw,
+    check=_check,
+)

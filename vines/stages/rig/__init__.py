@@ -1,0 +1,1 @@
+"""Stages of a rig, and the same by hand for one run."""

@@ -1,0 +1,179 @@
+"""Reconstructing and comparing a run folder by hand: ring-downs are found beside it, what follows goes to derived/."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from vines import schema
+from vines.errors import RigError, VinesError
+from vines.pipeline import CodeDigests
+from vines.places import cache_folder, data_folder
+from vines.rig import RunInfo, compare, find_runs, load_reconstruction, match_ring_downs, read_folder
+from vines.rig._comparison_rows import comparison_rows
+from vines.rig._reconstruction_rows import impact_columns, reconstruction_row
+from vines.stages.api._asking import query
+from vines.stages.rig._runs import free_decay, make, wanted
+from vines.store import write_parquet, write_text
+
+if TYPE_CHECKING:
+    from vines.rig import Reconstruction
+    from vines.rig._verdict import Comparison
+
+__all__ = ["Compared", "Derived", "compare_run", "reconstruct_run"]
+
+
+@dataclass(frozen=True, slots=True)
+class Derived:
+    """What a run folder was brought to.
+
+    Attributes
+    ----------
+    found : Reconstruction
+    ring_downs : tuple of str
+        The runs that gave omega0 and lam.
+    row : dict
+        As in the table ``reconstructions``.
+    files : tuple of Path
+        What was written to ``derived/``.
+    """
+
+    found: Reconstruction
+    ring_downs: tuple[str, ...]
+    row: dict[str, Any]
+    files: tuple[Path, ...]
+
+
+def reconstruct_run(folder: Path, ring_downs: Sequence[Path] = ()) -> Derived:
+    """Reconstruct one run, and write ``reconstruction.json`` and ``rig_impacts.parquet`` to its ``derived/``.
+
+    Parameters
+    ----------
+    folder : Path
+        A run folder, ball in.
+    ring_downs : sequence of Path
+        Run folders of its ring-downs; if left out, those that its ``run.json`` names, else its neighbours in time,
+        among the run folders beside it.
+
+    Returns
+    -------
+    Derived
+
+    Raises
+    ------
+    FileMissingError
+        If it is no run folder, or a file is missing.
+    RigError
+        If the run is refused, one of its ring-downs is not there, or it shows too few impacts; one line says why.
+    """
+    if not (folder / "run.json").is_file():
+        find_runs(folder)  # says what is missing where there are no runs at all
+        raise RigError(f"{folder} holds run folders; name one of them, or run the stage reconstruct of a pipeline")
+    if folder.resolve().is_relative_to((data_folder() / "results").resolve()):
+        raise RigError(f"{folder} is a stored result, which is never changed; name the run folder that was ingested")
+    info = read_folder(folder).info
+    if info.protocol == "ringdown":
+        raise RigError(f"run {info.run_id!r} is a ring-down: it gives omega0 and lam of the runs that name it")
+    chosen = _given(ring_downs) if ring_downs else _beside(folder, info)
+    code = CodeDigests(cache_folder() / "code.json").digest("vines.stages.rig._reconstruct:compute")
+    work = wanted(folder, [free_decay(path) for path in chosen.values()], 0, code, cache_folder())
+    if refused := make(work):
+        raise RigError(refused)
+    found = load_reconstruction(work.kept)
+    row = reconstruction_row(found, tuple(chosen))
+    derived = folder / "derived"
+    derived.mkdir(exist_ok=True)
+    told, impacts = derived / "reconstruction.json", derived / "rig_impacts.parquet"
+    write_text(told, json.dumps({name: _plain(value) for name, value in row.items()}, indent=1) + "\n")
+    origin = {"stage": "vines rig reconstruct", "code": code, "raw_sha256": found.sha256, "ring_downs": list(chosen)}
+    write_parquet(impacts, "rig_impacts", schema.cast("rig_impacts", impact_columns([found])), provenance=origin)
+    return Derived(found, tuple(chosen), row, (told, impacts))
+
+
+@dataclass(frozen=True, slots=True)
+class Compared:
+    """A run folder beside the model.
+
+    Attributes
+    ----------
+    derived : Derived
+        The run.
+    found : Comparison
+    rows : list of dict
+        As in the table ``comparisons``.
+    file : Path
+        What was written to ``derived/``.
+    """
+
+    derived: Derived
+    found: Comparison
+    rows: list[dict[str, Any]]
+    file: Path
+
+
+def compare_run(folder: Path, ring_downs: Sequence[Path] = ()) -> Compared:
+    """Reconstruct one run, compare it with the branches that coexist, and write ``derived/comparison.json``.
+
+    The orbits that the catalogue holds near the run's parameters say which words are looked for beside the usual ones.
+
+    Parameters
+    ----------
+    folder, ring_downs
+        As for `reconstruct_run`.
+
+    Raises
+    ------
+    FileMissingError, RigError
+        As for `reconstruct_run`.
+    """
+    derived = reconstruct_run(folder, ring_downs)
+    found = compare(derived.found, _near(derived.row))
+    rows = [{name: _plain(value) for name, value in row.items()} for row in comparison_rows(found)]
+    file = folder / "derived" / "comparison.json"
+    write_text(file, json.dumps(rows, indent=1) + "\n")
+    return Compared(derived, found, rows, file)
+
+
+def _near(row: dict[str, Any]) -> list[dict[str, Any]]:
+    """Return of each branch of the catalogue its orbit nearest to a run, if that is within a fifth of its A and mu."""
+    if not all(row[name] for name in ("A", "mu")):
+        return []
+    apart = [f"abs({name} / {row[name]!r} - 1)" for name in ("A", "mu")]
+    return query(
+        f"select word, branch_id, mu, A, Omega, r, lam, t from orbits where greatest({', '.join(apart)}) <= 0.2 "
+        f"qualify row_number() over (partition by pipeline, stage, branch_id order by {' + '.join(apart)}, A, mu) = 1"
+    ).to_pylist()
+
+
+def _plain(value: Any) -> Any:
+    """Return a value as JSON knows it; what is not finite is null."""
+    return None if isinstance(value, float) and not math.isfinite(value) else value
+
+
+def _given(folders: Sequence[Path]) -> dict[str, Path]:
+    found = {}
+    for path in folders:
+        info = read_folder(path).info
+        if info.protocol != "ringdown":
+            raise RigError(f"{path} is a run of protocol {info.protocol}, allowed for --ringdown is ringdown")
+        found[info.run_id] = path
+    return found
+
+
+def _beside(folder: Path, info: RunInfo) -> dict[str, Path]:
+    """Return the ring-downs that belong to a run among the run folders beside it; those that can't be read are not."""
+    known: dict[str, Path] = {}
+    infos = []
+    for path in find_runs(folder.resolve().parent):
+        try:
+            other = read_folder(path).info
+        except VinesError:
+            continue
+        if other.protocol == "ringdown":
+            known[other.run_id] = path
+            infos.append(other)
+    return {name: known[name] for name in match_ring_downs(info, infos)}
