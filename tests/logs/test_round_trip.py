@@ -105,6 +105,12 @@ def test_any_run_round_trips(tmp_path, states, impacts, sticks, provenance, para
     )
 
 
+def test_infinite_velocities_round_trip_without_a_warning(run, tmp_path):
+    impacts = run["impacts"].copy()
+    impacts["v1_after"][0] = impacts["v2_after"][0] = np.inf
+    same(logs.read(logs.write_run(tmp_path / "infinite.mcap", **{**run, "impacts": impacts})).impacts, impacts)
+
+
 def test_bytes_are_the_same_again_and_for_any_order_of_keys(run, log_file, tmp_path):
     turned = {key: dict(reversed(run[key].items())) for key in ("provenance", "parameters")}
     again = logs.write_run(tmp_path / "again.mcap", **{**run, **turned})

@@ -180,7 +180,8 @@ def _curves(states: np.ndarray) -> Rows:
 
 def _words(impacts: np.ndarray, sticks: np.ndarray) -> list[Rows]:
     """Return a line an impact and a line a stick."""
-    after = impacts["v1_after"] - impacts["v2_after"]
+    with np.errstate(invalid="ignore"):  # infinite velocities are kept, and shown as nan here
+        after = impacts["v1_after"] - impacts["v2_after"]
     lines = [
         (float(row["t"]), f"{_end(row)} impact {row['index']}   w' {row['w_dot']:+.4f} -> {left:+.4f}")
         for row, left in zip(impacts, after, strict=True)
