@@ -1,4 +1,4 @@
-"""Speed and error of the simulator, with its peers in the same run: ``python -m benchmarks.dynamics [--pictures]``.
+"""Speed and error of the simulator, with its peers in the same run: ``python -m benchmarks.dynamics``.
 
 Every figure is the median of five. Errors are those of |w'| at the impacts of a stable symmetric 1:1 orbit, whose
 closed form is known; all methods start on it. Times are those of the processor, so that a busy machine disturbs little.
@@ -174,10 +174,6 @@ def main() -> None:
         f"\n{took['runs']:,} trajectories of which measures are kept: peak memory {took['peak'] / 1e6:.0f} MB, "
         f"{took['seconds']:.0f} s, {took['cpu'] / took['impacts'] * 1e9:.0f} ns of processor an impact"
     )
-    if "--pictures" in sys.argv:
-        from benchmarks.pictures import error_against_periods
-
-        error_against_periods()
 
 
 if __name__ == "__main__":

@@ -26,6 +26,8 @@ COMMANDS = {
     "run": ("vines.cli._run", "Compute what a pipeline still lacks."),
     "merge": ("vines.cli._merge", "Put together what shards of a run computed."),
     "graph": ("vines.cli._graph", "Draw a pipeline as a Mermaid flowchart."),
+    "kinds": ("vines.cli._kinds", "List the kinds of stages, or the options of one."),
+    "plots": ("vines.cli._plots", "List the plots of figures, or the options of one."),
     "tables": ("vines.cli._tables", "List the result tables."),
     "schema": ("vines.cli._schema", "Describe the columns of a table, with units."),
     "query": ("vines.cli._query", "Ask the result tables in SQL."),

@@ -13,7 +13,8 @@ if TYPE_CHECKING:
     from vines.figures._basins import BasinMap, basins_figure
     from vines.figures._bifurcation import bifurcation_figure
     from vines.figures._chart import CurveLine, Region, SpecialMark, chart_figure
-    from vines.figures._diagram_panel import BranchLine, DiagramPanel, ImpactDots, Marker
+    from vines.figures._diagram import BranchLine, ImpactDots, Marker
+    from vines.figures._diagram_panel import DiagramPanel
     from vines.figures._energy import FOUND, EnergyCurve, EnergyPanel
     from vines.figures._multipliers import MultiplierLines, MultiplierPanel, multiplier_figure
     from vines.figures._names import ERRORS, MEASURES, NAMES, PANELS, RIG_PANELS, RUN_PANELS, SYMBOLS
@@ -85,10 +86,10 @@ _HOME = {
     "EndsPanel": "_runs",
     "RUN_PANELS": "_names",
     "MultiplierPanel": "_multipliers",
-    "Marker": "_diagram_panel",
-    "ImpactDots": "_diagram_panel",
+    "Marker": "_diagram",
+    "ImpactDots": "_diagram",
     "DiagramPanel": "_diagram_panel",
-    "BranchLine": "_diagram_panel",
+    "BranchLine": "_diagram",
     "COLOURS": "_style",
     "ERRORS": "_names",
     "EnergyCurve": "_energy",

@@ -6,7 +6,8 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from vines.errors import DeclarationError, nearest
-from vines.figures._diagram_panel import BranchLine, DiagramPanel, ImpactDots, Marker
+from vines.figures._diagram import BranchLine, ImpactDots, Marker
+from vines.figures._diagram_panel import DiagramPanel
 from vines.figures._legend import add_legend
 from vines.figures._names import PANELS
 from vines.figures._style import RC, new_figure

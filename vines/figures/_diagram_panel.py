@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-import itertools
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
 
+from vines.figures._diagram import BranchLine, ImpactDots, Marker, runs, within
 from vines.figures._legend import legend_entries
 from vines.figures._marks import DOTTED, mark_style
 from vines.figures._names import MEASURES, NAMES, PANELS, SYMBOLS
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
     from vines.figures._legend import Entry
 
-__all__ = ["BranchLine", "DiagramPanel", "ImpactDots", "Marker", "runs"]
+__all__ = ["DiagramPanel"]
 
 Floats = npt.NDArray[np.float64]
 
@@ -35,71 +35,6 @@ _FEW = 8
 
 _RARE = 0.03
 """Share of the dots, at either end, that may lie beyond an axis."""
-
-
-@dataclass(frozen=True)
-class ImpactDots:
-    """Simulated impacts.
-
-    Attributes
-    ----------
-    x : (n,) array
-        Value of the varied parameter.
-    side : (n,) array
-        +1 on the left end, -1 on the right.
-    values : dict of str to (n,) array
-        What the panels show, by the names of :data:`PANELS`; ``dt`` in forcing periods.
-    label : str
-        For the legend.
-    repeats : (n,) array, optional
-        How often each dot came back while a point was observed; once if not given.
-    """
-
-    x: Floats
-    side: npt.NDArray[np.integer[Any]]
-    values: dict[str, Floats]
-    label: str = "simulation"
-    repeats: Floats | None = None
-
-
-@dataclass(frozen=True)
-class BranchLine:
-    """One impact of the orbits along a branch, as a line.
-
-    Attributes
-    ----------
-    x : (n,) array
-        Value of the varied parameter along the branch.
-    side : int
-        +1 on the left end, -1 on the right, 0 for a quantity of the whole orbit.
-    stable : (n,) array of bool
-        Solid where true, dotted where not.
-    values : dict of str to (n,) array
-        As in :class:`ImpactDots`.
-    label : str
-        For the legend, such as ``"1:1 symmetric"``.
-    family : str
-        One of :data:`FAMILIES`, for the colours.
-    image : bool
-        Whether it is the mirror image of another line, whose flight times it shares.
-    """
-
-    x: Floats
-    side: int
-    stable: npt.NDArray[np.bool_]
-    values: dict[str, Floats]
-    label: str
-    family: str = "symmetric"
-    image: bool = False
-
-
-@dataclass(frozen=True)
-class Marker:
-    """A bifurcation on a branch: its type, its place, and what the panels show there (one value an impact)."""
-
-    type: str
-    x: float
-    values: dict[str, Floats]
 
 
 @dataclass(frozen=True)
@@ -168,7 +103,7 @@ class DiagramPanel:
     def _shown(self) -> tuple[Sequence[ImpactDots], Sequence[BranchLine], Sequence[Marker]]:
         if self.window is None:
             return self.dots, self.lines, self.markers
-        return _within(self.window, self.dots, self.lines, self.markers)
+        return within(self.window, self.dots, self.lines, self.markers)
 
     def _dots(self, ax: Axes, dots: Sequence[ImpactDots]) -> None:
         total = sum(len(group.x) for group in dots)
@@ -231,27 +166,6 @@ class DiagramPanel:
                 ax.annotate(text, place, (-4, 6), textcoords="offset points", fontsize=9, ha="right", zorder=4)
 
 
-def _within(
-    window: tuple[float, float], dots: Sequence[ImpactDots], lines: Sequence[BranchLine], markers: Sequence[Marker]
-) -> tuple[list[ImpactDots], list[BranchLine], list[Marker]]:
-    """Leave out what the window does not show, so that the other axis is scaled to the rest."""
-    low, high = min(window), max(window)
-
-    def cut(group: Any, keep: npt.NDArray[Any], *names: str) -> Any:
-        columns = {name: getattr(group, name)[keep] for name in ("x", *names) if getattr(group, name) is not None}
-        return replace(group, **columns, values={q: v[keep] for q, v in group.values.items()})
-
-    shown = [cut(one, (low <= one.x) & (one.x <= high), "side", "repeats") for one in dots]
-    parts = [
-        # One point more at either end, so that a line reaches the border.
-        cut(line, np.arange(max(start - 1, 0), min(stop + 1, len(line.x))), "stable")
-        for line in lines
-        for start, stop, inside in runs((low <= line.x) & (line.x <= high))
-        if inside
-    ]
-    return shown, parts, [marker for marker in markers if low <= marker.x <= high]
-
-
 def _widen(ax: Axes) -> None:
     """Keep an axis from magnifying rounding noise into structure."""
     ax.ticklabel_format(axis="y", useOffset=False)
@@ -277,18 +191,3 @@ def _spare_outliers(ax: Axes, panel: str, dots: Sequence[ImpactDots], lines: Seq
 def _coincide(one: BranchLine, other: BranchLine, panel: str) -> bool:
     a, b = one.values[panel], other.values[panel]
     return len(a) == len(b) and np.array_equal(one.x, other.x) and np.allclose(a, b, rtol=1e-9, atol=1e-12)
-
-
-def runs(flags: npt.NDArray[np.bool_]) -> list[tuple[int, int, bool]]:
-    """Return the stretches of equal flags as (start, stop, flag).
-
-    Examples
-    --------
-    >>> runs(np.array([True, True, False]))
-    [(0, 2, True), (2, 3, False)]
-    """
-    if not len(flags):
-        return []
-    edges = np.flatnonzero(np.diff(flags.astype(np.int8))) + 1
-    bounds = [0, *edges.tolist(), len(flags)]
-    return [(a, b, bool(flags[a])) for a, b in itertools.pairwise(bounds)]

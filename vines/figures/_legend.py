@@ -11,7 +11,7 @@ from vines.figures._style import COLOURS, FAMILIES
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from vines.figures._diagram_panel import BranchLine, ImpactDots, Marker
+    from vines.figures._diagram import BranchLine, ImpactDots, Marker
 
 __all__ = ["Entry", "add_legend", "legend_entries", "mark_entries"]
 

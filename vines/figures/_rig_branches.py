@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
-from vines.figures._diagram_panel import BranchLine, DiagramPanel, Marker
+from vines.figures._diagram import BranchLine, Marker
+from vines.figures._diagram_panel import DiagramPanel
 from vines.figures._legend import Entry, add_legend
 from vines.figures._names import MEASURES
 from vines.figures._style import COLOURS, RC, new_figure

@@ -112,6 +112,8 @@ class Kind:
         ------
         DeclarationError
             If the key that names the variant is missing or names none.
+        PlugInError
+            If an installed package brings the variant, but not so that it can be used.
         """
         if self.variants is None:
             return self.options
@@ -120,7 +122,7 @@ class Kind:
         try:
             return self.variants.get(str(table[self.variant])).options
         except VinesError as error:
-            raise DeclarationError(f"{self.variant}: {error}") from None
+            raise type(error)(f"{self.variant}: {error}") from None
 
     def bodies(self, options: Any) -> tuple[str, ...]:
         """Return everything whose code counts in the keys of a stage with these options, as `body`."""

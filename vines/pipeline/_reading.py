@@ -115,8 +115,8 @@ def _stage(name: str, table: dict[str, Any], spec: Kind, common: dict[str, Any],
         raise DeclarationError(f"{where}: a stage cannot be called {name!r}; a name is [a-z][a-z0-9_]*")
     try:
         form = spec.options_of(table)
-    except DeclarationError as error:
-        raise DeclarationError(f"{where}: {error}") from None
+    except VinesError as error:
+        raise type(error)(f"{where}: {error}") from None
     fields = _fields(form)
     general = [key for key in GENERAL if _allows(spec, key)]
     own_keys = filter(None, (spec.variant, *(field.encode_name for field in fields)))

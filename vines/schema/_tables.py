@@ -8,9 +8,12 @@ import json
 import tomllib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from importlib.util import find_spec
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from vines.errors import SchemaError, UnknownNameError, nearest
+from vines.doors import brought
+from vines.errors import PlugInError, SchemaError, UnknownNameError, nearest
 from vines.places import shipped
 
 if TYPE_CHECKING:
@@ -18,6 +21,8 @@ if TYPE_CHECKING:
 
 __all__ = ["Column", "Table", "arrow_schema", "cast", "digest", "table", "tables"]
 
+GROUP = "vines.tables"
+"""Entry points of packages that bring tables: the name is that of the table, the value a package with its file."""
 DTYPES = ("bool", "float64", "int8", "int64", "list<float64>", "list<int8>", "string")
 
 
@@ -103,14 +108,14 @@ class Table:
 
 
 def tables() -> dict[str, Table]:
-    """Return all tables by name.
+    """Return all tables by name: those of ``schemas/``, and those that installed packages bring.
 
     Examples
     --------
     >>> [name for name in tables() if name.startswith("bi")]
     ['bifurcations']
     """
-    return {name: _table(name) for name in _names()}
+    return {name: _table(name) for name in dict.fromkeys([*_names(), *brought(GROUP)])}
 
 
 def table(name: str) -> Table:
@@ -126,8 +131,8 @@ def table(name: str) -> Table:
     >>> table("impacts").columns[0].name
     'point_id'
     """
-    if name not in _names():
-        raise UnknownNameError(f"unknown table {name!r}: {nearest(name, _names())}")
+    if name not in _names() and name not in brought(GROUP):
+        raise UnknownNameError(f"unknown table {name!r}: {nearest(name, tables())}")
     return _table(name)
 
 
@@ -254,11 +259,24 @@ def _names() -> tuple[str, ...]:
 @functools.cache
 def _table(name: str) -> Table:
     """Read a table when it is first asked for: what a plan needs is a few of them."""
-    file = shipped("schemas") / f"{name}.toml"
+    file = (shipped("schemas") if name in _names() else _folder(name)) / f"{name}.toml"
     spec = _read(file.name, tomllib.loads(file.read_text("utf-8")))
     if spec.name != name:
         raise SchemaError(f"schemas/{file.name}: declares the table {spec.name!r}; call the file as the table")
     return spec
+
+
+def _folder(name: str) -> Path:
+    """Return the folder of the package that brings a table; the package is not loaded for it."""
+    entry = brought(GROUP)[name]
+    try:
+        found = find_spec(entry.value)
+    except ImportError:
+        found = None
+    for place in (found.submodule_search_locations or ()) if found is not None else ():
+        if (Path(place) / f"{name}.toml").is_file():
+            return Path(place)
+    raise PlugInError(f"table {name!r}: the package {entry.value} that should bring {name}.toml has no such file")
 
 
 def _read(file: str, form: dict[str, Any]) -> Table:

@@ -8,10 +8,17 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from vines.stages.api._asking import checks, list_tables, query, rows_of, save_query, table
+    from vines.stages.api._declarable import (
+        declaration_schema,
+        describe_kind,
+        describe_plot,
+        list_kinds,
+        list_plots,
+    )
     from vines.stages.api._export import export
     from vines.stages.api._finding import all_logs, find_logs, recordings_folder
     from vines.stages.api._found import found
-    from vines.stages.api._keeping import Difference, clean, declaration_schema, diff, graph
+    from vines.stages.api._keeping import Difference, clean, diff, graph
     from vines.stages.api._opening import open_store
     from vines.stages.api._orbit_log import orbit_log
     from vines.stages.api._parts import load_pipeline, members_of
@@ -36,6 +43,8 @@ __all__ = [
     "compile_cold",
     "compile_if_cold",
     "declaration_schema",
+    "describe_kind",
+    "describe_plot",
     "diff",
     "export",
     "find_logs",
@@ -43,7 +52,9 @@ __all__ = [
     "graph",
     "ingest_folder",
     "init_study",
+    "list_kinds",
     "list_pipelines",
+    "list_plots",
     "list_tables",
     "load_pipeline",
     "members_of",
@@ -78,7 +89,11 @@ _HOME = {
     "compile_cold": "api._warm_up",
     "compile_if_cold": "api._warm_up",
     "clean": "api._keeping",
-    "declaration_schema": "api._keeping",
+    "declaration_schema": "api._declarable",
+    "describe_kind": "api._declarable",
+    "describe_plot": "api._declarable",
+    "list_kinds": "api._declarable",
+    "list_plots": "api._declarable",
     "diff": "api._keeping",
     "export": "api._export",
     "find_logs": "api._finding",

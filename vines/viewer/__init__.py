@@ -15,7 +15,8 @@ if TYPE_CHECKING:
     from vines.viewer._browse import browse, catalogue_of
     from vines.viewer._cache import cached_rrd
     from vines.viewer._layout import Shown, blueprint
-    from vines.viewer._show import save_rrd, screenshot, view, web
+    from vines.viewer._save import save_rrd
+    from vines.viewer._show import screenshot, view, web
 
 __all__ = [
     "Shown",
@@ -36,7 +37,7 @@ _HOME = {
     "browse": "_browse",
     "cached_rrd": "_cache",
     "catalogue_of": "_browse",
-    "save_rrd": "_show",
+    "save_rrd": "_save",
     "screenshot": "_show",
     "view": "_show",
     "web": "_show",

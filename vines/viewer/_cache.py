@@ -10,6 +10,7 @@ from pathlib import Path
 
 from vines.errors import FileMissingError
 from vines.logs import read
+from vines.viewer._save import save_rrd
 
 __all__ = ["cached_rrd"]
 
@@ -47,8 +48,6 @@ def cached_rrd(logs: Sequence[str | os.PathLike[str]], folder: Path) -> Path:
     target = folder / f"{place}-{content.hexdigest()[:20]}.rrd"
     if target.is_file():
         return target
-    from vines.viewer._show import save_rrd
-
     folder.mkdir(parents=True, exist_ok=True)
     save_rrd([read(path) for path in paths], target)
     for other in folder.glob(f"{place}-*.rrd"):

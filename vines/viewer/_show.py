@@ -1,9 +1,8 @@
-"""What the room offers: a recording, a picture, a window. Rerun is loaded only when one is asked for."""
+"""Runs shown: a picture, a window, a page. Rerun is loaded only when one is asked for."""
 
 from __future__ import annotations
 
 import os
-import secrets
 import tempfile
 import time
 from collections.abc import Callable, Iterator, Sequence
@@ -11,52 +10,18 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from vines.errors import FileMissingError, ViewerError
-from vines.logs import Log, read
+from vines.errors import ViewerError
+from vines.logs import Log
 from vines.viewer._cache import cached_rrd
+from vines.viewer._save import logs_of, record, replacing
 
 if TYPE_CHECKING:
     from rerun.experimental import ViewerClient
 
-__all__ = ["save_rrd", "screenshot", "view", "web"]
+__all__ = ["screenshot", "view", "web"]
 
 _SETTLE_SECONDS = 30.0
 _PAUSE_SECONDS = 0.4
-
-
-def save_rrd(
-    logs: Sequence[str | os.PathLike[str] | Log], out: str | os.PathLike[str], *, overlay: bool = False
-) -> Path:
-    """Write runs as one Rerun recording with its layout.
-
-    A recording is made for one minor version of Rerun and can be made again: keep the logs.
-
-    Parameters
-    ----------
-    logs : sequence of path-like or Log
-        One run, or several to be shown side by side.
-    out : path-like
-        The .rrd file; an existing one is replaced.
-    overlay : bool
-        Whether the curves of all runs are in the same views.
-
-    Returns
-    -------
-    Path
-        The file.
-
-    Raises
-    ------
-    FileMissingError
-        If a log or the folder of `out` does not exist.
-    LogError
-        If a log is damaged or incomplete.
-    ViewerError
-        If there is nothing to show.
-    """
-    with _replacing(Path(out)) as partial:
-        _record(logs, partial, overlay=overlay)
-    return Path(out)
 
 
 def screenshot(
@@ -99,10 +64,10 @@ def screenshot(
     """
     from vines.viewer._program import headless
 
-    runs = _logs(logs)
-    with _replacing(Path(out)) as partial, tempfile.TemporaryDirectory() as folder:
+    runs = logs_of(logs)
+    with replacing(Path(out)) as partial, tempfile.TemporaryDirectory() as folder:
         recording = Path(folder) / "still.rrd"
-        _record(runs, recording, still=True, overlay=overlay)
+        record(runs, recording, still=True, overlay=overlay)
         with headless(recording, size) as viewer:
             from vines.viewer._clock import SIM_TIME
 
@@ -192,35 +157,8 @@ def _recorded(logs: Sequence[str | os.PathLike[str] | Log], cache: Path | None, 
         return
     with tempfile.TemporaryDirectory() as folder:
         recording = Path(folder) / "vines.rrd"
-        _record(logs, recording, overlay=overlay)
+        record(logs, recording, overlay=overlay)
         yield recording
-
-
-def _logs(logs: Sequence[str | os.PathLike[str] | Log]) -> list[Log]:
-    return [log if isinstance(log, Log) else read(log) for log in logs]
-
-
-def _record(
-    logs: Sequence[str | os.PathLike[str] | Log], out: Path, *, still: bool = False, overlay: bool = False
-) -> None:
-    runs = _logs(logs)
-    os.environ.setdefault("RERUN_ANALYTICS", "0")
-    from vines.viewer._recording import write_recording
-
-    write_recording(runs, out, still=still, overlay=overlay)
-
-
-@contextmanager
-def _replacing(target: Path) -> Iterator[Path]:
-    """Give a file to write beside the target, which takes its place when all went well."""
-    if not target.parent.is_dir():
-        raise FileMissingError(f"the folder {target.parent} of {target.name} does not exist; create it first")
-    partial = target.with_name(f".{target.name}.{os.getpid()}.{secrets.token_hex(4)}.part")
-    try:
-        yield partial
-        partial.replace(target)
-    finally:
-        partial.unlink(missing_ok=True)
 
 
 def _moment(log: Log) -> float:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -18,7 +17,7 @@ if TYPE_CHECKING:
     from vines.pipeline import Declaration
     from vines.store import Garbage, Result, Store
 
-__all__ = ["Difference", "clean", "declaration_schema", "diff", "graph"]
+__all__ = ["Difference", "clean", "diff", "graph"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,15 +52,6 @@ def graph(name: str | Declaration) -> str:
     code = code_digests(store)
     drawn = [(part.pipeline, {each.name: each for each in plan(part.pipeline, store, code=code)}) for part in parts]
     return mermaid_of_all(drawn) if parts[0].collection else mermaid(*drawn[0])
-
-
-def declaration_schema() -> str:
-    """Return the JSON Schema of pipeline files with all kinds of vines, as schemas/pipeline.schema.json has it."""
-    from vines.pipeline import json_schema
-    from vines.stages.kinds._register import register_kinds
-
-    register_kinds()
-    return json.dumps(json_schema(), indent=2, ensure_ascii=False)
 
 
 def clean(*, remove: bool = False) -> list[Garbage]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pyarrow as pa
@@ -16,13 +16,12 @@ from vines.stages.plots._caption import listed
 
 if TYPE_CHECKING:
     from vines.pipeline import Input
-    from vines.stages.plots.response import ResponseCell
 
 __all__ = ["response_panels"]
 
 
 def response_panels(
-    cells: Sequence[ResponseCell], inputs: Mapping[str, Input]
+    cells: Sequence[Any], inputs: Mapping[str, Input]
 ) -> tuple[list[EnergyPanel | VelocityPanel], dict[str, float]]:
     """Return a panel for each cell, and the parameters that all share; others stand where they matter."""
     chosen = [(_stages(cell, inputs), cell) for cell in cells]
@@ -35,19 +34,19 @@ def response_panels(
     return panels, shared
 
 
-def _stages(cell: ResponseCell, inputs: Mapping[str, Input]) -> list[Input]:
+def _stages(cell: Any, inputs: Mapping[str, Input]) -> list[Input]:
     """Return the stages of a cell, those carried upwards first: they tell which attractor is "another" one."""
     return sorted((inputs[name] for name in cell.of), key=lambda stage: stage.direction == "down")
 
 
-def _rows(stage: Input, cell: ResponseCell, table: str) -> pa.Table:
+def _rows(stage: Input, cell: Any, table: str) -> pa.Table:
     rows = stage.table(table)
     for name, value in cell.where.items():
         rows = rows.filter(pc.field(name) == value)
     return rows
 
 
-def _fixed(stages: list[Input], cell: ResponseCell) -> dict[str, float]:
+def _fixed(stages: list[Input], cell: Any) -> dict[str, float]:
     """Return the parameters that have one value in all points of a cell."""
     values = {name: set[float]() for name in PARAMETER_NAMES}
     for stage in stages:
@@ -57,7 +56,7 @@ def _fixed(stages: list[Input], cell: ResponseCell) -> dict[str, float]:
     return {name: found.pop() for name, found in values.items() if len(found) == 1}
 
 
-def _energy(stages: list[Input], cell: ResponseCell, caption: str) -> EnergyPanel:
+def _energy(stages: list[Input], cell: Any, caption: str) -> EnergyPanel:
     axis = stages[0].carried
     points = [_rows(stage, cell, "points") for stage in stages]
     others = [_rows(stage, cell, "attractors") for stage in stages]
@@ -109,7 +108,7 @@ def _curve(axis: str, points: list[pa.Table], others: list[pa.Table], label: str
     )
 
 
-def _velocities(stages: list[Input], cell: ResponseCell, caption: str) -> VelocityPanel:
+def _velocities(stages: list[Input], cell: Any, caption: str) -> VelocityPanel:
     axis = stages[0].carried
     tables = [_rows(stage, cell, "impacts").select([axis, "w_dot", "side", "attractor"]) for stage in stages]
     together = pa.concat_tables(tables)

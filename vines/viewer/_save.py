@@ -1,0 +1,78 @@
+"""Runs as a Rerun recording. Rerun is loaded only when one is written."""
+
+from __future__ import annotations
+
+import os
+import secrets
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+
+from vines.errors import FileMissingError
+from vines.logs import Log, read
+
+__all__ = ["logs_of", "record", "replacing", "save_rrd"]
+
+
+def save_rrd(
+    logs: Sequence[str | os.PathLike[str] | Log], out: str | os.PathLike[str], *, overlay: bool = False
+) -> Path:
+    """Write runs as one Rerun recording with its layout.
+
+    A recording is made for one minor version of Rerun and can be made again: keep the logs.
+
+    Parameters
+    ----------
+    logs : sequence of path-like or Log
+        One run, or several to be shown side by side.
+    out : path-like
+        The .rrd file; an existing one is replaced.
+    overlay : bool
+        Whether the curves of all runs are in the same views.
+
+    Returns
+    -------
+    Path
+        The file.
+
+    Raises
+    ------
+    FileMissingError
+        If a log or the folder of `out` does not exist.
+    LogError
+        If a log is damaged or incomplete.
+    ViewerError
+        If there is nothing to show.
+    """
+    with replacing(Path(out)) as partial:
+        record(logs, partial, overlay=overlay)
+    return Path(out)
+
+
+def logs_of(logs: Sequence[str | os.PathLike[str] | Log]) -> list[Log]:
+    """Return logs, those given by their paths read."""
+    return [log if isinstance(log, Log) else read(log) for log in logs]
+
+
+def record(
+    logs: Sequence[str | os.PathLike[str] | Log], out: Path, *, still: bool = False, overlay: bool = False
+) -> None:
+    """Write a recording of runs; a still one has no time that runs."""
+    runs = logs_of(logs)
+    os.environ.setdefault("RERUN_ANALYTICS", "0")
+    from vines.viewer._recording import write_recording
+
+    write_recording(runs, out, still=still, overlay=overlay)
+
+
+@contextmanager
+def replacing(target: Path) -> Iterator[Path]:
+    """Give a file to write beside the target, which takes its place when all went well."""
+    if not target.parent.is_dir():
+        raise FileMissingError(f"the folder {target.parent} of {target.name} does not exist; create it first")
+    partial = target.with_name(f".{target.name}.{os.getpid()}.{secrets.token_hex(4)}.part")
+    try:
+        yield partial
+        partial.replace(target)
+    finally:
+        partial.unlink(missing_ok=True)
