@@ -16,6 +16,8 @@ pytestmark = pytest.mark.long(18)
 
 READING = {
     "list": (["list"], 0),
+    "kinds": (["kinds"], 0),
+    "plots": (["plots"], 0),
     "status": (["status", "quickstart"], 0),
     "run": (["run", "quickstart"], 0),
     "graph": (["graph", "quickstart"], 0),
