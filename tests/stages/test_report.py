@@ -1,6 +1,5 @@
 """The report: one page that asks nothing of a network, in a real browser."""
 
-import tempfile
 from html.parser import HTMLParser
 
 import pytest
@@ -32,7 +31,7 @@ class Links(HTMLParser):
 
 
 def test_the_page_in_chromium(written, browser_program):
-    with tempfile.TemporaryDirectory() as folder, chromium(browser_program, folder) as browser:
+    with chromium(browser_program) as browser:
         browser.open(written.as_uri())
         browser.wait_for("document.readyState === 'complete'")
         images = "[...document.images].every(image => image.complete && image.naturalWidth > 0 && image.width > 300)"

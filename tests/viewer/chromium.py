@@ -5,7 +5,9 @@ import contextlib
 import json
 import os
 import select
+import signal
 import subprocess
+import tempfile
 import time
 
 FLAGS = (
@@ -111,7 +113,7 @@ class Browser:
 
 
 @contextlib.contextmanager
-def chromium(program, folder):
+def chromium(program):
     """Start Chromium with a profile of its own; it ends with the context."""
     to_read, write = os.pipe()
     read, to_write = os.pipe()
@@ -122,20 +124,25 @@ def chromium(program, folder):
         os.dup2(first, 3)
         os.dup2(second, 4)
 
-    command = [program, *FLAGS, "--remote-debugging-pipe", f"--user-data-dir={folder}", "--window-size=1600,900"]
-    process = subprocess.Popen(
-        command,
-        preexec_fn=pipes,  # noqa: PLW1509 - nothing but four system calls happens between fork and exec
-        close_fds=False,
-        stdout=subprocess.DEVNULL,
-        stderr=subprocess.DEVNULL,
-    )
-    os.close(to_read)
-    os.close(to_write)
-    try:
-        yield Browser(read, write)
-    finally:
-        process.terminate()
-        process.wait(timeout=20)
-        os.close(read)
-        os.close(write)
+    # The processes that it starts may write to its profile a little longer than it lives itself.
+    with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as folder:
+        command = [program, *FLAGS, "--remote-debugging-pipe", f"--user-data-dir={folder}", "--window-size=1600,900"]
+        process = subprocess.Popen(
+            command,
+            preexec_fn=pipes,  # noqa: PLW1509 - nothing but four system calls happens between fork and exec
+            close_fds=False,
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.DEVNULL,
+            start_new_session=True,
+        )
+        os.close(to_read)
+        os.close(to_write)
+        try:
+            yield Browser(read, write)
+        finally:
+            process.terminate()
+            process.wait(timeout=20)
+            with contextlib.suppress(ProcessLookupError):
+                os.killpg(process.pid, signal.SIGKILL)
+            os.close(read)
+            os.close(write)

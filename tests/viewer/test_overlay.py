@@ -3,7 +3,6 @@
 import signal
 import subprocess
 import sys
-import tempfile
 
 import matplotlib.image
 import pytest
@@ -61,7 +60,7 @@ def shown_in_a_browser(program, tmp_path, *arguments):
     with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, cwd=tmp_path) as server:
         try:
             url = server.stdout.readline().split()[1]
-            with tempfile.TemporaryDirectory() as folder, chromium(program, folder) as browser:
+            with chromium(program) as browser:
                 browser.open(url)
                 picture = browser.at_rest()
                 asked = browser.asked()
