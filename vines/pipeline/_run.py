@@ -101,10 +101,13 @@ def run_pipeline(
         run = _Run(planner.afresh(), _crew(engine, scheduler, jobs), retry_failed, merge, report)
         forced = set(order if named is None else named) if force else set()
         left = {each.name for each in plans if each.name in forced or not _settled(each, retry_failed)}
-        heavy = [name for name in left if _is_heavy(pipeline.stages[name].kind)]
+        last = max(
+            (place for place, name in enumerate(order) if name in left and _is_heavy(pipeline.stages[name].kind)),
+            default=-1,
+        )
         with run.engine:
             for place, name in enumerate(order):
-                run.stage(name, force=name in forced, more=not set(heavy).isdisjoint(order[place + 1 :]))
+                run.stage(name, force=name in forced, more=place < last)
             run.finish()
         run.planner.code.save()
         if gone:

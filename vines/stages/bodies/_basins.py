@@ -8,9 +8,9 @@ import numpy as np
 import pyarrow as pa
 
 from vines.attractors import basins
-from vines.dynamics import no_ball
-from vines.model import Params, Word
+from vines.model import Params
 from vines.pipeline import Batch, WholeJob
+from vines.stages.bodies._rows import outline
 
 __all__ = ["compute"]
 
@@ -41,24 +41,10 @@ def compute(job: WholeJob) -> Batch:
         if attractor is None:
             rows.append(row | {"attractor": -1})
             continue
-        m, stay = attractor.measures, found.lifetimes[k]
-        rows.append(
-            row
-            | {
-                "regime": attractor.regime,
-                "lifetime": stay.periods if stay.periods == stay.periods else None,
-                "lifetime_error": stay.error if stay.error == stay.error else None,
-                "name": attractor.name,
-                "alias": Word(attractor.word).alias if attractor.word else None,
-                "word": attractor.word,
-                "symmetric": attractor.symmetric,
-                "kinetic_ratio": m.kinetic_ratio,
-                "max_abs_x1": m.max_abs_x1,
-                "rms_x1": m.rms_x1,
-                "reduction": m.max_abs_x1 / no_ball(p) if no_ball(p) > 0 else None,
-                "impacts_per_period": m.impacts_per_period,
-                "sticks_per_period": m.sticks_per_period,
-                **{f"end_{name}": attractor.final[name] for name in ("x1", "v1", "x2", "v2", "phase")},
-            }
-        )
+        stay = found.lifetimes[k]
+        lifetime = {
+            "lifetime": stay.periods if stay.periods == stay.periods else None,
+            "lifetime_error": stay.error if stay.error == stay.error else None,
+        }
+        rows.append(row | lifetime | outline(attractor))
     return Batch(tables={"attractors": rows, "basins": pa.table(cells)})

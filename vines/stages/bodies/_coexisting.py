@@ -10,7 +10,7 @@ import numpy as np
 from vines.attractors import Attractor, Classified, classify_many, share_error
 from vines.dynamics import no_ball
 from vines.model import PARAMETER_NAMES, Params, Word
-from vines.stages.bodies._rows import STATE
+from vines.stages.bodies._rows import STATE, outline
 
 __all__ = ["attractor_rows", "coexisting", "random_starts"]
 
@@ -100,28 +100,15 @@ def attractor_rows(point_id: str, found: list[tuple[Attractor, int]], random: in
     """Return rows of the table ``attractors``; shares are null where no start was drawn."""
     rows = []
     for k, (attractor, count) in enumerate(found):
-        p, m = attractor.params, attractor.measures
         share = count / random if random else None
-        yardstick = no_ball(p)
         rows.append(
             {
                 "point_id": point_id,
-                **p.as_dict(),
+                **attractor.params.as_dict(),
                 "attractor": k,
                 "fraction": share,
                 "fraction_error": share_error(share, random) if share is not None else None,
-                "regime": attractor.regime,
-                "name": attractor.name,
-                "alias": Word(attractor.word).alias if attractor.word else None,
-                "word": attractor.word,
-                "symmetric": attractor.symmetric,
-                "kinetic_ratio": m.kinetic_ratio,
-                "max_abs_x1": m.max_abs_x1,
-                "rms_x1": m.rms_x1,
-                "reduction": m.max_abs_x1 / yardstick if yardstick > 0 else None,
-                "impacts_per_period": m.impacts_per_period,
-                "sticks_per_period": m.sticks_per_period,
-                **{f"end_{name}": attractor.final[name] for name in ("x1", "v1", "x2", "v2", "phase")},
+                **outline(attractor),
             }
         )
     return rows

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from vines.attractors import Attractor
     from vines.model import Params
 
-__all__ = ["impact_rows", "point_row"]
+__all__ = ["impact_rows", "outline", "point_row"]
 
 STATE = ("x1", "v1", "x2", "v2", "phase")
 
@@ -46,41 +46,29 @@ def point_row(
     """
     p = attractor.params
     m = attractor.measures
-    yardstick = no_ball(p)
     return {
+        **outline(attractor),
         "point_id": point_id,
         **p.as_dict(),
         "carry": carry,
         "seed": seed,
         **{name: start[name] for name in STATE},
-        **{f"end_{name}": attractor.final[name] for name in STATE},
         "settle_periods": before + attractor.transient,
         "record_periods": attractor.recorded,
-        "regime": attractor.regime,
         "settled": attractor.settled,
         "remaining": attractor.remaining,
-        "name": attractor.name,
-        "alias": Word(attractor.word).alias if attractor.word else None,
-        "symmetric": attractor.symmetric,
-        "word": attractor.word,
         "n": attractor.n,
         "m": attractor.m,
         "p": attractor.p,
-        "kinetic_ratio": m.kinetic_ratio,
         "kinetic_ratio_error": attractor.kinetic_ratio_error,
         "kinetic_1": m.kinetic_1,
         "kinetic_2": m.kinetic_2,
-        "max_abs_x1": m.max_abs_x1,
         "max_abs_x1_error": attractor.max_abs_x1_error,
-        "rms_x1": m.rms_x1,
         "rms_x1_error": attractor.rms_x1_error,
-        "x1_no_ball": yardstick,
+        "x1_no_ball": no_ball(p),
         "x1_locked": ball_locked(p),
-        "reduction": m.max_abs_x1 / yardstick if yardstick > 0 else None,
-        "impacts_per_period": m.impacts_per_period,
         "impacts_left": m.impacts_left,
         "impacts_right": m.impacts_right,
-        "sticks_per_period": m.sticks_per_period,
         "sticking_share": attractor.sticking_share,
         "recurrent_sticking": attractor.recurrent_sticking,
         "lyapunov": attractor.lyapunov,
@@ -93,6 +81,26 @@ def point_row(
         "energy_change": m.energy_change,
         "status": "ok" if attractor.status == "complete" else attractor.status,
         "reason": attractor.reason,
+    }
+
+
+def outline(attractor: Attractor) -> dict[str, Any]:
+    """Return what every table of attractors tells of one: name, word, measures, where it ended."""
+    m = attractor.measures
+    yardstick = no_ball(attractor.params)
+    return {
+        "regime": attractor.regime,
+        "name": attractor.name,
+        "alias": Word(attractor.word).alias if attractor.word else None,
+        "word": attractor.word,
+        "symmetric": attractor.symmetric,
+        "kinetic_ratio": m.kinetic_ratio,
+        "max_abs_x1": m.max_abs_x1,
+        "rms_x1": m.rms_x1,
+        "reduction": m.max_abs_x1 / yardstick if yardstick > 0 else None,
+        "impacts_per_period": m.impacts_per_period,
+        "sticks_per_period": m.sticks_per_period,
+        **{f"end_{name}": attractor.final[name] for name in STATE},
     }
 
 

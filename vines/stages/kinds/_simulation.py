@@ -6,8 +6,9 @@ from typing import Any
 
 import msgspec
 
-from vines.errors import ParameterError, StateError
+from vines.errors import StateError
 from vines.model import Params
+from vines.stages.kinds._checks import check_least
 
 __all__ = ["Start", "check_simulation"]
 
@@ -25,10 +26,8 @@ def check_simulation(params: dict[str, float], options: Any) -> None:
     """Refuse parameters that the model cannot have, numbers that are too small, and a start outside the cavity."""
     Params(**params)
     limits = {"settle": 0, "record": 2, "watch": 16, "per_period": 2, "keep": 0, "random": 0, "seed": 0}
-    for name, least in limits.items():
-        value = getattr(options, name, least)
-        if value < least:
-            raise ParameterError(f"{name} is {value}, allowed is {name} >= {least}")
+    values = msgspec.structs.asdict(options)
+    check_least(values, {name: least for name, least in limits.items() if name in values})
     if options.start == "random":
         return
     gap = options.start.x1 - options.start.x2

@@ -9,6 +9,7 @@ import msgspec
 from vines.errors import ParameterError
 from vines.model import Params
 from vines.pipeline import Kind
+from vines.stages.kinds._checks import check_least
 from vines.stages.kinds._parameters import PARAMETERS
 
 __all__ = ["KIND", "BasinsOptions", "Grid"]
@@ -49,15 +50,8 @@ def _check(params: dict[str, float], options: Any) -> None:
     for name in options.start:
         if name not in ("x1", "v1", "x2", "v2", "phase"):
             raise ParameterError(f"unknown coordinate {name!r} in start, allowed: x1, v1, x2, v2, phase")
-    for name, value, least in (
-        ("count", min(options.x.count, options.y.count), 2),
-        ("refine", options.refine, 0),
-        ("settle", options.settle, 1),
-        ("patience", options.patience, 1),
-        ("watch", options.watch, 16),
-    ):
-        if value < least:
-            raise ParameterError(f"{name} is {value}, allowed is {name} >= {least}")
+    values = msgspec.structs.asdict(options) | {"count": min(options.x.count, options.y.count)}
+    check_least(values, {"count": 2, "refine": 0, "settle": 1, "patience": 1, "watch": 16})
 
 
 KIND = Kind(

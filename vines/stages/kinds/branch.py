@@ -6,9 +6,9 @@ from typing import Any, Literal
 
 import msgspec
 
-from vines.errors import DeclarationError, ParameterError
 from vines.model import Params, Word
 from vines.pipeline import Kind, Pipeline, Stage
+from vines.stages.kinds._checks import check_axes, check_least
 from vines.stages.kinds._parameters import PARAMETERS
 
 __all__ = ["KIND", "BranchOptions"]
@@ -33,16 +33,12 @@ class BranchOptions(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 def _check(params: dict[str, float], options: Any) -> None:
     Params(**params)
     Word(options.word)
-    for name, least in (("points", 2), ("seeds", 2), ("switch", 0)):
-        value = getattr(options, name)
-        if value < least:
-            raise ParameterError(f"{name} is {value}, allowed is {name} >= {least}")
+    check_least(msgspec.structs.asdict(options), {"points": 2, "seeds": 2, "switch": 0})
 
 
 def _fits(stage: Stage, pipeline: Pipeline) -> None:
-    if len(stage.axes) != 1:
-        names = ", ".join(axis.name for axis in stage.axes) or "nothing"
-        raise DeclarationError(f"a branch is followed in one parameter, this one varies {names}; give one vary.X")
+    del pipeline
+    check_axes(stage, 1, "a branch is followed in one parameter", "give one vary.X")
 
 
 KIND = Kind(

@@ -6,9 +6,10 @@ from typing import Any, Literal
 
 import msgspec
 
-from vines.errors import DeclarationError, ParameterError
+from vines.errors import ParameterError
 from vines.model import Params, Word
 from vines.pipeline import Kind, Pipeline, Stage
+from vines.stages.kinds._checks import check_axes, check_least
 from vines.stages.kinds._parameters import PARAMETERS
 
 __all__ = ["KIND", "CurveOptions"]
@@ -32,20 +33,14 @@ class CurveOptions(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 def _check(params: dict[str, float], options: Any) -> None:
     Params(**params)
     Word(options.word)
-    for name, least in (("lines", 1), ("seeds", 2)):
-        value = getattr(options, name)
-        if value < least:
-            raise ParameterError(f"{name} is {value}, allowed is {name} >= {least}")
+    check_least(msgspec.structs.asdict(options), {"lines": 1, "seeds": 2})
     if not 0 < options.step <= 1:
         raise ParameterError(f"step is {options.step:g}, allowed is 0 < step <= 1")
 
 
 def _fits(stage: Stage, pipeline: Pipeline) -> None:
-    if len(stage.axes) != 2:
-        names = ", ".join(axis.name for axis in stage.axes) or "nothing"
-        raise DeclarationError(
-            f"a curve is followed in two parameters, this one varies {names}; give vary.X and vary.Y"
-        )
+    del pipeline
+    check_axes(stage, 2, "a curve is followed in two parameters", "give vary.X and vary.Y")
 
 
 KIND = Kind(

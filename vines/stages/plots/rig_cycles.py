@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from functools import partial
 from typing import TYPE_CHECKING
 
 from vines.stages.plots._checks import needs_table
@@ -11,17 +12,13 @@ from vines.stages.plots._plot import Plot, PlotOptions
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from vines.pipeline import Input, Pipeline, Stage
+    from vines.pipeline import Input
 
 __all__ = ["PLOT", "RigCyclesOptions"]
 
 
 class RigCyclesOptions(PlotOptions, frozen=True, tag="rig_cycles"):
     """Stages of kind `compare`: w' over w of each run and of the nearest branch, a panel a run."""
-
-
-def _check(stage: Stage, pipeline: Pipeline) -> None:
-    needs_table(stage, pipeline, "rig_cycles", "compare")
 
 
 def _draw(inputs: Mapping[str, Input], options: RigCyclesOptions) -> Figure:
@@ -35,5 +32,5 @@ PLOT = Plot(
     summary="w' over w of runs and of the model",
     options=RigCyclesOptions,
     draw=_draw,
-    check=_check,
+    check=partial(needs_table, table="rig_cycles", kind="compare"),
 )

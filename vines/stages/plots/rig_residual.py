@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from functools import partial
 from typing import TYPE_CHECKING
 
 from vines.stages.plots._checks import needs_table
@@ -11,17 +12,13 @@ from vines.stages.plots._plot import Plot, PlotOptions
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from vines.pipeline import Input, Pipeline, Stage
+    from vines.pipeline import Input
 
 __all__ = ["PLOT", "RigResidualOptions"]
 
 
 class RigResidualOptions(PlotOptions, frozen=True, tag="rig_residual"):
     """Stages of kind `reconstruct`: the residual of each run and the noise of its channel over its temperature."""
-
-
-def _check(stage: Stage, pipeline: Pipeline) -> None:
-    needs_table(stage, pipeline, "reconstructions", "reconstruct")
 
 
 def _draw(inputs: Mapping[str, Input], options: RigResidualOptions) -> Figure:
@@ -46,5 +43,5 @@ PLOT = Plot(
     summary="what fits of runs leave over the temperature",
     options=RigResidualOptions,
     draw=_draw,
-    check=_check,
+    check=partial(needs_table, table="reconstructions", kind="reconstruct"),
 )
