@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from vines.pipeline import Kind, load, register, run_pipeline
+from vines.pipeline import KINDS, Kind, load, register, run_pipeline
 from vines.store import Store
 
 BODY = '''
@@ -195,6 +195,12 @@ class Lab:
 
     def rows(self, stage: str, table: str | None = None):
         return self.store.result(self.store.pins("toys")[stage]["result"]).table(table).to_pylist()
+
+
+@pytest.fixture(autouse=True)
+def known_kinds(monkeypatch):
+    """Forget afterwards the kinds that a test registers: others list what there is."""
+    monkeypatch.setattr(KINDS, "_things", dict(KINDS._things))
 
 
 @pytest.fixture
