@@ -9,7 +9,7 @@ import signal
 import sys
 import threading
 from collections.abc import Iterator
-from concurrent.futures import Executor
+from concurrent.futures import Executor, Future, ProcessPoolExecutor
 from multiprocessing.context import SpawnContext, SpawnProcess
 from types import ModuleType
 from typing import Any
@@ -59,16 +59,25 @@ def _signals_held() -> Iterator[None]:
             signal.raise_signal(number)
 
 
-class _Undisturbed(SpawnProcess):
-    """A process that Ctrl-C doesn't reach, not even while it starts: its parent decides when it ends."""
+class _OfNobody(SpawnProcess):
+    """A process that does not import the script that runs."""
 
     def start(self) -> None:
-        with _signals_held(), _no_script():
+        with _no_script():
             super().start()
 
 
 class _Context(SpawnContext):
-    Process = _Undisturbed
+    Process = _OfNobody
+
+
+class _Pool(ProcessPoolExecutor):
+    """A pool that Ctrl-C finds whole: with its thread if it has processes, none of which a Ctrl-C reaches."""
+
+    def submit(self, fn: Any, /, *args: Any, **kwargs: Any) -> Future[Any]:
+        """Submit a call; processes that it needs start meanwhile."""
+        with _signals_held():
+            return super().submit(fn, *args, **kwargs)
 
 
 class Processes:
@@ -93,10 +102,8 @@ class Processes:
     def executor(self) -> Executor:
         """Return the pool of processes."""
         if self._executor is None:
-            from concurrent.futures import ProcessPoolExecutor
-
             self._before = set(multiprocessing.active_children())
-            self._executor = ProcessPoolExecutor(
+            self._executor = _Pool(
                 self._jobs,
                 mp_context=_Context(),
                 initializer=prepare_worker,
