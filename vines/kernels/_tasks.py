@@ -20,6 +20,7 @@ from dataclasses import dataclass
 from importlib import import_module
 from multiprocessing.connection import wait
 from pathlib import Path
+from typing import Any
 
 from vines.cores import cores
 from vines.errors import KernelError
@@ -118,16 +119,16 @@ def compile_here(tasks: Sequence[Task], jobs: int) -> None:
     signal.signal(signal.SIGTERM, lambda *_: sys.exit(1))
     numba.njit(_nothing)()
     gc.freeze()
-    context = multiprocessing.get_context("fork" if sys.platform == "linux" else "spawn")
+    context: Any = multiprocessing.get_context("fork" if sys.platform == "linux" else "spawn")
     waiting = list(enumerate(tasks))
-    running: dict[object, tuple[int, multiprocessing.process.BaseProcess, float]] = {}
+    running: dict[Any, tuple[int, Any, float]] = {}
     while waiting or running:
         while waiting and len(running) < jobs:
             k, task = waiting.pop(0)
             process = context.Process(target=_do, args=(task,), daemon=True)
             process.start()
             running[process.sentinel] = (k, process, time.perf_counter())
-        for ended in wait(list(running)):  # pyright: ignore[reportArgumentType]
+        for ended in wait(list(running)):
             k, process, began = running.pop(ended)
             process.join()
             print(json.dumps((k, None if process.exitcode else time.perf_counter() - began)), flush=True)
