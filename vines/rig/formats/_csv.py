@@ -9,8 +9,8 @@ import numpy as np
 
 from vines.errors import RigError
 from vines.packages import need
-from vines.rig._units import si_factor
 from vines.rig.formats._raw import RawChannel, RawFile
+from vines.rig.units import si_factor
 
 __all__ = ["read", "write"]
 

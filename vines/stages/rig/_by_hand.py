@@ -14,15 +14,14 @@ from vines.errors import RigError, VinesError
 from vines.pipeline import CodeDigests
 from vines.places import cache_folder, data_folder
 from vines.rig import RunInfo, compare, find_runs, load_reconstruction, match_ring_downs, read_folder
-from vines.rig._comparison_rows import comparison_rows
-from vines.rig._reconstruction_rows import impact_columns, reconstruction_row
+from vines.rig.records import comparison_rows, impact_columns, reconstruction_row
 from vines.stages.api._asking import query
 from vines.stages.rig._runs import free_decay, make, wanted
 from vines.store import write_parquet, write_text
 
 if TYPE_CHECKING:
     from vines.rig import Reconstruction
-    from vines.rig._verdict import Comparison
+    from vines.rig.verdict import Comparison
 
 __all__ = ["Compared", "Derived", "compare_run", "reconstruct_run"]
 
