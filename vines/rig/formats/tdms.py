@@ -10,9 +10,10 @@ import numpy as np
 
 from vines.errors import RigError
 from vines.packages import need
+from vines.rig.formats._format import Format
 from vines.rig.formats._raw import RawChannel, RawFile
 
-__all__ = ["read", "write"]
+__all__ = ["FORMAT", "read", "write"]
 
 
 def read(path: Path) -> RawFile:
@@ -122,3 +123,19 @@ def write(path: Path, channels: tuple[RawChannel, ...], *, started: str) -> None
         objects.append(nptdms.ChannelObject(group, name, np.asarray(each.values), properties=properties))
     with nptdms.TdmsWriter(path) as file:
         file.write_segment(objects)
+
+
+def _begins(head: bytes, suffix: str) -> bool:
+    del suffix
+    return head.startswith((b"TDSm", b"TDSh"))
+
+
+FORMAT = Format(
+    name="tdms",
+    label="NI TDMS",
+    summary="`group/channel`, scaling, `unit_string`, `wf_increment`, start times",
+    suffixes=(".tdms",),
+    read=read,
+    begins=_begins,
+    write=write,
+)

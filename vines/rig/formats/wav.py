@@ -13,9 +13,10 @@ import numpy as np
 
 from vines.errors import RigError
 from vines.packages import need
+from vines.rig.formats._format import Format
 from vines.rig.formats._raw import RawChannel, RawFile
 
-__all__ = ["read", "sidecar", "write"]
+__all__ = ["FORMAT", "read", "sidecar", "write"]
 
 
 def sidecar(path: Path) -> Path:
@@ -94,3 +95,19 @@ def write(path: Path, channels: tuple[RawChannel, ...], *, started: str) -> None
         for each in channels
     ]
     sidecar(path).write_text(json.dumps({"started": started, "channels": told}, indent=1) + "\n", encoding="utf-8")
+
+
+def _begins(head: bytes, suffix: str) -> bool:
+    del suffix
+    return head.startswith((b"RIFF", b"RIFX", b"RF64"))
+
+
+FORMAT = Format(
+    name="wav",
+    label="WAV",
+    summary="rate; the sidecar `<file>.json` gives name, unit and full scale of each channel",
+    suffixes=(".wav", ".wave"),
+    read=read,
+    begins=_begins,
+    write=write,
+)

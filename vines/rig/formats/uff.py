@@ -9,9 +9,10 @@ from typing import Any
 import numpy as np
 
 from vines.packages import need
+from vines.rig.formats._format import Format
 from vines.rig.formats._raw import RawChannel, RawFile
 
-__all__ = ["read", "write"]
+__all__ = ["FORMAT", "read", "write"]
 
 _TIME_RESPONSE = 1
 _TIME = 17
@@ -112,3 +113,19 @@ def write(path: Path, channels: tuple[RawChannel, ...], *, started: str) -> None
             # pyuff leaves the handle of a binary set to the garbage collector.
             warnings.simplefilter("ignore", ResourceWarning)
             file.write_sets(form, "add")
+
+
+def _begins(head: bytes, suffix: str) -> bool:
+    del suffix
+    return head.lstrip(b" \r\n").startswith(b"-1")
+
+
+FORMAT = Format(
+    name="uff",
+    label="UFF dataset 58",
+    summary="text or binary; first id line as the name, unit of the ordinate, time step",
+    suffixes=(".uff", ".unv", ".uf", ".bunv", ".ufb"),
+    read=read,
+    begins=_begins,
+    write=write,
+)

@@ -9,14 +9,21 @@ from typing import Any
 import numpy as np
 
 from vines.packages import need
+from vines.rig.formats._format import Format
 from vines.rig.formats._raw import RawChannel, RawFile
 
-__all__ = ["first_of", "read", "write"]
+__all__ = ["FORMAT", "first_of", "is_hdf5", "read", "write"]
 
+_SIGNATURE = b"\x89HDF\r\n\x1a\n"
 _UNIT = ("unit", "units", "Unit", "Units", "unit_string")
 _RATE = ("sampling_rate", "rate", "fs", "sample_rate", "sampling_frequency", "SamplingRate")
 _STEP = ("dt", "wf_increment", "increment", "delta_t")
 _START = ("t0", "start", "start_time")
+
+
+def is_hdf5(head: bytes) -> bool:
+    """Say whether a file begins as HDF5 does, behind a block of 512 bytes maybe."""
+    return head.startswith(_SIGNATURE) or head[512:520] == _SIGNATURE
 
 
 def first_of(attributes: Mapping[str, Any], names: tuple[str, ...]) -> Any:
@@ -97,3 +104,18 @@ def write(path: Path, channels: tuple[RawChannel, ...], *, started: str) -> None
             place.attrs["start"] = float(each.start or 0.0)
             if "slope" in each.about:
                 place.attrs["slope"] = float(each.about["slope"])
+
+
+def _begins(head: bytes, suffix: str) -> bool:
+    return is_hdf5(head) and not head.startswith(b"MATLAB") and suffix != ".mat"
+
+
+FORMAT = Format(
+    name="hdf5",
+    label="HDF5",
+    summary="one-dimensional datasets; attributes `unit`, `sampling_rate` or `dt`, `start`",
+    suffixes=(".h5", ".hdf5", ".hdf"),
+    read=read,
+    begins=_begins,
+    write=write,
+)

@@ -9,10 +9,11 @@ import numpy as np
 
 from vines.errors import RigError
 from vines.packages import need
+from vines.rig.formats._format import Format
 from vines.rig.formats._raw import RawChannel, RawFile
 from vines.rig.units import si_factor
 
-__all__ = ["read", "write"]
+__all__ = ["FORMAT", "read", "write"]
 
 _HEAD = re.compile(r"^\s*(?P<name>.*?)\s*(?:\[(?P<square>[^\]]*)\]|\((?P<round>[^)]*(?:\([^)]*\))?[^)]*)\))?\s*$")
 _TIME = ("time", "t", "zeit", "timestamp", "time stamp")
@@ -109,3 +110,13 @@ def write(path: Path, channels: tuple[RawChannel, ...], *, started: str) -> None
         stream.write((",".join(names) + "\n").encode())
         options = pc.WriteOptions(include_header=False)
         pc.write_csv(pa.table(columns, names=names), stream, write_options=options)
+
+
+FORMAT = Format(
+    name="csv",
+    label="CSV",
+    summary="a head `name [unit]` or `name (unit)`; a time column; `# sampling_rate:` above the head",
+    suffixes=(".csv", ".tsv", ".txt"),
+    read=read,
+    write=write,
+)

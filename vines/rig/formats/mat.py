@@ -1,4 +1,4 @@
-"""MATLAB v4 to v7.3: vectors of numbers are channels, also inside structures; v7.3 is HDF5 underneath.
+"""MATLAB v4 to v7: vectors of numbers are channels, also inside structures; read() takes v7.3, too.
 
 MATLAB has no convention for units. A structure with the fields ``data``, ``unit``, ``fs`` (and ``start``) is understood
 as a channel; of plain vectors only the numbers are known, and ``channels.tsv`` must say the rest.
@@ -13,17 +13,17 @@ from typing import Any
 import numpy as np
 
 from vines.packages import need
-from vines.rig.formats._hdf5 import first_of
+from vines.rig.formats._format import Format
 from vines.rig.formats._raw import RawChannel, RawFile
+from vines.rig.formats.hdf5 import first_of
 
-__all__ = ["read", "write", "write_73"]
+__all__ = ["FORMAT", "read", "write"]
 
 _HEADER = b"MATLAB 5.0 MAT-file"
-_USERBLOCK = 512
 
 
 def read(path: Path) -> RawFile:
-    """Read a file of any version; a channel is called by its variable, with dots inside structures."""
+    """Read a file of any version, v7.3 included; a channel is called by its variable, with dots inside structures."""
     need("pymatreader")
     import pymatreader
 
@@ -103,43 +103,17 @@ def write(path: Path, channels: tuple[RawChannel, ...], *, started: str) -> None
         stream.write((_HEADER + b", written by vines").ljust(116))
 
 
-def write_73(path: Path, channels: tuple[RawChannel, ...], *, started: str) -> None:
-    """Write a v7.3 file as MATLAB lays it out: HDF5 behind a block of 512 bytes, arrays transposed, text as UTF-16.
-
-    Parameters
-    ----------
-    path, channels, started
-        As of :func:`write`.
-    """
-    need("h5py")
-    import h5py
-
-    with h5py.File(path, "w", userblock_size=_USERBLOCK, libver="latest") as file:
-        _text(file, "started", started)
-        for each in channels:
-            group = file.create_group(each.name)
-            group.attrs["MATLAB_class"] = np.bytes_("struct")
-            values = np.asarray(each.values)
-            kind = "int32" if values.dtype == np.int32 else "double"
-            _array(group, "data", values.reshape(1, -1), kind)
-            _text(group, "unit", each.unit or "")
-            numbers = {"fs": each.rate or 0.0, "start": each.start or 0.0}
-            if "slope" in each.about:
-                numbers["slope"] = float(each.about["slope"])
-            for name, value in numbers.items():
-                _array(group, name, np.array([[value]]), "double")
-    head = b"MATLAB 7.3 MAT-file, written by vines".ljust(116) + bytes(8) + b"\x00\x02IM"
-    with path.open("r+b") as stream:
-        stream.write(head)
+def _begins(head: bytes, suffix: str) -> bool:
+    del suffix
+    return head.startswith(b"MATLAB") and not head.startswith(b"MATLAB 7.3")
 
 
-def _array(group: Any, name: str, values: np.ndarray, kind: str) -> None:
-    place = group.create_dataset(name, data=values, track_times=False)
-    place.attrs["MATLAB_class"] = np.bytes_(kind)
-
-
-def _text(group: Any, name: str, text: str) -> None:
-    codes = np.frombuffer(text.encode("utf-16-le"), np.uint16).reshape(-1, 1)
-    place = group.create_dataset(name, data=codes, track_times=False)
-    place.attrs["MATLAB_class"] = np.bytes_("char")
-    place.attrs["MATLAB_int_decode"] = np.int32(2)
+FORMAT = Format(
+    name="mat",
+    label="MATLAB",
+    summary="vectors, columns of long matrices; a structure with `data`, `unit`, `fs`, `start` is a channel",
+    suffixes=(".mat",),
+    read=read,
+    begins=_begins,
+    write=write,
+)
