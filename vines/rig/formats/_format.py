@@ -11,7 +11,7 @@ from vines.doors import Register
 from vines.errors import RigError
 from vines.rig.formats._raw import RawFile
 
-__all__ = ["FORMATS", "Format", "list_formats"]
+__all__ = ["FORMATS", "Format", "list_formats", "readers"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,3 +71,8 @@ def list_formats() -> list[dict[str, Any]]:
         }
         for name, each in FORMATS.all().items()
     ]
+
+
+def readers() -> tuple[str, ...]:
+    """Return the readers of all formats, ``package.module:function``: their code counts in what is read from files."""
+    return tuple(dict.fromkeys(f"{each.read.__module__}:{each.read.__qualname__}" for each in FORMATS.all().values()))

@@ -14,6 +14,7 @@ from vines.errors import RigError, VinesError
 from vines.pipeline import CodeDigests
 from vines.places import cache_folder, data_folder
 from vines.rig import RunInfo, compare, find_runs, load_reconstruction, match_ring_downs, read_folder
+from vines.rig.formats import readers
 from vines.rig.records import comparison_rows, impact_columns, reconstruction_row
 from vines.stages.api._asking import query
 from vines.stages.rig._runs import free_decay, make, wanted
@@ -78,7 +79,7 @@ def reconstruct_run(folder: Path, ring_downs: Sequence[Path] = ()) -> Derived:
     if info.protocol == "ringdown":
         raise RigError(f"run {info.run_id!r} is a ring-down: it gives omega0 and lam of the runs that name it")
     chosen = _given(ring_downs) if ring_downs else _beside(folder, info)
-    code = CodeDigests(cache_folder() / "code.json").digest("vines.stages.rig._reconstruct:compute")
+    code = CodeDigests(cache_folder() / "code.json").digest("vines.stages.rig._reconstruct:compute", *readers())
     work = wanted(folder, [free_decay(path) for path in chosen.values()], 0, code, cache_folder())
     if refused := make(work):
         raise RigError(refused)
