@@ -42,6 +42,14 @@ def _run_files(options: Any, root: Path) -> tuple[Path, ...]:
     return tuple(files)
 
 
+def _readers(options: Any) -> tuple[str, ...]:
+    """Name the readers of files, those of installed packages too: which one a file needs is seen when it is read."""
+    del options
+    from vines.rig.formats import readers
+
+    return readers()
+
+
 KIND = Kind(
     name="ingest",
     summary="run folders of a rig in SI units: raw files kept, MCAP logs, and what was measured",
@@ -53,4 +61,5 @@ KIND = Kind(
     logs=True,
     check=_check,
     files=_run_files,
+    code=_readers,
 )

@@ -34,6 +34,14 @@ def _fits(stage: Stage, pipeline: Pipeline) -> None:
         raise DeclarationError("it reconstructs what was ingested; name a stage of kind ingest in needs")
 
 
+def _readers(options: Any) -> tuple[str, ...]:
+    """Name the readers of files, those of installed packages too: which one a file needs is seen when it is read."""
+    del options
+    from vines.rig.formats import readers
+
+    return readers()
+
+
 KIND = Kind(
     name="reconstruct",
     summary="runs of a rig brought to the quantities of the model, with uncertainties, gates and their impacts",
@@ -44,4 +52,5 @@ KIND = Kind(
     needs=True,
     check=_check,
     fits=_fits,
+    code=_readers,
 )

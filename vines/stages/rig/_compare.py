@@ -7,7 +7,7 @@ from typing import Any
 from vines.errors import RigError
 from vines.pipeline import Batch, Input, WholeJob
 from vines.rig import Reconstruction, compare_all, load_reconstruction
-from vines.rig._comparison_rows import comparison_rows, cycle_rows, row_id
+from vines.rig.records import comparison_rows, cycle_rows, row_id
 from vines.stages.rig._overlay import overlay_logs
 
 __all__ = ["compute"]

@@ -9,9 +9,8 @@ from typing import Any
 from vines.errors import RigError
 from vines.pipeline import Batch, WholeJob
 from vines.rig import find_runs, read_run
-from vines.rig._log import write_log
-from vines.rig._run_folder import SUMS
-from vines.rig._tables import channel_rows, run_row
+from vines.rig.ingest import SUMS
+from vines.rig.records import channel_rows, run_row, write_log
 
 __all__ = ["compute"]
 

@@ -9,7 +9,7 @@ from vines import schema
 from vines.errors import RigError
 from vines.pipeline import Batch, WholeJob
 from vines.rig import load_reconstruction
-from vines.rig._reconstruction_rows import failed_row, impact_columns, reconstruction_row
+from vines.rig.records import failed_row, impact_columns, reconstruction_row
 from vines.stages.rig._runs import free_decay, kept_runs, make, ring_downs_of, wanted
 
 __all__ = ["compute"]
