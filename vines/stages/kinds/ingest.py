@@ -35,7 +35,7 @@ def _run_files(options: IngestOptions, root: Path) -> tuple[Path, ...]:
     return tuple(files)
 
 
-def _readers(options: Any) -> tuple[str, ...]:
+def _readers(options: object) -> tuple[str, ...]:
     """Name the readers of files, those of installed packages too: which one a file needs is seen when it is read."""
     del options
     from vines.rig.formats import readers

@@ -29,7 +29,7 @@ def _fits(stage: Stage, pipeline: Pipeline) -> None:
         raise DeclarationError("it reconstructs what was ingested; name a stage of kind ingest in needs")
 
 
-def _readers(options: Any) -> tuple[str, ...]:
+def _readers(options: object) -> tuple[str, ...]:
     """Name the readers of files, those of installed packages too: which one a file needs is seen when it is read."""
     del options
     from vines.rig.formats import readers
