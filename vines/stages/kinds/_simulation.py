@@ -7,19 +7,17 @@ from typing import Any
 import msgspec
 
 from vines.errors import StateError
-from vines.model import Params
+from vines.model import VI_NES, Params
 from vines.stages.kinds._checks import check_least
 
 __all__ = ["Start", "check_simulation"]
 
 
-class Start(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """Start state (dimensionless): the oscillator at rest and the ball moving, if nothing is said."""
+_State = msgspec.defstruct("_State", [(each.name, float, each.start) for each in VI_NES.state])
 
-    x1: float = 0.0
-    v1: float = 0.0
-    x2: float = 0.0
-    v2: float = 0.1
+
+class Start(_State, frozen=True, forbid_unknown_fields=True):
+    """Start state (dimensionless): the oscillator at rest and the ball moving, if nothing is said."""
 
 
 def check_simulation(params: dict[str, float], options: Any) -> None:

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Any, Literal
+from typing import Annotated, Any
 
 import msgspec
 
-from vines.errors import ParameterError
-from vines.model import Params
+from vines.errors import ParameterError, nearest
+from vines.model import START_NAMES, Params
 from vines.pipeline import Kind
 from vines.stages.kinds._checks import check_least
 from vines.stages.kinds._parameters import PARAMETERS
@@ -18,7 +18,7 @@ __all__ = ["KIND", "BasinsOptions", "Grid"]
 class Grid(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """A coordinate of the start with evenly spaced values, `from` and `to` included."""
 
-    name: Literal["x1", "v1", "x2", "v2", "phase"]
+    name: Annotated[str, msgspec.Meta(extra_json_schema={"enum": list(START_NAMES)})]
     start: float = msgspec.field(name="from")
     stop: float = msgspec.field(name="to")
     count: int = 100
@@ -47,9 +47,9 @@ def _check(params: dict[str, float], options: Any) -> None:
     names = {options.x.name, options.y.name}
     if len(names) < 2 or names & set(options.start):
         raise ParameterError(f"x is {options.x.name}, y is {options.y.name}: give two coordinates, not again in start")
-    for name in options.start:
-        if name not in ("x1", "v1", "x2", "v2", "phase"):
-            raise ParameterError(f"unknown coordinate {name!r} in start, allowed: x1, v1, x2, v2, phase")
+    for name in (options.x.name, options.y.name, *options.start):
+        if name not in START_NAMES:
+            raise ParameterError(f"unknown coordinate {name!r} of the start: {nearest(name, START_NAMES)}")
     values = msgspec.structs.asdict(options) | {"count": min(options.x.count, options.y.count)}
     check_least(values, {"count": 2, "refine": 0, "settle": 1, "patience": 1, "watch": 16})
 
