@@ -8,6 +8,7 @@ from typing import Any
 import click
 
 from vines.cli._study import the_study
+from vines.model import PARAMETER_NAMES
 
 _FOLDER = click.Path(path_type=Path)
 _COLOURS = {"agree": "green", "pattern_only": "yellow", "disagree": "red", "undecidable": "yellow"}
@@ -46,7 +47,7 @@ def _show(rows: list[dict[str, Any]]) -> None:
     first = rows[0]
     click.secho(f"{first['run_id']}: {first['verdict']}", fg=_COLOURS[first["verdict"]], bold=True)
     click.echo(first["reason"])
-    click.echo("at " + ", ".join(f"{name} = {first[name]:.6g}" for name in ("mu", "A", "Omega", "r", "lam")) + "\n")
+    click.echo("at " + ", ".join(f"{name} = {first[name]:.6g}" for name in PARAMETER_NAMES) + "\n")
     shown: list[list[object]] = []
     for row in rows:
         if row.get("branch") is None:

@@ -13,6 +13,7 @@ from vines.dynamics._flight import derivatives, phasors, turn
 from vines.dynamics._impact_law import after_impact_kernel, impact_law_kernel
 from vines.dynamics._saltation import jacobian_kernel
 from vines.kernels import identity, linked_njit, new_matrix, zero_matrix
+from vines.model import AMPLITUDE, DAMPING, FREQUENCY, MASS, RESTITUTION, V1, V2, X1, X2
 from vines.orbits._elimination import eliminate
 from vines.orbits._turning import turning_points_kernel
 
@@ -36,11 +37,12 @@ def _product(left, right):
 @linked_njit
 def _period_map(values, duration, side, t, states, half):
     """Return M, or H where `half`, of an orbit with these impacts."""
-    mu, A, Omega, r, lam = values[0], values[1], values[2], values[3], values[4]
+    mu, A, Omega = values[MASS], values[AMPLITUDE], values[FREQUENCY]
+    r, lam = values[RESTITUTION], values[DAMPING]
     product = identity(4)
     for j in range(t.size // 2 if half else t.size):
         tau = t[j + 1] - t[j] if j + 1 < t.size else t[0] + duration - t[j]
-        x1, v1, v2 = states[j, 0], states[j, 1], states[j, 3]
+        x1, v1, v2 = states[j, X1], states[j, V1], states[j, V2]
         J = jacobian_kernel(mu, A, Omega, r, lam, x1, v1, v2, Omega * t[j], tau)[0]
         product = _product(J, product)
     if half:
@@ -77,9 +79,10 @@ def _without_pair(M):
 @linked_njit
 def gap_kernel(values, t, states, flight, tau):
     """Return w, w' and w'' at time tau of a flight."""
-    free, Omega = oscillator(1.0, values[1], values[2], values[4]), values[2]
-    x1, v1, x2, v2 = states[flight, 0], states[flight, 1], states[flight, 2], states[flight, 3]
-    after, ball = after_impact_kernel(impact_law_kernel(values[0], values[3]), v1, v2)
+    Omega = values[FREQUENCY]
+    free = oscillator(1.0, values[AMPLITUDE], Omega, values[DAMPING])
+    x1, v1, x2, v2 = states[flight, X1], states[flight, V1], states[flight, X2], states[flight, V2]
+    after, ball = after_impact_kernel(impact_law_kernel(values[MASS], values[RESTITUTION]), v1, v2)
     zr, zi, qr, qi = phasors(free, Omega, x1, after, (Omega * t[flight]) % (2.0 * math.pi))
     zr, zi, qr, qi = turn(free, Omega, zr, zi, qr, qi, tau)
     x, v, a, _, _ = derivatives(free, Omega, zr, zi, qr, qi)
@@ -111,8 +114,8 @@ def condition_kernel(kind, values, p, side, t, states, half, place, wall, tau):
         w, speed, _ = gap_kernel(values, t, states, place, tau)
         return w - wall, speed
     if kind == STOP:
-        return states[place, 1] - states[place, 3], 0.0
-    M = _period_map(values, 2.0 * math.pi * p / values[2], side, t, states, half)
+        return states[place, V1] - states[place, V2], 0.0
+    M = _period_map(values, 2.0 * math.pi * p / values[FREQUENCY], side, t, states, half)
     squares = 0.0
     for i in range(4):
         for k in range(4):
@@ -137,7 +140,7 @@ def turnings_kernel(c, duration, t, states):
     rows = []
     for j in range(t.size):
         tau = t[j + 1] - t[j] if j + 1 < t.size else t[0] + duration - t[j]
-        x1, v1, x2, v2 = states[j, 0], states[j, 1], states[j, 2], states[j, 3]
+        x1, v1, x2, v2 = states[j, X1], states[j, V1], states[j, X2], states[j, V2]
         after, ball = after_impact_kernel(c.law, v1, v2)
         phase = (c.Omega * t[j]) % (2.0 * math.pi)
         zr, zi, qr, qi = phasors(c.free, c.Omega, x1, after, phase)

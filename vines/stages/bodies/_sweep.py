@@ -8,10 +8,10 @@ import numpy as np
 import pyarrow as pa
 
 from vines.attractors import Attractor, classify_many, settle
-from vines.model import PARAMETER_NAMES, Params
+from vines.model import PARAMETER_NAMES, START_NAMES, STATE_NAMES, Params
 from vines.pipeline import Batch, Job
 from vines.stages.bodies._coexisting import attractor_rows, coexisting, random_starts
-from vines.stages.bodies._rows import STATE, impact_rows, point_row
+from vines.stages.bodies._rows import impact_rows, point_row
 
 if TYPE_CHECKING:
     from vines.stages.kinds.sweep import SweepOptions
@@ -53,7 +53,7 @@ def _along_the_chain(job: Job[SweepOptions]) -> tuple[list[dict[str, float]], li
     """Return starts and attractors where each point starts from the end of the one before."""
     options = job.options
     if job.start is not None:
-        start = {name: float(job.start[f"end_{name}"]) for name in STATE}
+        start = {name: float(job.start[f"end_{name}"]) for name in START_NAMES}
     else:
         (start,) = _starts(job, 1)
     starts, own = [], []
@@ -71,7 +71,7 @@ def _along_the_chain(job: Job[SweepOptions]) -> tuple[list[dict[str, float]], li
         )
         starts.append(start)
         own.append(attractor)
-        start = {name: attractor.final[name] for name in STATE}
+        start = {name: attractor.final[name] for name in START_NAMES}
     return starts, own
 
 
@@ -81,7 +81,7 @@ def _each_for_itself(job: Job[SweepOptions]) -> tuple[list[dict[str, float]], li
     starts = _starts(job, len(job.points))
     many = classify_many(
         {name: job.points.column(name) for name in PARAMETER_NAMES},
-        {name: np.array([start[name] for start in starts]) for name in STATE},
+        {name: np.array([start[name] for start in starts]) for name in START_NAMES},
         settle=options.settle,
         record=options.record,
         watch=options.watch,
@@ -96,8 +96,8 @@ def _starts(job: Job[SweepOptions], count: int) -> list[dict[str, float]]:
     if options.start == "random":
         drawn = [random_starts(Params(**point.params), 1, options.seed)[0] for point in job.points[:count]]
     else:
-        drawn = [[getattr(options.start, name) for name in STATE[:4]]] * count
-    return [dict(zip(STATE, [*map(float, start), 0.0], strict=True)) for start in drawn]
+        drawn = [[getattr(options.start, name) for name in STATE_NAMES]] * count
+    return [dict(zip(START_NAMES, [*map(float, start), 0.0], strict=True)) for start in drawn]
 
 
 def representative(attractor: Attractor, keep: int) -> np.ndarray:

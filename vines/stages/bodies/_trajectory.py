@@ -10,9 +10,9 @@ import pyarrow as pa
 from vines.attractors import settle
 from vines.dynamics import simulate
 from vines.logs import write_run
-from vines.model import Params
+from vines.model import START_NAMES, STATE_NAMES, Params
 from vines.pipeline import Batch, Job
-from vines.stages.bodies._rows import STATE, impact_rows, point_row
+from vines.stages.bodies._rows import impact_rows, point_row
 from vines.stages.bodies._sweep import representative
 
 if TYPE_CHECKING:
@@ -34,9 +34,9 @@ def compute(job: Job[TrajectoryOptions]) -> Batch:
     rows: list[dict[str, Any]] = []
     impacts: list[dict[str, Any]] = []
     logs: dict[str, str] = {}
-    start = {name: getattr(options.start, name) for name in STATE[:4]} | {"phase": 0.0}
+    start = {name: getattr(options.start, name) for name in STATE_NAMES} | {"phase": 0.0}
     if job.start is not None:
-        start = {name: float(job.start[f"end_{name}"]) for name in STATE}
+        start = {name: float(job.start[f"end_{name}"]) for name in START_NAMES}
     for point in job.points:
         p = Params(**point.params)
         state = start
@@ -61,7 +61,7 @@ def compute(job: Job[TrajectoryOptions]) -> Batch:
             bare=options.bare,
         )
         if job.carry is not None:
-            start = {name: attractor.final[name] for name in STATE}
+            start = {name: attractor.final[name] for name in START_NAMES}
     columns = {name: np.concatenate([part[name] for part in impacts]) for name in impacts[0]}
     return Batch(tables={"points": rows, "impacts": pa.table(columns)}, logs=logs)
 

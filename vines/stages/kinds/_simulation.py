@@ -8,18 +8,18 @@ import msgspec
 from msgspec import Meta
 
 from vines.errors import StateError
-from vines.model import Params
+from vines.model import VI_NES, Params
 
 __all__ = ["Start", "check_simulation"]
 
 
-class Start(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """Start state (dimensionless): the oscillator at rest and the ball moving, if nothing is said."""
+_State = msgspec.defstruct(
+    "_State", [(each.name, Annotated[float, Meta(description=each.text)], each.start) for each in VI_NES.state]
+)
 
-    x1: Annotated[float, Meta(description="Displacement of the oscillator")] = 0.0
-    v1: Annotated[float, Meta(description="Its velocity")] = 0.0
-    x2: Annotated[float, Meta(description="Displacement of the ball")] = 0.0
-    v2: Annotated[float, Meta(description="Its velocity")] = 0.1
+
+class Start(_State, frozen=True, forbid_unknown_fields=True):
+    """Start state (dimensionless): the oscillator at rest and the ball moving, if nothing is said."""
 
 
 def check_simulation(params: dict[str, float], options: Any) -> None:

@@ -2,25 +2,23 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import Annotated
 
 import msgspec
 from msgspec import Meta
 
-from vines.errors import ParameterError
-from vines.model import Params
+from vines.errors import ParameterError, nearest
+from vines.model import START_NAMES, Params
 from vines.pipeline import Kind
 from vines.stages.kinds._parameters import PARAMETERS
 
 __all__ = ["KIND", "BasinsOptions", "Grid"]
 
-_COORDINATES = ("x1", "v1", "x2", "v2", "phase")
-
 
 class Grid(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """A coordinate of the start with evenly spaced values, `from` and `to` included."""
 
-    name: Annotated[Literal["x1", "v1", "x2", "v2", "phase"], Meta(description="Which coordinate")]
+    name: Annotated[str, Meta(description="Which coordinate", extra_json_schema={"enum": list(START_NAMES)})]
     start: Annotated[float, Meta(description="The first value")] = msgspec.field(name="from")
     stop: Annotated[float, Meta(description="The last value")] = msgspec.field(name="to")
     count: Annotated[int, Meta(ge=2, description="How many")] = 100
@@ -53,9 +51,9 @@ def _check(params: dict[str, float], options: BasinsOptions) -> None:
     names = {options.x.name, options.y.name}
     if len(names) < 2 or names & set(options.start):
         raise ParameterError(f"x is {options.x.name}, y is {options.y.name}: give two coordinates, not again in start")
-    for name in options.start:
-        if name not in _COORDINATES:
-            raise ParameterError(f"unknown coordinate {name!r} in start, allowed: {', '.join(_COORDINATES)}")
+    for name in (options.x.name, options.y.name, *options.start):
+        if name not in START_NAMES:
+            raise ParameterError(f"unknown coordinate {name!r} of the start: {nearest(name, START_NAMES)}")
 
 
 KIND = Kind(

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import msgspec
 
-from vines.model import PhysicalParams
+from vines.model import VI_NES, PhysicalParams
 from vines.pipeline import Kind
 from vines.stages.kinds._parameters import TABLE_1
 
@@ -28,7 +28,7 @@ KIND = Kind(
     options=DimensionlessOptions,
     body="vines.stages.bodies._dimensionless:compute",
     tables=("dimensionless",),
-    parameters={**TABLE_1, "E": None, "omega": None, "m": None},
+    parameters={**TABLE_1, **{each.name: each.default for each in VI_NES.run}},
     vary="grid",
     check=_check,
 )

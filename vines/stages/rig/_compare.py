@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from vines.errors import RigError
+from vines.model import PARAMETER_NAMES
 from vines.pipeline import Batch, Input, WholeJob
 from vines.rig import Reconstruction, compare_all, load_reconstruction
 from vines.rig.records import comparison_rows, cycle_rows, row_id
@@ -15,7 +16,7 @@ if TYPE_CHECKING:
 
 __all__ = ["compute"]
 
-_KNOWN = ("word", "branch_id", "mu", "A", "Omega", "r", "lam", "t")
+_KNOWN = ("word", "branch_id", *PARAMETER_NAMES, "t")
 """Columns of orbits from which a branch is followed to the parameters of a run."""
 
 
