@@ -16,6 +16,7 @@ from vines.rig.fit._signal import Signal
 from vines.rig.fit._sine_fit import clumping
 from vines.rig.fit._slide import Push
 from vines.rig.fit._train import Train
+from vines.rig.uncertainty import robust_deviation
 
 __all__ = ["JumpModel", "noise_of"]
 
@@ -153,4 +154,4 @@ def noise_of(bins: Bins) -> float:
     step = float(np.median(np.diff(bins.t))) / bins.smooth if bins.smooth else np.inf
     lag = np.subtract.outer(np.arange(5), np.arange(5))
     alike = np.where(lag == 0, 1.0, np.exp(-0.25 * np.where(lag == 0, 1, lag) ** 2 * step**2))
-    return float(np.median(np.abs(np.diff(bins.mean, 4))) / 0.6745 / np.sqrt(binomial @ alike @ binomial))
+    return robust_deviation(np.diff(bins.mean, 4)) / float(np.sqrt(binomial @ alike @ binomial))

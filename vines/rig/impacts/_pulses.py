@@ -15,6 +15,7 @@ from scipy.ndimage import gaussian_filter1d
 
 from vines.rig.fit import U_PULSE, Train
 from vines.rig.recording import Sampled
+from vines.rig.uncertainty import robust_deviation
 
 __all__ = ["SMOOTH", "SMOOTH_DISPLACEMENT", "Pulses", "filled", "find_pulses", "pulses_of", "refine_pulses"]
 
@@ -93,7 +94,7 @@ class Pulses:
     @property
     def noise(self) -> float:
         """Standard deviation by the median, which sparse pulses do not reach [m/s^2]."""
-        return float(np.median(np.abs(self.values - np.median(self.values))) / 0.6745)
+        return robust_deviation(self.values - np.median(self.values))
 
 
 def pulses_of(channel: Sampled, order: int = 2) -> Pulses:

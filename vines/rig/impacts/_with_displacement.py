@@ -11,6 +11,7 @@ from vines.rig.fit import KEEP, LEAST, U_PULSE, Bins, Fitter, JumpFit, Train, bi
 from vines.rig.impacts._pulses import Pulses, find_pulses, pulses_of, refine_pulses
 from vines.rig.impacts._search import LOOSE, Policy, Search, inside, search, threshold, with_silent
 from vines.rig.recording import Sampled
+from vines.rig.uncertainty import robust_deviation
 
 __all__ = ["search_displacement"]
 
@@ -237,7 +238,7 @@ def _bare(pulses: Pulses, fitter: Fitter) -> Pulses:
     for _ in range(3):
         linear = np.linalg.lstsq(part[:, near].T, some[near], rcond=None)[0]
         rest = some - linear @ part
-        near = np.abs(rest) < 3 * np.median(np.abs(rest)) / 0.6745
+        near = np.abs(rest) < 3 * robust_deviation(rest)
     values = values - linear @ columns
     return replace(pulses, values=values)
 
