@@ -81,6 +81,15 @@ def test_stated_uncertainties_are_those_of_the_noise(integrated):
     assert np.sqrt(np.mean(((fit.jumps.t - times) / u_t) ** 2)) == pytest.approx(1.0, abs=0.3)
 
 
+def test_draws_are_those_of_the_seed(integrated):
+    times, sizes, _, signals = integrated
+    train = Train.alike(times, sizes, 1e-5)
+    one, again, other = (JumpModel(signals[0], ROOT, OMEGA, seed=seed).fit(train, draws=4) for seed in (0, 0, 1))
+    np.testing.assert_array_equal(one.draws.dv, again.draws.dv)
+    assert np.all(one.draws.dv != other.draws.dv)
+    np.testing.assert_array_equal(one.jumps.dv, other.jumps.dv)
+
+
 def test_a_missing_impact_spoils_its_neighbours_only(integrated):
     times, sizes, _, signals = integrated
     keep = ~np.isin(np.arange(len(times)), [20, 55])
