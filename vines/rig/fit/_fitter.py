@@ -84,24 +84,24 @@ class Fitter:
         extra : tuple of ndarray, optional
             As of `JumpModel`; for a displacement.
         """
-        free_model = replace(self.model, extra=extra)
-        held_model = replace(free_model, forced=self._held())
+        held = replace(self.model, forced=self._held())
         if self.model.order == 0:
-            free = free_model.fit(train, pushed=pushed, draws=draws)
+            model = replace(self.model, extra=extra)
+            free = model.fit(train, pushed=pushed, draws=draws)
             if free.residual < _CLEAN * free.noise:
                 return free
-            held = held_model.fit(train, pushed=pushed, draws=0)
-            if np.array_equal(held.fair, free.fair):
+            fair = replace(held, extra=extra).fit(train, pushed=pushed, draws=0).fair
+            if np.array_equal(fair, free.fair):
                 return free
-            again = free_model.fit(train, pushed=pushed, fair=held.fair, draws=draws)
+            again = model.fit(train, pushed=pushed, fair=fair, draws=draws)
             return again if again.residual < free.residual else free
         # The flights give the jumps; areas of pulses only hold those that have no samples beside them.
         expected = (train.dv, np.abs(train.dv) + LEAST)
         waves, u_waves = _wander(self.bins)
-        first = replace(held_model, extra=(waves, u_waves)).fit(train, expected=expected, pushed=pushed, draws=0)
+        first = replace(held, extra=(waves, u_waves)).fit(train, expected=expected, pushed=pushed, draws=0)
         sideways = self.model.omega * first.motion.at(self.bins.t, 1)
         more = (np.vstack([sideways, waves]), np.append(_U_SIDEWAYS, u_waves))
-        model = replace(free_model, extra=more)
+        model = replace(self.model, extra=more)
         return model.fit(train, expected=expected, pushed=pushed, fair=first.fair, draws=draws)
 
     def _held(self) -> Forced | None:
