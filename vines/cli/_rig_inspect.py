@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-import dataclasses
-import json
-import math
 from pathlib import Path
 
 import click
+import msgspec
 
 
 @click.command("inspect")
@@ -27,12 +25,8 @@ def command(file: Path, png: Path | None, as_json: bool) -> None:
     if png is not None:
         draw_file(found, file.name).savefig(png, dpi=150)
     if as_json:
-        rows = [{key: _plain(value) for key, value in dataclasses.asdict(each).items()} for each in facts]
-        click.echo(
-            json.dumps(
-                {"form": found.form, "started": found.started, "channels": rows, "other": list(found.other)}, indent=1
-            )
-        )
+        said = {"form": found.form, "started": found.started, "channels": facts, "other": found.other}
+        click.echo(msgspec.json.format(msgspec.json.encode(said), indent=1))
         return
     from vines.cli._layout import print_rows
 
@@ -73,7 +67,3 @@ def command(file: Path, png: Path | None, as_json: bool) -> None:
         click.echo(f"also in it, no channels: {', '.join(found.other[:8])}{' ...' if len(found.other) > 8 else ''}")
     if png is not None:
         click.echo(f"wrote {png}")
-
-
-def _plain(value: object) -> object:
-    return None if isinstance(value, float) and not math.isfinite(value) else value

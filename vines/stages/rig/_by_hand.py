@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import json
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
+
+import msgspec
 
 from vines import schema
 from vines.errors import RigError, VinesError
@@ -91,7 +91,7 @@ def reconstruct_run(folder: Path, ring_downs: Sequence[Path] = (), *, study: Hom
     derived = folder / "derived"
     derived.mkdir(exist_ok=True)
     told, impacts = derived / "reconstruction.json", derived / "rig_impacts.parquet"
-    write_text(told, json.dumps({name: _plain(value) for name, value in row.items()}, indent=1) + "\n")
+    write_text(told, _json(row))
     origin = {"stage": "vines rig reconstruct", "code": code, "raw_sha256": found.sha256, "ring_downs": list(chosen)}
     write_parquet(impacts, "rig_impacts", schema.cast("rig_impacts", impact_columns([found])), provenance=origin)
     return Derived(found, tuple(chosen), row, (told, impacts))
@@ -136,10 +136,9 @@ def compare_run(folder: Path, ring_downs: Sequence[Path] = (), *, study: Home | 
     study = study or current()
     derived = reconstruct_run(folder, ring_downs, study=study)
     found = compare(derived.found, _near(derived.row, study))
-    rows = [{name: _plain(value) for name, value in row.items()} for row in comparison_rows(found)]
-    file = folder / "derived" / "comparison.json"
-    write_text(file, json.dumps(rows, indent=1) + "\n")
-    return Compared(derived, found, rows, file)
+    file, text = folder / "derived" / "comparison.json", _json(comparison_rows(found))
+    write_text(file, text)
+    return Compared(derived, found, msgspec.json.decode(text), file)
 
 
 def _near(row: dict[str, Any], study: Home) -> list[dict[str, Any]]:
@@ -154,9 +153,9 @@ def _near(row: dict[str, Any], study: Home) -> list[dict[str, Any]]:
     ).to_pylist()
 
 
-def _plain(value: Any) -> Any:
-    """Return a value as JSON knows it; what is not finite is null."""
-    return None if isinstance(value, float) and not math.isfinite(value) else value
+def _json(content: Any) -> str:
+    """Return JSON in which what is not finite is null."""
+    return msgspec.json.format(msgspec.json.encode(content, enc_hook=float), indent=1).decode() + "\n"
 
 
 def _given(folders: Sequence[Path]) -> dict[str, Path]:
