@@ -111,7 +111,7 @@ def _harmonic(o, A, Omega, lam, phase):
     return h, (p.reach if A > 0.0 else 0.0)
 
 
-@njit
+@linked_njit
 def added(s, omega, length):
     """Return the integral of exp(s (length - t)) exp(i omega t) over a short time, also at resonance."""
     y = 0.5 * (complex(0.0, omega) - s) * length
@@ -119,10 +119,17 @@ def added(s, omega, length):
     if abs(y) > 0.5:
         return mean * length * cmath.sinh(y) / y
     p = y * y
-    return mean * length * (1.0 + p / 6.0 * (1.0 + p / 20.0 * (1.0 + p / 42.0 * (1.0 + p / 72.0 * (1.0 + p / 110.0)))))
+    return (
+        mean
+        * length
+        * (
+            1.0
+            + p / 6.0 * (1.0 + p / 20.0 * (1.0 + p / 42.0 * (1.0 + p / 72.0 * (1.0 + p / 110.0 * (1.0 + p / 156.0)))))
+        )
+    )
 
 
-@njit
+@linked_njit
 def _scattering(o, A, Omega, lam, phase, grid):
     second, reach = _harmonic(o, A, 2.0 * Omega, lam, phase)
     s = complex(-o.half, o.gamma)

@@ -10,11 +10,12 @@ import math
 
 import numpy as np
 
+from vines.dynamics import _totals as entry
 from vines.dynamics._flight import flight, modulus, turn
 from vines.dynamics._integrals import NODES, WEIGHTS, peak_between, stays_below
 from vines.dynamics._scatter_constants import ScatterConstants, ScatterOscillator
 from vines.dynamics._scatter_motion import LEFT, end_of, redraw
-from vines.dynamics._totals import MAX_ABS_X1, T_MAX_ABS_X1, add_integrals, add_segment, base_at
+from vines.dynamics._totals import add_segment, base_at
 from vines.kernels import fused_njit, linked_njit, njit
 
 __all__: list[str] = []
@@ -161,11 +162,17 @@ def _add_segment(c, out, mode, begins, x1, v1, v2, phase, length):
     while True:
         lasts = min(length - gone, motion[LEFT])
         end = end_of(c, o, motion, lasts)
-        add_integrals(out, lasts, *_energies(c, o, mode != 0.0, motion, end, v2, lasts))
-        best, when = peak_between(c, o, motion, end, 0.0, lasts, out[MAX_ABS_X1])
+        xx, vv, ball, work, loss = _energies(c, o, mode != 0.0, motion, end, v2, lasts)
+        out[entry.DURATION] += lasts
+        out[entry.X1_SQUARE] += xx
+        out[entry.V1_SQUARE] += vv
+        out[entry.V2_SQUARE] += ball
+        out[entry.BASE_WORK] += work
+        out[entry.DAMPER_LOSS] += loss
+        best, when = peak_between(c, o, motion, end, 0.0, lasts, out[entry.MAX_ABS_X1])
         if when >= 0.0:
-            out[MAX_ABS_X1] = best
-            out[T_MAX_ABS_X1] = begins + gone + when
+            out[entry.MAX_ABS_X1] = best
+            out[entry.T_MAX_ABS_X1] = begins + gone + when
         if length - gone <= lasts:
             return
         gone += lasts

@@ -122,7 +122,7 @@ def redraw(c, o, motion):
 
 
 @flown.register(ScatterConstants)
-@fused_njit
+@linked_njit
 def _flown(c, o, motion, tau):
     while tau > motion[LEFT]:
         lasts = motion[LEFT]

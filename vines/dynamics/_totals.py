@@ -23,11 +23,10 @@ from vines.dynamics._advance import (
 from vines.dynamics._constants import Constants
 from vines.dynamics._flight import advance_phase, derivatives, flight, flown, phasors, turn
 from vines.dynamics._integrals import energies_between, peak_between, segment_integrals
-from vines.kernels import by_type, entry_njit, fused_njit, linked_njit, njit, zero_matrix, zero_vector
+from vines.kernels import by_type, entry_njit, linked_njit, njit, zero_matrix, zero_vector
 
 __all__ = [
     "accumulate",
-    "add_integrals",
     "add_segment",
     "base_at",
     "count_event",
@@ -110,22 +109,17 @@ def add_segment(c, out, mode, begins, x1, v1, v2, phase, length):
     o = c.stuck if mode != 0.0 else c.free
     start = phasors(o, c.Omega, x1, v1, phase)
     end = turn(o, c.Omega, *start, length)
-    add_integrals(out, length, *energies_between(c, o, mode != 0.0, start, end, v2, length))
+    xx, vv, ball, work, loss = energies_between(c, o, mode != 0.0, start, end, v2, length)
+    out[DURATION] += length
+    out[X1_SQUARE] += xx
+    out[V1_SQUARE] += vv
+    out[V2_SQUARE] += ball
+    out[BASE_WORK] += work
+    out[DAMPER_LOSS] += loss
     best, when = peak_between(c, o, start, end, 0.0, length, out[MAX_ABS_X1])
     if when >= 0.0:
         out[MAX_ABS_X1] = best
         out[T_MAX_ABS_X1] = begins + when
-
-
-@fused_njit
-def add_integrals(out, length, x1_square, v1_square, v2_square, base_work, damper_loss):
-    """Add the integrals over a time to the totals."""
-    out[DURATION] += length
-    out[X1_SQUARE] += x1_square
-    out[V1_SQUARE] += v1_square
-    out[V2_SQUARE] += v2_square
-    out[BASE_WORK] += base_work
-    out[DAMPER_LOSS] += damper_loss
 
 
 @linked_njit
