@@ -6,8 +6,8 @@ import math
 
 from vines.dynamics import _advance as col
 from vines.dynamics import _lane_fields as f
-from vines.dynamics._contact import first_step, modulus
-from vines.dynamics._flight import advance_phase, fifth, phasors, turn
+from vines.dynamics._contact import first_step
+from vines.dynamics._flight import advance_phase, fifth, modulus, phasors, turn
 from vines.dynamics._lane_motion import MOST_DECAY, MOST_TURN
 from vines.dynamics._lanes import HEIGHT_OF_BOUND, LOOSER
 from vines.dynamics._sincos import sincos
@@ -32,7 +32,7 @@ def fill_lane(c, state, L, i, length):
     ur, ui, gr, gi = phasors(c.free, c.Omega, x, v, phase)
     step = 0.0
     if wall != 0.0:
-        step = first_step(c, ur, ui, gr, gi, state[col.S_V2], int(wall), released)
+        step = first_step(c, (ur, ui, gr, gi), state[col.S_V2], int(wall), released)
         if step < 1e-8:
             return False
     limit = MOST_TURN / max(1.0, c.Omega)
@@ -137,7 +137,7 @@ def may_fly(c, state):
         wall = state[col.S_WALL]
         ur, ui, gr, gi = phasors(c.free, c.Omega, state[col.S_X1], state[col.S_V1], state[col.S_PHASE])
         speed = max(wall * (state[col.S_V2] - state[col.S_V1]), 0.0)
-        return not merges(c, int(wall), speed, ur, ui, gr, gi, state[col.S_X2])
+        return not merges(c, int(wall), speed, (ur, ui, gr, gi), state[col.S_X2])
     return True
 
 
