@@ -14,7 +14,7 @@ import numpy as np
 from vines.dynamics import _lane_fields as f
 from vines.dynamics import ensemble
 from vines.dynamics._lane_certificate import certify
-from vines.dynamics._lane_guess import predict
+from vines.dynamics._lane_guess import GROUP, predict
 from vines.dynamics._lane_measures import measure, renew
 from vines.dynamics._lane_motion import half_turn, small_expm1
 from vines.dynamics._lane_strike import aim, arrive, go, strike
@@ -116,7 +116,8 @@ def _strikes(L, n):
 @loop_njit
 def _predictions(L, n):
     for _ in range(n):
-        predict(L)
+        for i in range(0, f.LANES, GROUP):
+            predict(L[i:])
 
 
 @loop_njit

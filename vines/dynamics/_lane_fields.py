@@ -43,8 +43,8 @@ SPEED = 21 * STRIDE
 LEFT = 22 * STRIDE
 AMPLITUDE = 23 * STRIDE
 
-# Bookkeeping of the search: next move; ticks since the last event; the last two flights and a mean of many; is the
-# next one not likely to be as long as that before the last.
+# Bookkeeping of the search: next move; how many of this flight were not certified; the last two flights and a mean of
+# many; is the next one not likely to be as long as that before the last.
 MOVE = 24 * STRIDE
 TRIES = 25 * STRIDE
 LAST = 26 * STRIDE

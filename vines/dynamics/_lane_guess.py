@@ -6,9 +6,10 @@ from vines.dynamics import _lane_fields as f
 from vines.dynamics._lane_motion import forced_motion, free_derivatives, kept
 from vines.kernels import loop_njit
 
-__all__ = ["predict"]
+__all__ = ["GROUP", "predict"]
 
-LANES = f.LANES
+GROUP = 16
+"""Lanes that are looked at together: two vectors, or four. On settled orbits few of them need a guess."""
 
 HORIZON = 0.6
 """Share of the longest move up to which Taylor's polynomial of tenth order is of use."""
@@ -16,11 +17,11 @@ HORIZON = 0.6
 
 @loop_njit
 def predict(L):
-    """Find roughly how long the next flight will last, in lanes that have struck and are not in step.
+    """Find roughly how long the next flight will last, in the first of the lanes where they have struck.
 
     At the usual time Taylor's polynomial of tenth order gives w and three derivatives, and these the next contact.
     """
-    for i in range(LANES):
+    for i in range(GROUP):
         omega = L[f.OMEGA + i]
         lam = L[f.LAM + i]
         omega2 = omega * omega

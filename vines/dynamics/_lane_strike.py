@@ -20,7 +20,7 @@ FRESH = 0.25
 EXACT = 1.5e-5
 """Largest last correction, in units of NEAR: its cube, as the next would be, is below rounding."""
 
-ALIKE = 0.25
+ALIKE = 0.2
 """Two flights differ by no more than this share of NEAR if the one after them is expected to be like an earlier one."""
 
 

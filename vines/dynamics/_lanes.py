@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from vines.dynamics import _lane_fields as f
 from vines.dynamics._lane_certificate import certify
-from vines.dynamics._lane_guess import predict
+from vines.dynamics._lane_guess import GROUP, predict
 from vines.dynamics._lane_motion import forced_motion, kept
 from vines.dynamics._lane_strike import aim, arrive, go, strike
 from vines.dynamics._sticking import OMITTED, UNRESOLVED
@@ -26,7 +26,7 @@ ONWARD = 0.25
 """Share of the longest move by which a lane goes on where no contact is in sight."""
 
 MOST_TRIES = 8.0
-"""Ticks without an event after which the scalar kernel takes the flight."""
+"""Moves of a flight that were not certified before the scalar kernel takes it."""
 
 LOOSER = 1.05
 """The lanes' test for a merge is looser than `merges`, which then decides: both kernels merge at the same impact."""
@@ -94,7 +94,8 @@ def choose(L, cap):
         move = onward if clear else nearer
         move = min(L[f.ONE_BEFORE + i], limit) if hit else move
 
-        tries = 0.0 if hit else L[f.TRIES + i] + 1.0
+        tries = L[f.TRIES + i] + (0.0 if clear else 1.0)
+        tries = 0.0 if hit else tries
         began = kept(L[f.BEGAN + i], unit)
         busy = L[f.BUSY + i]
         fresh = began - left >= L[f.PERIOD + i]
@@ -128,7 +129,9 @@ def tick(L, cap):
     certify(L)
     strike(L)
     choose(L, cap)
-    for i in range(LANES):
-        if L[f.ROUGH + i] > 0.0:
-            predict(L)
-            return
+    for i in range(0, LANES, GROUP):
+        rough = False
+        for k in range(i, i + GROUP):
+            rough |= L[f.ROUGH + k] > 0.0
+        if rough:
+            predict(L[i:])
