@@ -7,6 +7,7 @@ from typing import Any
 
 import click
 
+from vines.cli._study import the_study
 from vines.model import PARAMETER_NAMES
 
 _FOLDER = click.Path(path_type=Path)
@@ -30,7 +31,7 @@ def command(run: Path, ring_downs: tuple[Path, ...], as_json: bool) -> None:
     from vines.stages import compare_run, compile_cold
 
     compile_cold(lambda line: click.echo(line, err=True))
-    made = compare_run(run, ring_downs)
+    made = compare_run(run, ring_downs, study=the_study())
     if as_json:
         click.echo(made.file.read_text("utf-8"), nl=False)
     else:

@@ -8,20 +8,30 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
-
 from vines.dynamics._constants import oscillator
 from vines.dynamics._flight import derivatives, phasors, turn
 from vines.dynamics._impact_law import after_impact_kernel, impact_law_kernel
 from vines.dynamics._saltation import jacobian_kernel
-from vines.kernels import identity, linked_njit, new_matrix, sum_of
+from vines.kernels import identity, linked_njit, new_matrix, zero_matrix
 from vines.model import AMPLITUDE, DAMPING, FREQUENCY, MASS, RESTITUTION, V1, V2, X1, X2
+from vines.orbits._elimination import eliminate
 from vines.orbits._turning import turning_points_kernel
 
 __all__ = ["FLIP", "FOLD", "GRAZE", "STOP", "TORUS", "condition_kernel", "gap_kernel", "turnings_kernel"]
 
 FOLD, FLIP, TORUS, GRAZE, STOP = range(5)
 """Codes of the defining equations: a multiplier +1, -1, a pair of product 1, a turning point on a wall, w' = 0."""
+
+
+@linked_njit
+def _product(left, right):
+    """Return the product of two matrices of 4 by 4: BLAS takes a second to compile into a kernel."""
+    out = zero_matrix(4, 4)
+    for i in range(4):
+        for j in range(4):
+            for k in range(4):
+                out[i, j] += left[i, k] * right[k, j]
+    return out
 
 
 @linked_njit
@@ -34,10 +44,23 @@ def _period_map(values, duration, side, t, states, half):
         tau = t[j + 1] - t[j] if j + 1 < t.size else t[0] + duration - t[j]
         x1, v1, v2 = states[j, X1], states[j, V1], states[j, V2]
         J = jacobian_kernel(mu, A, Omega, r, lam, x1, v1, v2, Omega * t[j], tau)[0]
-        product = J @ product
+        product = _product(J, product)
     if half:
-        product[:3] *= -1.0
+        for i in range(3):
+            for k in range(4):
+                product[i, k] = -product[i, k]
     return product
+
+
+@linked_njit
+def _determinant_of_one_and(M, sign):
+    """Return det(I + sign M)."""
+    n = M.shape[0]
+    matrix = new_matrix(n, n)
+    for i in range(n):
+        for k in range(n):
+            matrix[i, k] = sign * M[i, k] + (1.0 if i == k else 0.0)
+    return eliminate(matrix, new_matrix(n, 0))[1]
 
 
 @linked_njit
@@ -50,7 +73,7 @@ def _without_pair(M):
         for b in range(6):
             k, m = rows[b]
             C[a, b] = M[i, k] * M[j, m] - M[i, m] * M[j, k]
-    return np.linalg.det(identity(6) - C)
+    return _determinant_of_one_and(C, -1.0)
 
 
 @linked_njit
@@ -93,10 +116,14 @@ def condition_kernel(kind, values, p, side, t, states, half, place, wall, tau):
     if kind == STOP:
         return states[place, V1] - states[place, V2], 0.0
     M = _period_map(values, 2.0 * math.pi * p / values[FREQUENCY], side, t, states, half)
-    size = 1.0 + math.sqrt(sum_of(M * M))
+    squares = 0.0
+    for i in range(4):
+        for k in range(4):
+            squares += M[i, k] * M[i, k]
+    size = 1.0 + math.sqrt(squares)
     if kind == TORUS:
         return _without_pair(M) / (size * size), 0.0
-    return np.linalg.det(identity(4) - M if kind == FOLD else identity(4) + M) / size, 0.0
+    return _determinant_of_one_and(M, -1.0 if kind == FOLD else 1.0) / size, 0.0
 
 
 @linked_njit

@@ -7,7 +7,7 @@ import math
 import numpy as np
 import numpy.typing as npt
 
-from vines.kernels import linked_njit, new_matrix, new_vector, njit, zero_matrix
+from vines.kernels import copy_values, linked_njit, new_matrix, new_vector, njit, zero_matrix
 from vines.model import FREQUENCY, MASS, PARAMETER_NAMES
 from vines.orbits._assemble import assemble
 from vines.orbits._equations import closing_kernel
@@ -54,7 +54,10 @@ def closing_at(values, p, side, phases):
     for i in range(n):
         for j in range(side.size):
             folded[i, j % n] += slope[i, j] / (values[MASS] * values[FREQUENCY])
-    return defect[:n] / values[MASS], folded, t, states
+    scaled = new_vector(n)
+    for i in range(n):
+        scaled[i] = defect[i] / values[MASS]
+    return scaled, folded, t, states
 
 
 @linked_njit
@@ -65,13 +68,15 @@ def _linearised(values, index, p, side, y):
     values[index] = y[n]
     defect, folded, _, _ = closing_at(values, p, side, y[:n])
     matrix = new_matrix(n, n + 1)
-    matrix[:, :n] = folded
+    for i in range(n):
+        copy_values(matrix[i], folded[i])
     step = DIFFERENCE * max(abs(y[n]), 0.01)
     values[index] = y[n] + step
     above = closing_at(values, p, side, y[:n])[0]
     values[index] = y[n] - step
     below = closing_at(values, p, side, y[:n])[0]
-    matrix[:, n] = (above - below) / (2.0 * step)
+    for i in range(n):
+        matrix[i, n] = (above[i] - below[i]) / (2.0 * step)
     return defect, matrix
 
 

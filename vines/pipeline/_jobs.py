@@ -235,6 +235,10 @@ class WholeJob:
         The files that the kind named as ingredients (see ``Kind.files``).
     folder : Path
         An empty folder; every file that the body leaves there becomes part of the result.
+    root : Path
+        Root of the project, below which options name files.
+    cache : Path
+        Where the body may keep what can be made again.
     provenance : dict
         As in :class:`Job`.
     spread : Spread
@@ -247,6 +251,8 @@ class WholeJob:
     inputs: dict[str, Input]
     files: tuple[Path, ...]
     folder: Path
+    root: Path
+    cache: Path
     provenance: dict[str, Any]
     spread: Spread = one_by_one
 

@@ -23,18 +23,39 @@ from vines.pipeline._names import NAME, RESERVED
 from vines.pipeline._points import read_carry, read_refine, read_zipped
 from vines.places import find_root
 
-__all__ = ["GENERAL", "TOP", "read", "read_form"]
+__all__ = ["GENERAL", "TOP", "load", "read_form"]
 
 TOP = ("include", "params", "source", "stages", "title")
 GENERAL = ("carry", "kind", "needs", "params", "refine", "vary", "zip")
 
 
-def read(path: Path, overrides: Mapping[str, Any], root: Path | None) -> Pipeline:
-    """Read a declaration; see :func:`vines.pipeline.load`."""
+def load(path: Path, overrides: Mapping[str, Any] | None = None, *, root: Path | None = None) -> Pipeline:
+    """Read a declaration.
+
+    Parameters
+    ----------
+    path : Path
+        A TOML file; its stem is the name of the pipeline.
+    overrides : mapping, optional
+        Values that replace those of the file, by dotted key such as ``stages.up.vary.A.count``. Texts are read as
+        TOML values where they are such.
+    root : Path, optional
+        Root of the project; found from the current folder if left out.
+
+    Raises
+    ------
+    FileMissingError
+        If there is no such file.
+    DeclarationError
+        If it cannot be read; one line with file, key, what is allowed and the nearest name.
+    ParameterError, StateError
+        If a parameter or start state is one that the model cannot have.
+    """
+    path = Path(path)
     form = with_included(path)
     if "pipelines" in form:
         raise DeclarationError(f"{path}: a collection of pipelines, which are run, not the file; name one of them here")
-    return read_form(path.stem, form, overrides, path, root)
+    return read_form(path.stem, form, overrides or {}, path, root)
 
 
 def read_form(

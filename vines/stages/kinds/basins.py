@@ -63,6 +63,6 @@ KIND = Kind(
     tables=("attractors", "basins"),
     parameters=PARAMETERS,
     check=_check,
-    kernels=("many_runs", "one_run", "runs"),
+    kernels=("one_run", "lanes", "runs", "many_runs"),
     again="starts",
 )

@@ -12,7 +12,7 @@ from vines.stages.kinds._seed import check_seed
 
 __all__ = ["COMPARE", "KIND", "CompareOptions"]
 
-COMPARE = ("orbits", "one_run", "many_runs", "scatter")
+COMPARE = ("orbits", "one_run", "lanes", "many_runs", "scatter")
 """Kinds of tasks whose kernels the comparison of a measured run with the model asks for."""
 
 

@@ -35,7 +35,7 @@ class SweepOptions(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 def _kernels(options: SweepOptions, carried: bool) -> tuple[str, ...]:
     # Lanes run the points that do not wait for each other, and random starts.
     alone = carried and not options.random
-    return ("one_run",) if alone else ("one_run", "many_runs")
+    return ("one_run",) if alone else ("one_run", "lanes", "many_runs")
 
 
 KIND = Kind(

@@ -8,7 +8,6 @@ from typing import Any
 
 from vines.errors import RigError
 from vines.pipeline import Batch, WholeJob
-from vines.places import find_root
 from vines.rig import find_runs, read_run
 from vines.rig._log import write_log
 from vines.rig._run_folder import SUMS
@@ -47,5 +46,5 @@ def _folders(job: WholeJob) -> tuple[Path, ...]:
     if bool(options.folder) == bool(job.inputs):
         raise RigError("ingest takes either folder or needs = [a stage of kind synth]")
     if options.folder:
-        return find_runs(find_root() / options.folder)
+        return find_runs(job.root / options.folder)
     return tuple(path for stage in job.inputs.values() for path in find_runs(stage.folder / "runs"))

@@ -8,7 +8,6 @@ from typing import Any
 from vines import schema
 from vines.errors import RigError
 from vines.pipeline import Batch, WholeJob
-from vines.places import cache_folder
 from vines.rig import load_reconstruction
 from vines.rig._reconstruction_rows import failed_row, impact_columns, reconstruction_row
 from vines.stages.rig._runs import free_decay, kept_runs, make, ring_downs_of, wanted
@@ -29,7 +28,7 @@ def compute(job: WholeJob) -> Batch:
         raise RigError("none of the ingested runs has the ball in it, so there is nothing to reconstruct")
     needed = sorted({name for names in belongs.values() for name in names})
     decays = dict(zip(needed, job.spread(free_decay, [runs[name][0] for name in needed]), strict=True))
-    code, cache = str(job.provenance["code"]), cache_folder()
+    code, cache = str(job.provenance["code"]), job.cache
     works = [
         wanted(runs[run][0], [decays[name] for name in names], options.seed, code, cache)
         for run, names in belongs.items()
