@@ -14,6 +14,7 @@ from vines.attractors._attractor import Attractor
 from vines.attractors._look import look_at_block
 from vines.attractors._naming import attractor_from, word_of
 from vines.attractors._settle import NUDGE, ROUNDS, Patience
+from vines.attractors._waiting import next_wait
 from vines.dynamics import _advance as col
 from vines.dynamics import _totals as entry
 from vines.dynamics import ensemble
@@ -266,8 +267,7 @@ class _Many:
             free, come = found[:, v.NEXT] == v.IS_FREED, found[:, v.NEXT] == v.WAITS
             if not np.any(free | come):
                 return
-            wait = _next_wait(np.where(come, found[:, v.REMAINING], 0.0))
-            wait = np.where(come & (found[:, v.REMAINING] > spare[runs]), spare[runs], wait)
+            wait = next_wait(np.where(come, found[:, v.REMAINING], 0.0), spare[runs], few_lengths=True)
             wait = np.where(free, float(self.how.settle), wait)
             nudged[runs[free]] = found[free, v.VALUE]
             self.states[runs[free], 3] += NUDGE
@@ -324,13 +324,3 @@ class _Many:
             ends = np.searchsorted(rows[:, col.ROW], np.arange(len(runs) + 1))
             for k, run in enumerate(runs.tolist()):
                 self.hits[run] = impacts_of(rows[ends[k] : ends[k + 1]])
-
-
-def _next_wait(remaining: Floats) -> Floats:
-    """Return how long to wait: 5 % more than is left, up to the next of 32, 48, 64, 96, 128, … forcing periods.
-
-    Waits of few lengths keep the lanes full.
-    """
-    least = np.maximum(1.05 * remaining + 1.0, 32.0)
-    power = 2.0 ** np.floor(np.log2(least))
-    return np.where(least <= power, power, np.where(least <= 1.5 * power, 1.5 * power, 2.0 * power))
