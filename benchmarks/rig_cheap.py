@@ -31,7 +31,7 @@ import numpy as np
 import numpy.typing as npt
 
 from vines.rig import Recording, RingDown, RunInfo, Sampled, Uncertain
-from vines.rig._motion import Motion
+from vines.rig.fit import Motion
 
 Floats = npt.NDArray[np.float64]
 Impacts = tuple[Floats, Floats]

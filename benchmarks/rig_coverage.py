@@ -33,12 +33,9 @@ from benchmarks.rig_cheap import (
 )
 from vines.errors import VinesError
 from vines.rig import Reconstruction, reconstruct
-from vines.rig._ball import Cavity, ball_motion
-from vines.rig._cycle import slots
-from vines.rig._jumps import Jumps
-from vines.rig._motion import Motion
-from vines.rig._pattern import cut_into_periods
-from vines.rig._rebound import mean_restitution
+from vines.rig.ball import Cavity, ball_motion, mean_restitution
+from vines.rig.fit import Jumps, Motion
+from vines.rig.quantities import cut_into_periods, slots
 
 Floats = npt.NDArray[np.float64]
 

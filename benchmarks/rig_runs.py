@@ -14,9 +14,8 @@ import vines
 from vines.attractors import settle_from
 from vines.errors import VinesError
 from vines.rig import Comparison, Reconstruction, compare, reconstruct, ring_down
-from vines.rig._run_form import ChannelRow, Stated
-from vines.rig.synth import RawRun, RigSettings, draw_settings, raw_run, read_raw
-from vines.rig.synth._contact import LEAST, MOST
+from vines.rig.ingest import ChannelRow, Stated
+from vines.rig.synth import LEAST, MOST, RawRun, RigSettings, draw_settings, raw_run, read_raw
 
 KINDS = (
     "drawn", "drawn", "drawn", "drawn", "laser only", "accelerometers only", "2:1", "asymmetric 1:1", "2:2/2T",

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.signal import lfilter
 
-from vines.rig._uncertainty import block_length, mean_over_periods, standard_error
+from vines.rig.uncertainty import block_length, mean_over_periods, standard_error
 
 
 def autoregression(rng, n, rho):

@@ -1,4 +1,4 @@
-"""A package that is not of vines brings a kind, a table and a plot; here it is installed into a folder of its own."""
+"""A package that is not of vines, installed into a folder of its own, brings a kind, a table, a plot and a format."""
 
 import importlib
 import json
@@ -6,10 +6,15 @@ import os
 import subprocess
 import sys
 
+import msgspec
+import numpy as np
 import pytest
 
 import vines
 from vines.errors import DeclarationError, PlugInError
+from vines.rig import read_run
+from vines.rig.formats import read_file
+from vines.rig.synth import RigSettings, make_run
 from vines.schema import _tables
 from vines.stages import declaration_schema, list_kinds, list_plots, load_pipeline, run, status
 
@@ -105,6 +110,32 @@ def draw(inputs, options):
 PLOT = Plot(summary="heights of bounces", options=HeightsOptions, draw=draw, check=check)
 '''
 
+FORMAT = '''
+"""A format of recordings: a line a channel, its name, unit and rate before its samples."""
+
+import numpy as np
+
+from vines.rig.formats import Format, RawChannel, RawFile
+
+
+def read(path):
+    channels = []
+    for line in path.read_text().splitlines()[1:]:
+        name, unit, rate, *values = line.split()
+        channels.append(RawChannel(name, np.array(values, float), unit, float(rate), 0.0))
+    return RawFile("lines", tuple(channels))
+
+
+FORMAT = Format(
+    name="lines",
+    label="lines of samples",
+    summary="a line a channel",
+    suffixes=(".lines",),
+    read=read,
+    begins=lambda head, suffix: head.startswith(b"LINES"),
+)
+'''
+
 ENTRY_POINTS = """
 [vines.kinds]
 bounce = bouncing.kind:KIND
@@ -114,6 +145,9 @@ bounces = bouncing.schemas
 
 [vines.plots]
 heights = bouncing.plot:PLOT
+
+[vines.formats]
+lines = bouncing.format:FORMAT
 """
 
 STUDY = """
@@ -141,6 +175,7 @@ def installed(tmp_path, monkeypatch):
         "bouncing/kind.py": KIND,
         "bouncing/_law.py": LAW,
         "bouncing/plot.py": PLOT,
+        "bouncing/format.py": FORMAT,
         "bouncing/schemas/bounces.toml": TABLE,
         "bouncing_ball-1.0.dist-info/METADATA": "Metadata-Version: 2.1\nName: bouncing-ball\nVersion: 1.0\n",
         "bouncing_ball-1.0.dist-info/entry_points.txt": ENTRY_POINTS,
@@ -211,16 +246,42 @@ def test_they_are_listed_and_described(study, installed):
     assert form["figure.heights"]["properties"]["colour"]["default"] == "#222222"
     env = {**os.environ, "PYTHONPATH": str(installed)}
     said = {}
-    for command in (["list"], ["kinds"], ["kinds", "bounce"], ["plots", "heights"], ["schema", "bounces"]):
-        call = [sys.executable, "-m", "vines.cli", *command]
+    for command in ("list", "kinds", "kinds bounce", "plots heights", "schema bounces", "rig formats"):
+        call = [sys.executable, "-m", "vines.cli", *command.split()]
         done = subprocess.run(call, env=env, cwd=study, capture_output=True, text=True, check=True)
-        said[" ".join(command)] = done.stdout
+        said[command] = done.stdout
     assert "mine" in said["list"]
     assert "heights of a bouncing ball" in said["kinds"]
     assert "bouncing-ball" in said["kinds"]
     assert "times   integer  3" in said["kinds bounce"]
     assert "colour" in said["plots heights"]
     assert "how high" in said["schema bounces"]
+    assert "lines of samples" in said["rig formats"]
+    assert "bouncing-ball" in said["rig formats"]
+
+
+def test_a_recording_of_its_format_is_read_and_ingested(project, installed, monkeypatch, tmp_path):
+    folder = tmp_path / "rest"
+    settings = RigSettings(run_id="rest", protocol="ringdown", ball=False, E=0.0, duration=4.0, rate=3200.0, form="csv")
+    settings = msgspec.structs.replace(settings, start=(0.012, 0.0, 0.0, 0.0), recorders=1, channels=("lo_disp",))
+    make_run(folder, settings, 3)
+    (raw,) = folder.glob("raw/*")
+    before = read_run(folder).recording.channels["lo_disp"]
+    (channel,) = read_file(raw).channels
+    samples = " ".join(map(repr, channel.values.tolist()))
+    raw.write_text(f"LINES\n{channel.name} {channel.unit} {channel.rate!r} {samples}\n")
+    assert read_file(raw).form == "lines"  # by its first bytes, whatever its suffix
+    assert np.array_equal(read_run(folder).recording.channels["lo_disp"].values, before.values)
+
+    monkeypatch.setenv("VINES_ROOT", str(project.root))
+    declared = f'title = "rest"\n[stages.ingest]\nkind = "ingest"\nfolder = "{folder.relative_to(project.root)}"\n'
+    (project.root / "pipelines" / "rest.toml").write_text(declared)
+    run("rest", jobs=1)
+    assert vines.query("select samples from rig_channels").to_pylist() == [{"samples": len(before.values)}]
+    (installed / "bouncing" / "format.py").write_text(FORMAT.replace("0.0)", "0.5)"))
+    (plan,) = status("rest")
+    assert plan.state == "stale"
+    assert "code changed: bouncing.format" in plan.reason
 
 
 @pytest.mark.parametrize(

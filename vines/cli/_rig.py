@@ -9,6 +9,7 @@ from vines.cli import LazyGroup
 COMMANDS = {
     "init": ("vines.cli._rig_init", "Write a commented template of a run folder."),
     "inspect": ("vines.cli._rig_inspect", "Show what a raw file holds: channels, units, rates, gaps, clipping."),
+    "formats": ("vines.cli._rig_formats", "List the formats of recordings that can be read."),
     "ingest": ("vines.cli._rig_ingest", "Read run folders into the catalogue and as MCAP logs."),
     "reconstruct": ("vines.cli._rig_reconstruct", "Bring a run to the quantities of the model, with uncertainties."),
     "compare": ("vines.cli._rig_compare", "Lay a run beside the branches of the model that coexist: the verdict."),
@@ -24,6 +25,7 @@ def command() -> None:
     \b
     vines rig init my_run              a template to fill in
     vines rig inspect recording.tdms   what is in this file?
+    vines rig formats                  which files can be read
     vines rig ingest my_run            into the catalogue; 'vines view' shows it
     vines rig reconstruct my_run       omega0, A, mu, r, impacts, pattern, with uncertainties
     vines rig compare my_run           agree, pattern_only, disagree or undecidable, with the reason

@@ -17,7 +17,7 @@ import click
 def command(file: Path, png: Path | None, as_json: bool) -> None:
     """Show what FILE holds: channels, units, rates, gaps, clipping.
 
-    NI TDMS, UFF dataset 58, MATLAB v4 to v7.3, CSV, HDF5, WAV with its sidecar FILE.json.
+    'vines rig formats' lists what can be read.
     """
     from vines.rig import channel_facts, draw_file, spark
     from vines.rig.formats import read_file

@@ -1,5 +1,9 @@
 """The rig: measured runs in, an honest verdict out. Tables and arrays in memory; no other sibling room is imported.
 
+Its rooms, from below: `formats` reads files of recorders, `ingest` run folders; `fit` has the oscillator's motion at
+given impacts, `impacts` finds these; `ball` and `quantities` say what follows, `verdict` lays that beside the model.
+`records` is what is kept of a run, `synth` a rig to test all that with.
+
 Lazy (PEP 562): the names of the room load neither scipy nor a library of a format.
 """
 
@@ -7,20 +11,38 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from vines.rig._compare import Calibration, calibrate, compare, compare_all
-    from vines.rig._inspect import channel_facts, draw_file, spark
-    from vines.rig._keep import load_reconstruction, save_reconstruction
-    from vines.rig._match import Candidate
-    from vines.rig._match_ring_downs import match_ring_downs
-    from vines.rig._model import Predicted
-    from vines.rig._read_run import Ingested, read_run
-    from vines.rig._reconstruct import reconstruct
-    from vines.rig._reconstruction import QUANTITIES, Finding, Reconstruction
-    from vines.rig._recording import ROLES, Recording, RunInfo, Sampled, Uncertain
-    from vines.rig._ring_down import RingDown, ring_down
-    from vines.rig._run_folder import find_runs, read_folder
-    from vines.rig._template import write_template
-    from vines.rig._verdict import VERDICTS, Comparison, Likeness
+    from vines.rig.ingest import (
+        Ingested,
+        channel_facts,
+        draw_file,
+        find_runs,
+        read_folder,
+        read_run,
+        spark,
+        write_template,
+    )
+    from vines.rig.quantities import (
+        QUANTITIES,
+        Finding,
+        Reconstruction,
+        RingDown,
+        match_ring_downs,
+        reconstruct,
+        ring_down,
+    )
+    from vines.rig.recording import ROLES, Recording, RunInfo, Sampled, Uncertain
+    from vines.rig.records import load_reconstruction, save_reconstruction
+    from vines.rig.verdict import (
+        VERDICTS,
+        Calibration,
+        Candidate,
+        Comparison,
+        Likeness,
+        Predicted,
+        calibrate,
+        compare,
+        compare_all,
+    )
 
 __all__ = [
     "QUANTITIES",
@@ -57,37 +79,37 @@ __all__ = [
 ]
 
 _HOME = {
-    "QUANTITIES": "_reconstruction",
-    "ROLES": "_recording",
-    "VERDICTS": "_verdict",
-    "Calibration": "_compare",
-    "Candidate": "_match",
-    "Comparison": "_verdict",
-    "Finding": "_reconstruction",
-    "Ingested": "_read_run",
-    "Likeness": "_verdict",
-    "Predicted": "_model",
-    "Reconstruction": "_reconstruction",
-    "Recording": "_recording",
-    "RingDown": "_ring_down",
-    "RunInfo": "_recording",
-    "Sampled": "_recording",
-    "Uncertain": "_recording",
-    "calibrate": "_compare",
-    "channel_facts": "_inspect",
-    "compare": "_compare",
-    "compare_all": "_compare",
-    "draw_file": "_inspect",
-    "find_runs": "_run_folder",
-    "load_reconstruction": "_keep",
-    "match_ring_downs": "_match_ring_downs",
-    "read_folder": "_run_folder",
-    "read_run": "_read_run",
-    "reconstruct": "_reconstruct",
-    "ring_down": "_ring_down",
-    "save_reconstruction": "_keep",
-    "spark": "_inspect",
-    "write_template": "_template",
+    "QUANTITIES": "quantities",
+    "ROLES": "recording",
+    "VERDICTS": "verdict",
+    "Calibration": "verdict",
+    "Candidate": "verdict",
+    "Comparison": "verdict",
+    "Finding": "quantities",
+    "Ingested": "ingest",
+    "Likeness": "verdict",
+    "Predicted": "verdict",
+    "Reconstruction": "quantities",
+    "Recording": "recording",
+    "RingDown": "quantities",
+    "RunInfo": "recording",
+    "Sampled": "recording",
+    "Uncertain": "recording",
+    "calibrate": "verdict",
+    "channel_facts": "ingest",
+    "compare": "verdict",
+    "compare_all": "verdict",
+    "draw_file": "ingest",
+    "find_runs": "ingest",
+    "load_reconstruction": "records",
+    "match_ring_downs": "quantities",
+    "read_folder": "ingest",
+    "read_run": "ingest",
+    "reconstruct": "quantities",
+    "ring_down": "quantities",
+    "save_reconstruction": "records",
+    "spark": "ingest",
+    "write_template": "ingest",
 }
 
 

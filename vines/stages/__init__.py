@@ -10,6 +10,7 @@ if TYPE_CHECKING:
     from vines.stages.api._asking import checks, list_tables, query, rows_of, save_query, table
     from vines.stages.api._declarable import (
         declaration_schema,
+        default_shown,
         describe_kind,
         describe_plot,
         list_kinds,
@@ -23,6 +24,7 @@ if TYPE_CHECKING:
     from vines.stages.api._keeping import Difference, clean, diff, graph
     from vines.stages.api._orbit_log import orbit_log
     from vines.stages.api._parts import load_pipeline, members_of
+    from vines.stages.api._reference import reference_kinds, reference_plots
     from vines.stages.api._running import list_pipelines, run, status, status_of_each
     from vines.stages.api._study import Study, study
     from vines.stages.api._warm_up import compile_cold, compile_if_cold, warm_up
@@ -47,6 +49,7 @@ __all__ = [
     "compile_if_cold",
     "current",
     "declaration_schema",
+    "default_shown",
     "describe_kind",
     "describe_plot",
     "diff",
@@ -66,6 +69,8 @@ __all__ = [
     "query",
     "reconstruct_run",
     "recordings_folder",
+    "reference_kinds",
+    "reference_plots",
     "register_kinds",
     "report",
     "rows_of",
@@ -98,6 +103,7 @@ _HOME = {
     "compile_if_cold": "api._warm_up",
     "clean": "api._keeping",
     "declaration_schema": "api._declarable",
+    "default_shown": "api._declarable",
     "describe_kind": "api._declarable",
     "describe_plot": "api._declarable",
     "list_kinds": "api._declarable",
@@ -115,6 +121,8 @@ _HOME = {
     "members_of": "api._parts",
     "query": "api._asking",
     "reconstruct_run": "rig._by_hand",
+    "reference_kinds": "api._reference",
+    "reference_plots": "api._reference",
     "register_kinds": "kinds._register",
     "report": "reports._report",
     "rows_of": "api._asking",

@@ -12,11 +12,9 @@ import msgspec
 import numpy as np
 
 from vines.errors import StoreError
-from vines.rig._read_run import assemble
-from vines.rig._recording import Recording
-from vines.rig._run_folder import channels_text
-from vines.rig._run_form import ChannelRow, RunForm, Stated
 from vines.rig.formats import RawChannel, RawFile
+from vines.rig.ingest import ChannelRow, RunForm, Stated, assemble, channels_text
+from vines.rig.recording import Recording
 from vines.rig.synth._instruments import LEAD, SPARE, STEP, recorders, signals
 from vines.rig.synth._motion import Motion, move
 from vines.rig.synth._pattern import true_pattern

@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-import importlib
 from pathlib import Path
 
-from vines.rig.formats import RawFile
+from vines.errors import RigError
+from vines.rig.formats import FORMATS, RawFile
 
 __all__ = ["file_name", "write_raw"]
-
-_SUFFIX = {"tdms": "tdms", "uff": "uff", "mat": "mat", "mat73": "mat", "csv": "csv", "hdf5": "h5", "wav": "wav"}
 
 
 def file_name(form: str, recorder: str = "") -> str:
@@ -20,7 +18,8 @@ def file_name(form: str, recorder: str = "") -> str:
     >>> file_name("tdms"), file_name("hdf5", "daq")
     ('run.tdms', 'run_daq.h5')
     """
-    return f"run_{recorder}.{_SUFFIX[form]}" if recorder else f"run.{_SUFFIX[form]}"
+    suffix = FORMATS.get(form).suffixes[0]
+    return f"run_{recorder}{suffix}" if recorder else f"run{suffix}"
 
 
 def write_raw(path: Path, form: str, file: RawFile) -> None:
@@ -34,8 +33,13 @@ def write_raw(path: Path, form: str, file: RawFile) -> None:
         One of the formats of `RigSettings`.
     file : RawFile
         Channels of whole numbers, with ``slope`` in ``about``: the volts of one step.
+
+    Raises
+    ------
+    RigError
+        If a format of another package is only read.
     """
-    module = "mat" if form == "mat73" else form
-    writer = importlib.import_module(f"vines.rig.formats._{module}")
-    write = writer.write_73 if form == "mat73" else writer.write
+    write = FORMATS.get(form).write
+    if write is None:
+        raise RigError(f"files of the format {form!r} are read only")
     write(path, file.channels, started=file.started)

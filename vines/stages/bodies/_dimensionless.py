@@ -2,8 +2,13 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from vines.model import PARAMETER_NAMES, VI_NES, PhysicalParams
 from vines.pipeline import Batch, Job
+
+if TYPE_CHECKING:
+    from vines.stages.kinds.dimensionless import DimensionlessOptions
 
 __all__ = ["compute"]
 
@@ -11,7 +16,7 @@ _COLUMNS = {"M": "mass", "m": "ball_mass", "omega": "forcing_frequency"}
 """SQL does not tell capitals from small letters."""
 
 
-def compute(job: Job) -> Batch:
+def compute(job: Job[DimensionlessOptions]) -> Batch:
     """Convert every point of the job by (6) of the paper."""
     rows = []
     for point in job.points:

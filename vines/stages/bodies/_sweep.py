@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pyarrow as pa
@@ -13,12 +13,15 @@ from vines.pipeline import Batch, Job
 from vines.stages.bodies._coexisting import attractor_rows, coexisting, random_starts
 from vines.stages.bodies._rows import impact_rows, point_row
 
+if TYPE_CHECKING:
+    from vines.stages.kinds.sweep import SweepOptions
+
 __all__ = ["compute", "representative"]
 
 
-def compute(job: Job) -> Batch:
+def compute(job: Job[SweepOptions]) -> Batch:
     """Settle every point of the job; carried points start where the one before them ended, all others run at once."""
-    options: Any = job.options
+    options = job.options
     starts, own = _along_the_chain(job) if job.carry is not None else _each_for_itself(job)
     drawn = options.seed if options.start == "random" and job.carry is None else None
     listed = coexisting(
@@ -46,9 +49,9 @@ def compute(job: Job) -> Batch:
     return Batch(tables={"points": rows, "impacts": pa.table(columns), "attractors": attractors})
 
 
-def _along_the_chain(job: Job) -> tuple[list[dict[str, float]], list[Attractor]]:
+def _along_the_chain(job: Job[SweepOptions]) -> tuple[list[dict[str, float]], list[Attractor]]:
     """Return starts and attractors where each point starts from the end of the one before."""
-    options: Any = job.options
+    options = job.options
     if job.start is not None:
         start = {name: float(job.start[f"end_{name}"]) for name in START_NAMES}
     else:
@@ -72,9 +75,9 @@ def _along_the_chain(job: Job) -> tuple[list[dict[str, float]], list[Attractor]]
     return starts, own
 
 
-def _each_for_itself(job: Job) -> tuple[list[dict[str, float]], list[Attractor]]:
+def _each_for_itself(job: Job[SweepOptions]) -> tuple[list[dict[str, float]], list[Attractor]]:
     """Return starts and attractors where every point starts as the options say."""
-    options: Any = job.options
+    options = job.options
     starts = _starts(job, len(job.points))
     many = classify_many(
         {name: job.points.column(name) for name in PARAMETER_NAMES},
@@ -87,9 +90,9 @@ def _each_for_itself(job: Job) -> tuple[list[dict[str, float]], list[Attractor]]
     return starts, [many.attractor(k) for k in range(len(many))]
 
 
-def _starts(job: Job, count: int) -> list[dict[str, float]]:
+def _starts(job: Job[SweepOptions], count: int) -> list[dict[str, float]]:
     """Return the starts of the first points: the same for all, or drawn at random for each."""
-    options: Any = job.options
+    options = job.options
     if options.start == "random":
         drawn = [random_starts(Params(**point.params), 1, options.seed)[0] for point in job.points[:count]]
     else:

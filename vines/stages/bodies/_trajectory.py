@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, TypedDict
+from typing import TYPE_CHECKING, Any, TypedDict
 
 import numpy as np
 import pyarrow as pa
@@ -15,6 +15,9 @@ from vines.pipeline import Batch, Job
 from vines.stages.bodies._rows import impact_rows, point_row
 from vines.stages.bodies._sweep import representative
 
+if TYPE_CHECKING:
+    from vines.stages.kinds.trajectory import TrajectoryOptions
+
 __all__ = ["compute"]
 
 CLASSIFY_AFTER = 400
@@ -22,12 +25,12 @@ CLASSIFY_AFTER = 400
 CLASSIFY_OVER = 64
 
 
-def compute(job: Job) -> Batch:
+def compute(job: Job[TrajectoryOptions]) -> Batch:
     """Run every point: `settle` periods unrecorded, `record` periods into a log, and on to name the attractor.
 
     Carried points start where the one before them, or the point of a sweep that starts the chain, ended.
     """
-    options: Any = job.options
+    options = job.options
     rows: list[dict[str, Any]] = []
     impacts: list[dict[str, Any]] = []
     logs: dict[str, str] = {}

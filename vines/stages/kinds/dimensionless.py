@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import msgspec
 
 from vines.model import VI_NES, PhysicalParams
@@ -17,7 +15,7 @@ class DimensionlessOptions(msgspec.Struct, frozen=True, forbid_unknown_fields=Tr
     """A rig in SI units, Table 1 of the paper by default, and its dimensionless parameters; nothing to choose."""
 
 
-def _check(params: dict[str, float], options: Any) -> None:
+def _check(params: dict[str, float], options: DimensionlessOptions) -> None:
     del options
     rig = PhysicalParams(**{name: params[name] for name in TABLE_1})
     rig.dimensionless(**{name: value for name, value in params.items() if name not in TABLE_1})

@@ -13,8 +13,8 @@ from vines import schema
 from vines.errors import RigError, VinesError
 from vines.pipeline import CodeDigests
 from vines.rig import RunInfo, compare, find_runs, load_reconstruction, match_ring_downs, read_folder
-from vines.rig._comparison_rows import comparison_rows
-from vines.rig._reconstruction_rows import impact_columns, reconstruction_row
+from vines.rig.formats import readers
+from vines.rig.records import comparison_rows, impact_columns, reconstruction_row
 from vines.stages.api._asking import query
 from vines.stages.api._home import Home, current
 from vines.stages.rig._runs import free_decay, make, wanted
@@ -22,7 +22,7 @@ from vines.store import write_parquet, write_text
 
 if TYPE_CHECKING:
     from vines.rig import Reconstruction
-    from vines.rig._verdict import Comparison
+    from vines.rig.verdict import Comparison
 
 __all__ = ["Compared", "Derived", "compare_run", "reconstruct_run"]
 
@@ -82,7 +82,7 @@ def reconstruct_run(folder: Path, ring_downs: Sequence[Path] = (), *, study: Hom
     if info.protocol == "ringdown":
         raise RigError(f"run {info.run_id!r} is a ring-down: it gives omega0 and lam of the runs that name it")
     chosen = _given(ring_downs) if ring_downs else _beside(folder, info)
-    code = CodeDigests(study.cache / "code.json").digest("vines.stages.rig._reconstruct:compute")
+    code = CodeDigests(study.cache / "code.json").digest("vines.stages.rig._reconstruct:compute", *readers())
     work = wanted(folder, [free_decay(path) for path in chosen.values()], 0, code, study.cache)
     if refused := make(work):
         raise RigError(refused)

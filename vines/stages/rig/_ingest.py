@@ -4,21 +4,23 @@ from __future__ import annotations
 
 import shutil
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from vines.errors import RigError
 from vines.pipeline import Batch, WholeJob
 from vines.rig import find_runs, read_run
-from vines.rig._log import write_log
-from vines.rig._run_folder import SUMS
-from vines.rig._tables import channel_rows, run_row
+from vines.rig.ingest import SUMS
+from vines.rig.records import channel_rows, run_row, write_log
+
+if TYPE_CHECKING:
+    from vines.stages.kinds.ingest import IngestOptions
 
 __all__ = ["compute"]
 
 
-def compute(job: WholeJob) -> Batch:
+def compute(job: WholeJob[IngestOptions]) -> Batch:
     """Read every run, refuse what can't be used, and keep the rest."""
-    options: Any = job.options
+    options = job.options
     runs: list[dict[str, Any]] = []
     channels: list[dict[str, Any]] = []
     logs: dict[str, str] = {}
@@ -40,9 +42,9 @@ def compute(job: WholeJob) -> Batch:
     return Batch(tables={"rig_runs": runs, "rig_channels": channels}, logs=logs)
 
 
-def _folders(job: WholeJob) -> tuple[Path, ...]:
+def _folders(job: WholeJob[IngestOptions]) -> tuple[Path, ...]:
     """Return the run folders, in the order of time."""
-    options: Any = job.options
+    options = job.options
     if bool(options.folder) == bool(job.inputs):
         raise RigError("ingest takes either folder or needs = [a stage of kind synth]")
     if options.folder:

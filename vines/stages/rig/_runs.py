@@ -19,7 +19,7 @@ from vines.rig import (
     ring_down,
     save_reconstruction,
 )
-from vines.rig._run_folder import raw_sums
+from vines.rig.ingest import raw_sums
 from vines.store import key_of
 
 __all__ = ["Work", "free_decay", "kept_runs", "make", "ring_downs_of", "wanted"]

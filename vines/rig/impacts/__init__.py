@@ -1,0 +1,5 @@
+"""Which impacts there were: what pulses, corners and flights show, tried against the fit."""
+
+from vines.rig.impacts._oscillator import Response, measure_response
+
+__all__ = ["Response", "measure_response"]

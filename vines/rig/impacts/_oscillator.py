@@ -1,0 +1,220 @@
+"""The oscillator's motion and its velocity jumps from its channels: detect, fit, add what is missed, prune, refine."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from vines.errors import RigError
+from vines.rig.fit import KEEP, Bins, Fitter, JumpFit, Push, bins_of, straight
+from vines.rig.impacts._detect import U_PULSE, Detected, detect, inside
+from vines.rig.impacts._detect_alone import detect_alone
+from vines.rig.impacts._pulses import SMOOTH, pulses_of
+from vines.rig.recording import Recording, Sampled
+
+__all__ = ["Response", "measure_response"]
+
+Floats = npt.NDArray[np.float64]
+
+_EVERY = 6.25e-4
+"""Distance of the values of a smoothed acceleration that the fit uses [s]: about the width of the smoothing."""
+
+_TWIN = 8e-3
+"""Impacts nearer than this, with opposite jumps, may be one and a false one beside it [s]."""
+
+_AT_WALL = 0.2
+"""How far from the wall, relative to b, a ball may seem to be at a soft impact."""
+
+_DENIED = 0.2
+"""Largest part of the impacts that the motion may deny."""
+
+_ROUNDS = 5
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Response:
+    """The oscillator's motion with its velocity jumps.
+
+    Attributes
+    ----------
+    channel : Sampled
+        What was fitted.
+    order : int
+        0 if it is a displacement, 2 an acceleration.
+    bins : Bins
+        Its block means.
+    fit : JumpFit
+        On the clock of `channel`.
+    pushed : Push or None
+        What the ball's friction was taken to add.
+    pulse : ndarray, shape (K,)
+        Velocity jumps by the pulses of the acceleration, scaled to those of the fit [m/s].
+    gain : complex or None
+        Accelerometer relative to the second derivative of the displacement at the forcing frequency.
+    late, u_late : float
+        By how much `channel` is late on the run's clock [s]: the two sensors see the same impacts, and each is
+        trusted by the uncertainty of its alignment.
+    drift : float
+        Change of that from the first to the second half, in standard uncertainties.
+    candidates, pruned : int
+        Pulses looked at, and those without a velocity jump.
+    """
+
+    channel: Sampled
+    order: int
+    bins: Bins
+    fit: JumpFit
+    pushed: Push | None
+    pulse: Floats
+    gain: complex | None
+    late: float
+    u_late: float
+    drift: float
+    candidates: int
+    pruned: int
+
+
+def measure_response(
+    recording: Recording,
+    s: complex,
+    omega: float,
+    forced: tuple[npt.NDArray[np.complex128], Floats] | None = None,
+    *,
+    driven: complex,
+    friction: float = 0.0,
+    u_natural: tuple[float, float] = (1e-5, 1e-3),
+    impacts: tuple[Floats, Floats] | None = None,
+) -> Response:
+    """Find the impacts and fit the oscillator's motion.
+
+    Parameters
+    ----------
+    recording : Recording
+    s : complex
+        -lam omega0/2 + i gamma of the free oscillation [1/s].
+    omega : float
+        Angular frequency of the forcing, measured [rad/s].
+    forced : tuple of ndarray, optional
+        As of `fit_jumps`.
+    friction : float
+        Acceleration of the oscillator by the ball's friction, mu times the ball's deceleration [m/s^2].
+    u_natural : tuple of float
+        Relative standard uncertainties of omega0 and lam.
+    driven : complex
+        First harmonic of the forced response that the base asks for [m].
+    impacts : tuple of ndarray, optional
+        Times [s] on the clock of the oscillator's channel and velocity jumps [m/s], if they are known otherwise.
+
+    Raises
+    ------
+    RigError
+        If no channel measures the oscillator.
+    """
+    displacement, accelerometer = recording.role("lo_disp"), recording.role("lo_acc")
+    channel = displacement or accelerometer
+    if channel is None:
+        raise RigError(f"run {recording.run.run_id!r} has no channel on the oscillator (lo_disp or lo_acc)")
+    order = 0 if displacement is not None else 2
+    bins = bins_of(channel) if order == 0 else _quiet(channel)
+    fitter = Fitter(bins, s, omega, order, forced, driven, recording.run.b.value, friction, u_natural)
+    sensor = accelerometer if accelerometer is not None else channel
+    if impacts is None:
+        if order == 0:
+            found = detect(fitter, channel, sensor)
+        else:
+            found, fitter = detect_alone(fitter, channel)
+            bins = fitter.bins
+    else:
+        times, dv, u = inside(bins, *impacts, np.full(len(impacts[0]), U_PULSE))
+        found = Detected(times, dv, u, len(times))
+    times, dv, u, delay = found.t, found.dv, found.u, found.delay
+    fit, _ = fitter.fit_rubbed(times + delay, u, dv)
+    for _ in range(_ROUNDS if impacts is None else 0):
+        keep = _credible(fit, dv, u, fitter)
+        if keep.all():
+            break
+        times, dv, u = times[keep], dv[keep], u[keep]
+        fit, _ = fitter.fit_rubbed(times + delay, u, dv)
+    pushed = fitter.rubbed(fit, times + delay)
+    if pushed is not None and order == 0:
+        fitter = straight(fitter, times + delay, u, dv, pushed)
+        bins = fitter.bins
+    fit = fitter.fit(times + delay, u, dv, draws=32, pushed=pushed)
+    late, u_late = (
+        _share(delay, found.u_delay, channel.u_time, sensor.u_time) if found.gain is not None else (0.0, channel.u_time)
+    )
+    return Response(
+        channel, order, bins, fit, pushed, dv, found.gain, late, u_late, found.drift, found.candidates,
+        found.candidates - len(times),
+    )  # fmt: skip
+
+
+def _quiet(accelerometer: Sampled) -> Bins:
+    """Return an acceleration as the fit can use it: smoothed, for structural ringing is many times the motion."""
+    pulses = pulses_of(accelerometer)
+    stride = max(1, round(_EVERY / pulses.step))
+    t = pulses.t[::stride]
+    bad = accelerometer.start + np.flatnonzero(~accelerometer.valid) / accelerometer.rate
+    place = np.searchsorted(bad, t)
+    apart = np.full(len(t), np.inf)
+    if len(bad):
+        apart = np.minimum(np.abs(bad[np.maximum(place - 1, 0)] - t), np.abs(bad[np.minimum(place, len(bad) - 1)] - t))
+    fair = apart > 5 * pulses.smooth
+    return Bins(t[fair], pulses.values[::stride][fair], 0.0, pulses.smooth)
+
+
+def _credible(fit: JumpFit, pulse: Floats, u: Floats, fitter: Fitter) -> npt.NDArray[np.bool_]:
+    """Say which impacts to keep; of several near each other, the least credible one goes first.
+
+    An impact whose jump the motion shows stays, but of two in one place, with jumps that cancel, not the one that was
+    heard less well. One that was heard only stays if the motion does not deny its pulse, if it is not what a far
+    larger one beside it left, and if the ball was at the wall then: it changes the ball's flight hardly. Beside a
+    flight that is not one nothing can be said; and where many are denied, it is the fit that is wrong.
+    """
+    dv, t = fit.jumps.dv, fit.motion.starts[1:]
+    heard = u <= U_PULSE
+    shown = np.abs(dv) > KEEP * fit.u_dv
+    denied = np.abs(dv - pulse) > KEEP * fit.u_dv
+    blind = ~(fit.fair[:-1] & fit.fair[1:])
+    soft = ~denied & ~_beside(t, dv, pulse) & (_off_the_wall(fit, fitter.b) < _AT_WALL * fitter.b)
+    # An acceleration has weighed pulses and flights against each other before.
+    keep = shown | (heard & (blind | soft | (fitter.order == 2)))
+    if not len(keep) or np.mean(~keep) > _DENIED:
+        return np.ones(len(t), bool)
+    # In a cluster a false impact spoils the jumps of its neighbours.
+    worth = np.abs(dv) / fit.u_dv
+    for k in np.flatnonzero(~keep):
+        around = np.abs(t - t[k]) < _TWIN
+        keep[k] = np.min(worth[around & ~keep], initial=np.inf) < worth[k]
+    near = np.flatnonzero((np.diff(t) < _TWIN) & (dv[:-1] * dv[1:] < 0))
+    worse = np.where(u[near] > u[near + 1], near, near + 1)
+    keep[worse[(u[worse] > U_PULSE)]] = False
+    return keep
+
+
+def _beside(t: Floats, dv: Floats, pulse: Floats) -> npt.NDArray[np.bool_]:
+    """Say which pulses are small ones beside a large one: more likely what is left of that."""
+    small = np.zeros(len(t), bool)
+    for k, other in ((slice(1, None), slice(None, -1)), (slice(None, -1), slice(1, None))):
+        small[k] |= (np.diff(t) < 4 * SMOOTH) & (np.abs(pulse[k]) < 0.2 * np.abs(dv[other]))
+    return small
+
+
+def _off_the_wall(fit: JumpFit, b: float) -> Floats:
+    """Return how far from the wall a ball would be that flies straight from the impact before to the one after [m]."""
+    jumps, t = fit.jumps, fit.motion.starts[1:]
+    x2 = jumps.x + np.sign(jumps.dv) * b
+    off = np.zeros(len(t))
+    if len(t) > 2:
+        share = (t[1:-1] - t[:-2]) / (t[2:] - t[:-2])
+        off[1:-1] = np.abs(x2[1:-1] - x2[:-2] - share * (x2[2:] - x2[:-2]))
+    return off
+
+
+def _share(delay: float, u_delay: float, u_channel: float, u_sensor: float) -> tuple[float, float]:
+    """Return how late the fitted channel is itself, of the delay between both, and the uncertainty of that."""
+    own, other = max(u_channel, 1e-7), max(u_sensor, 1e-7)
+    share = own**2 / (own**2 + other**2)
+    return share * delay, float(np.hypot(share * u_delay, own * other / np.hypot(own, other)))

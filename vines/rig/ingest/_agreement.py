@@ -1,0 +1,107 @@
+"""Do the channels of a run agree with each other? A swapped sign or a wrong unit shows where two saw one motion."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from vines.errors import RigError
+from vines.rig.ingest._tone import Tone, find_tone
+from vines.rig.recording import RunInfo, Sampled
+
+__all__ = ["check_agreement"]
+
+_RATIO = 0.25
+"""Relative difference of two amplitudes of one motion that calibration, coupling and linearity can explain."""
+_ANGLE = np.radians(35.0)
+"""The same of their phases."""
+_COMMAND = 5e-3
+"""Relative difference of measured and commanded frequency that no generator has: a clock or the command is wrong."""
+_REACHED = (0.5, 1.5)
+"""Measured over commanded base amplitude: shakers sag by a fifth, and don't overshoot by half."""
+
+
+def check_agreement(run: RunInfo, channels: Sequence[Sampled]) -> tuple[str, ...]:
+    """Compare displacement with acceleration and the base with its command; return what was compared, in words.
+
+    Parameters
+    ----------
+    run : RunInfo
+        With the command.
+    channels : sequence of Sampled
+        On the clock of the run.
+
+    Raises
+    ------
+    RigError
+        If two channels that saw one motion contradict each other, or the base its command.
+    """
+    said: list[str] = []
+    base = _tones(channels, ("base_disp", "base_acc"), None)
+    ringdown = run.protocol == "ringdown"
+    frequency = next((tone.f for _, tone in base if tone.clear), None) if not ringdown else None
+    if not ringdown:
+        said += _check_command(run, base)
+    for pair in (base if not ringdown else [], _tones(channels, ("lo_disp", "lo_acc"), frequency)):
+        for k, (one, a) in enumerate(pair):
+            for other, b in pair[k + 1 :]:
+                said += _compare(one, a, other, b)
+    return tuple(said)
+
+
+def _tones(channels: Sequence[Sampled], roles: tuple[str, ...], near: float | None) -> list[tuple[Sampled, Tone]]:
+    found = []
+    for channel in channels:
+        if channel.role in roles:
+            tone = find_tone(channel.values, channel.valid, channel.rate, channel.start, near)
+            if tone is not None:
+                found.append((channel, tone))
+                near = near or (tone.f if tone.clear else None)
+    return sorted(found, key=lambda each: roles.index(each[0].role))
+
+
+def _check_command(run: RunInfo, base: list[tuple[Sampled, Tone]]) -> list[str]:
+    for channel, tone in base:
+        if not tone.clear:
+            raise RigError(
+                f"{channel.name}: the base shows no clear forcing ({tone.amplitude:.3g} against {tone.noise:.3g} of "
+                f"noise), but protocol is {run.protocol}; is the channel connected?"
+            )
+        if run.f_cmd is not None and abs(tone.f / run.f_cmd - 1) > _COMMAND:
+            raise RigError(
+                f"{channel.name}: the base moves at {tone.f:.6g} Hz, f_cmd is {run.f_cmd:.6g} Hz; a sampling rate or "
+                "the command is wrong"
+            )
+        if run.E_cmd is not None:
+            E = tone.amplitude if channel.role == "base_disp" else tone.amplitude / (2 * np.pi * tone.f) ** 2
+            if not _REACHED[0] < E / run.E_cmd < _REACHED[1]:
+                raise RigError(
+                    f"{channel.name}: the base moves by {E:.3g} m, {E / run.E_cmd:.3g} times E_cmd = {run.E_cmd:.3g}: "
+                    "a unit, a sensitivity or the command is wrong"
+                )
+    return [f"{channel.name} against the command" for channel, _ in base]
+
+
+def _compare(one: Sampled, a: Tone, other: Sampled, b: Tone) -> list[str]:
+    """Compare the fundamentals of two channels that saw one motion."""
+    if not (a.clear and b.clear):
+        return []
+    flipped = one.role != other.role
+    ratio = b.amplitude / a.amplitude / ((2 * np.pi * a.f) ** 2 if flipped else 1.0)
+    angle = b.phase - a.phase - (np.pi if flipped else 0.0)
+    angle = float((angle + np.pi) % (2 * np.pi) - np.pi)
+    if abs(abs(angle) - np.pi) < _ANGLE:
+        raise RigError(
+            f"{one.name} and {other.name} saw one motion with opposite signs: one sign is wrong in channels.tsv"
+        )
+    if abs(ratio - 1) > _RATIO:
+        raise RigError(
+            f"{other.name} shows {ratio:.3g} times the motion that {one.name} shows; a unit or a sensitivity is wrong"
+        )
+    if abs(angle) > _ANGLE:
+        raise RigError(
+            f"{one.name} and {other.name} saw one motion {np.degrees(angle):+.0f} degrees apart; a clock, a delay or a "
+            "high-pass is wrong"
+        )
+    return [f"{other.name} against {one.name}: {ratio:.4f} times, {np.degrees(angle):+.2f} deg"]

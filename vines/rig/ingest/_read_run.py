@@ -1,0 +1,153 @@
+"""From a run folder to a `Recording`: every channel in SI, on one clock, checked against the others."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+from vines.errors import RigError
+from vines.rig.formats import RawChannel, RawFile, read_file
+from vines.rig.ingest._agreement import check_agreement
+from vines.rig.ingest._calibrate import U_CORNER, Calibrated, calibrate
+from vines.rig.ingest._clock import Clock, align_clocks
+from vines.rig.ingest._run_folder import check_sums, raw_sums, read_folder, run_info
+from vines.rig.ingest._run_form import ChannelRow, RunForm
+from vines.rig.recording import ROLES, Recording, Sampled
+
+__all__ = ["Ingested", "assemble", "read_run"]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Ingested:
+    """A run as it was read, and what was found on the way.
+
+    Attributes
+    ----------
+    recording : Recording
+        The run in SI.
+    rows : mapping of str to ChannelRow
+        What ``channels.tsv`` says of each channel.
+    clipped : mapping of str to int
+        Samples of each channel that are at the end of its range.
+    clocks : mapping of str to Clock
+        How the clock of each recorder runs.
+    sums : mapping of str to str
+        SHA-256 of each raw file.
+    compared : tuple of str
+        What was compared, in words.
+    """
+
+    recording: Recording
+    rows: Mapping[str, ChannelRow]
+    clipped: Mapping[str, int]
+    clocks: Mapping[str, Clock]
+    sums: Mapping[str, str]
+    compared: tuple[str, ...]
+
+
+def read_run(path: Path) -> Ingested:
+    """Read a run folder; nothing is written.
+
+    Parameters
+    ----------
+    path : Path
+        The folder with ``run.json``.
+
+    Raises
+    ------
+    FileMissingError
+        If a file is missing.
+    RigError
+        If the run can't be used as it is; one line says why.
+    """
+    folder = read_folder(path)
+    sums = raw_sums(folder)
+    check_sums(folder, sums)
+    files = {row.file: folder.path / "raw" / row.file for row in folder.rows}
+    return assemble(folder.form, folder.rows, {name: read_file(file) for name, file in files.items()}, sums)
+
+
+def assemble(
+    form: RunForm, rows: tuple[ChannelRow, ...], files: Mapping[str, RawFile], sums: Mapping[str, str]
+) -> Ingested:
+    """Return a run from its description and what its files hold.
+
+    Parameters
+    ----------
+    form, rows
+        ``run.json`` and ``channels.tsv``.
+    files : mapping of str to RawFile
+        By their path below ``raw/``.
+    sums : mapping of str to str
+        SHA-256 of the raw files by their path in the run folder.
+
+    Raises
+    ------
+    RigError
+        If the run can't be used as it is.
+    """
+    info = run_info(form)
+    calibrated = [calibrate(row, _field(row, files[row.file]), max_clipped=form.max_clipped) for row in rows]
+    clocks = align_clocks(calibrated, max_offset=form.max_offset, ringdown=info.protocol == "ringdown")
+    channels = [_on_the_clock(channel, clocks[channel.row.recorder]) for channel in calibrated]
+    if not any(channel.role in ("lo_disp", "lo_acc") for channel in channels):
+        raise RigError(f"run {form.run_id}: no channel measures the oscillator (roles lo_disp, lo_acc)")
+    if info.protocol != "ringdown" and not any(channel.role.startswith("base") for channel in channels):
+        raise RigError(
+            f"run {form.run_id}: no channel measures the base (base_disp, base_acc); a command is no measurement"
+        )
+    compared = check_agreement(info, channels)
+    together = hashlib.sha256(
+        "".join(f"{value}  {name}\n" for name, value in sorted(sums.items())).encode()
+    ).hexdigest()
+    return Ingested(
+        recording=Recording(info, {channel.name: channel for channel in channels}, together),
+        rows={row.name: row for row in rows},
+        clipped={channel.row.name: channel.clipped for channel in calibrated},
+        clocks=clocks,
+        sums=dict(sums),
+        compared=compared,
+    )
+
+
+def _field(row: ChannelRow, file: RawFile) -> RawChannel:
+    """Return what the file holds of a channel."""
+    try:
+        return file.channel(row.field)
+    except RigError as missing:
+        raise RigError(f"{row.name} in channels.tsv: in {row.file} {missing}") from None
+
+
+def _on_the_clock(channel: Calibrated, clock: Clock) -> Sampled:
+    """Return a channel on the clock of the run."""
+    row = channel.row
+    quantity, unit = ROLES[row.role]
+    told = {
+        "quantity": quantity,
+        "unit": unit,
+        "sign": "positive to the right",
+        "role": row.role,
+        "dof": row.dof,
+        "sensor": row.sensor,
+        "serial": row.serial,
+        "calibrated": row.calibrated,
+        "sensitivity": "scaled" if row.sensitivity == "scaled" else f"{row.sensitivity:g} {row.sensitivity_unit}",
+        "file": row.file,
+        "field": row.field,
+        "recorder": row.recorder,
+        "clock": clock.how,
+    }
+    return Sampled(
+        name=row.name,
+        role=row.role,
+        rate=channel.rate / clock.pace,
+        start=clock.offset + clock.pace * channel.start,
+        values=channel.values,
+        valid=channel.valid,
+        u_gain=row.u_sensitivity,
+        u_time=(clock.u**2 + row.u_delay**2) ** 0.5,
+        u_high_pass=U_CORNER * row.high_pass,
+        about={key: text for key, text in told.items() if text},
+    )

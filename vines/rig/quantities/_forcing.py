@@ -1,0 +1,177 @@
+"""What the base did, and whether the oscillator's response in flight belongs to it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from vines.errors import RigError
+from vines.rig.fit import SineFit, bins_of, sine_fit
+from vines.rig.recording import Recording, Sampled, Uncertain
+
+__all__ = ["Base", "Tuning", "measure_base", "tune"]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Base:
+    """Measured motion of the base, e(t) = Re[e_1 exp(i omega t)] + harmonics.
+
+    Attributes
+    ----------
+    channel : Sampled
+        Where it was measured.
+    fit : SineFit
+        Of the channel.
+    e : ndarray of complex, shape (N,)
+        Displacement e_1 … e_N [m].
+    E : Uncertain
+        Amplitude [m], calibration included.
+    f : Uncertain
+        Frequency [Hz].
+    phase : Uncertain
+        phi of e = E sin(omega t + phi) [rad] on the run's clock, alignment included.
+    other : Uncertain or None
+        E from a second channel on the base, for a check.
+    """
+
+    channel: Sampled
+    fit: SineFit
+    e: npt.NDArray[np.complex128]
+    E: Uncertain
+    f: Uncertain
+    phase: Uncertain
+    other: Uncertain | None
+
+
+@dataclass(frozen=True, slots=True)
+class Tuning:
+    """omega0, lam, E and the alignment after the response in flight has been laid beside the base.
+
+    Attributes
+    ----------
+    omega0, lam, E : Uncertain
+        [rad/s], [1], [m].
+    phase : float
+        Correction of the base's phase [rad].
+    ratio : complex
+        Base motion that the response asks for, relative to the measured one, before the correction.
+    misfit : float
+        Distance of `ratio` from 1 in standard deviations (root of chi^2 of two degrees of freedom).
+    """
+
+    omega0: Uncertain
+    lam: Uncertain
+    E: Uncertain
+    phase: float
+    ratio: complex
+    misfit: float
+
+
+def measure_base(recording: Recording, *, harmonics: int = 3) -> Base:
+    """Fit the base motion; the command is never used.
+
+    Raises
+    ------
+    RigError
+        If no channel measures the base.
+    """
+    channel = recording.role("base_disp", "base_acc")
+    if channel is None:
+        raise RigError(
+            f"run {recording.run.run_id!r} has no channel on the base (base_disp or base_acc); the command is not used "
+            "in its place"
+        )
+    fit = sine_fit(bins_of(channel), harmonics=harmonics)
+    e = _displacement(channel, fit)
+    E = abs(e[0])
+    relative = fit.u_amplitude / abs(fit.harmonics[0])
+    # The fit's phase is best in the middle of the record; the clock's alignment adds to it.
+    # That of a first-order high-pass changes by its corner over the frequency.
+    u_phase = float(np.hypot.reduce([fit.u_phase, fit.omega * channel.u_time, channel.u_high_pass / fit.f]))
+    second = recording.role("base_acc") if channel.role == "base_disp" else None
+    other = None
+    if second is not None:
+        again = sine_fit(bins_of(second), harmonics=harmonics, near=fit.f)
+        size = float(abs(_displacement(second, again)[0]))
+        other = Uncertain(size, size * float(np.hypot(second.u_gain, again.u_amplitude / abs(again.harmonics[0]))))
+    return Base(
+        channel,
+        fit,
+        e,
+        Uncertain(float(E), float(E * np.hypot(relative, channel.u_gain))),
+        Uncertain(fit.f, float(np.hypot(fit.u_f, fit.f * channel.u_time / (len(channel.values) / channel.rate)))),
+        Uncertain(float(np.angle(e[0]) + np.pi / 2), u_phase),
+        other,
+    )
+
+
+def _displacement(channel: Sampled, fit: SineFit) -> npt.NDArray[np.complex128]:
+    n = np.arange(1, len(fit.harmonics) + 1)
+    scale = 1.0 if channel.role == "base_disp" else -((n * fit.omega) ** 2)
+    return fit.harmonics / scale
+
+
+def tune(
+    base: Base,
+    omega0: Uncertain,
+    lam: Uncertain,
+    response: npt.NDArray[np.complex128],
+    slopes: tuple[complex, complex],
+    *,
+    u_gain: float,
+    u_time: float,
+    u_noise: float,
+) -> Tuning:
+    """Correct omega0, lam, E and the alignment by the base motion that the response in flight asks for.
+
+    Parameters
+    ----------
+    base : Base
+    omega0, lam : Uncertain
+        From the ring-downs.
+    response : ndarray of complex
+        Base motion e_1 that the forced response in flight asks for [m]: its value first, then draws of it.
+    slopes : tuple of complex
+        Its derivatives by omega0/omega0 and lam/lam [m].
+    u_gain, u_time, u_noise : float
+        Of the oscillator's channel: relative calibration, alignment [s]; and whatever else acts on the oscillator, as a
+        fraction of E.
+
+    Notes
+    -----
+    In flight omega0^2 (x1 - e) = -x1'' - …, so a wrong omega0 asks for a wrong base motion, and near resonance, where
+    |x1| is forty times E, very much so. Two equations (real and imaginary part) for four numbers, each known before
+    with an uncertainty: a Kalman step.
+    """
+    measured = base.e[0]
+    ratio = complex(response[0] / measured)
+    noise = response[1:] / measured
+    covariance = np.cov(np.stack([noise.real, noise.imag])) if len(noise) > 2 else np.zeros((2, 2))
+    covariance = covariance + np.eye(2) * u_noise**2
+    by_omega0, by_lam = slopes[0] / measured, slopes[1] / measured
+    # ratio + by_omega0 d_omega0 + by_lam d_lam = (1 + d_gain)(1 + i d_phase)
+    rows = np.array([[-by_omega0.real, -by_lam.real, 1.0, 0.0], [-by_omega0.imag, -by_lam.imag, 0.0, 1.0]])
+    relative_gain = float(np.hypot(base.E.u / base.E.value, u_gain))
+    u_phase = float(np.hypot(base.phase.u, base.fit.omega * u_time))
+    prior = np.diag(np.square([omega0.u / omega0.value, lam.u / lam.value, relative_gain, u_phase]))
+    seen = np.array([ratio.real - 1, ratio.imag])
+    spread = rows @ prior @ rows.T + covariance
+    gain = prior @ rows.T @ np.linalg.inv(spread)
+    step = gain @ seen
+    after = (np.eye(4) - gain @ rows) @ prior
+    misfit = float(np.sqrt(seen @ np.linalg.solve(spread, seen)))
+    u = np.sqrt(np.maximum(np.diag(after), 0.0))
+    # Of the correction of the gain, the base's share; the oscillator's own calibration keeps the rest.
+    share = (base.E.u / base.E.value) ** 2 / relative_gain**2 if relative_gain > 0 else 1.0
+    E = base.E.value * (1 + share * float(step[2]))
+    u_E = base.E.value * float(np.sqrt(share**2 * u[2] ** 2 + share * (1 - share) * relative_gain**2))
+    return Tuning(
+        Uncertain(omega0.value * (1 + float(step[0])), omega0.value * float(u[0])),
+        Uncertain(lam.value * (1 + float(step[1])), lam.value * float(u[1])),
+        Uncertain(E, u_E),
+        float(step[3]),
+        ratio,
+        misfit,
+    )

@@ -1,0 +1,21 @@
+"""What is kept of a run: rows of tables, its log, its reconstruction."""
+
+from vines.rig.records._comparison_rows import comparison_rows, cycle_rows, row_id
+from vines.rig.records._keep import load_reconstruction, save_reconstruction
+from vines.rig.records._log import write_log
+from vines.rig.records._reconstruction_rows import failed_row, impact_columns, reconstruction_row
+from vines.rig.records._tables import channel_rows, run_row
+
+__all__ = [
+    "channel_rows",
+    "comparison_rows",
+    "cycle_rows",
+    "failed_row",
+    "impact_columns",
+    "load_reconstruction",
+    "reconstruction_row",
+    "row_id",
+    "run_row",
+    "save_reconstruction",
+    "write_log",
+]
