@@ -15,20 +15,20 @@ from vines.attractors._look import look_at_block
 from vines.attractors._naming import attractor_from, word_of
 from vines.attractors._settle import NUDGE, ROUNDS, Patience
 from vines.attractors._waiting import next_wait
-from vines.dynamics import _advance as col
-from vines.dynamics import _totals as entry
 from vines.dynamics import ensemble
-from vines.dynamics._advance import set_state
-from vines.dynamics._ensemble import (
+from vines.dynamics.kernels import rows as col
+from vines.dynamics.kernels import set_state
+from vines.dynamics.kernels import totals as entry
+from vines.dynamics.runs import (
+    EVENTS_PER_PERIOD,
     STATUS_NAMES,
-    _measures,
-    _parameters,
-    _starts,
     each_thread,
+    impacts_of,
+    measures_of,
+    parameter_table,
+    start_table,
     threads_allowed,
 )
-from vines.dynamics._simulate import EVENTS_PER_PERIOD
-from vines.dynamics._trajectory import impacts_of
 from vines.model import FREQUENCY, MASS, PARAMETER_NAMES, START_NAMES, Params
 
 __all__ = ["Classified", "classify_many"]
@@ -122,7 +122,7 @@ class Classified:
     @cached_property
     def measures(self) -> npt.NDArray[np.void]:
         """Energy measures as `Ensemble.measures`: over one repetition if periodic, else over the recorded window."""
-        return _measures(self.parameters[:, MASS], self.totals)
+        return measures_of(self.parameters[:, MASS], self.totals)
 
     @property
     def sticks(self) -> Floats:
@@ -220,7 +220,7 @@ def classify_many(
     (['1:1', '1:1', '2:2/2T', '2:1', None], 'chaotic')
     """
     how = Patience(settle, record, patience, watch, tolerance, max_impacts_per_period)
-    table, given = _parameters(params), _starts(starts)
+    table, given = parameter_table(params), start_table(starts)
     n = np.broadcast_shapes(table.shape[:1], given.shape[:1])[0]
     parameters, begin = (np.ascontiguousarray(np.broadcast_to(each, (n, 5))) for each in (table, given))
     work = _Many(parameters, begin.copy(), how, impacts, threads)

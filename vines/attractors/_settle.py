@@ -13,13 +13,10 @@ from vines.attractors._attractor import Attractor
 from vines.attractors._look import look_at_block
 from vines.attractors._naming import attractor_from, word_of
 from vines.attractors._waiting import next_wait
-from vines.dynamics import _advance as col
-from vines.dynamics import _totals as entry
-from vines.dynamics._advance import pass_over, set_state, shift_time
-from vines.dynamics._constants import constants
-from vines.dynamics._simulate import EVENTS_PER_PERIOD
-from vines.dynamics._start import check_start
-from vines.dynamics._trajectory import impacts_of
+from vines.dynamics.kernels import constants, pass_over, set_state, shift_time
+from vines.dynamics.kernels import rows as col
+from vines.dynamics.kernels import totals as entry
+from vines.dynamics.runs import EVENTS_PER_PERIOD, check_start, impacts_of
 from vines.errors import StateError
 from vines.model import START_NAMES, Params
 

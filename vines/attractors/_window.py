@@ -5,11 +5,9 @@ from __future__ import annotations
 import math
 
 from vines.attractors import _verdict as v
-from vines.dynamics import _advance as col
-from vines.dynamics import _totals as entry
-from vines.dynamics._advance import advance, begin, state_now
-from vines.dynamics._batches import BATCHES, standard_errors
-from vines.dynamics._totals import window_totals
+from vines.dynamics.kernels import BATCHES, advance, begin, standard_errors, state_now, window_totals
+from vines.dynamics.kernels import rows as col
+from vines.dynamics.kernels import totals as entry
 from vines.kernels import cold_njit, linked_njit, new_matrix, new_vector, njit
 
 __all__ = ["measure_window", "open_window", "run_window", "with_room"]

@@ -94,8 +94,7 @@ def _compute(result: Result, row: dict[str, Any]) -> dict[str, list[dict[str, An
     """Call the body of the stage for one point, which starts where its row says."""
     import msgspec
 
-    from vines.pipeline import Job, Points
-    from vines.pipeline._worker import body_of
+    from vines.pipeline import Job, Points, body_of
     from vines.store import Ids
 
     form: Any = result.manifest["ingredients"]
