@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import dataclasses
 import json
-import math
 from pathlib import Path
 
 import click
+
+from vines.plain import plain
 
 
 @click.command("inspect")
@@ -27,7 +28,7 @@ def command(file: Path, png: Path | None, as_json: bool) -> None:
     if png is not None:
         draw_file(found, file.name).savefig(png, dpi=150)
     if as_json:
-        rows = [{key: _plain(value) for key, value in dataclasses.asdict(each).items()} for each in facts]
+        rows = [plain(dataclasses.asdict(each)) for each in facts]
         click.echo(
             json.dumps(
                 {"form": found.form, "started": found.started, "channels": rows, "other": list(found.other)}, indent=1
@@ -73,7 +74,3 @@ def command(file: Path, png: Path | None, as_json: bool) -> None:
         click.echo(f"also in it, no channels: {', '.join(found.other[:8])}{' ...' if len(found.other) > 8 else ''}")
     if png is not None:
         click.echo(f"wrote {png}")
-
-
-def _plain(value: object) -> object:
-    return None if isinstance(value, float) and not math.isfinite(value) else value

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import math
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -11,6 +10,7 @@ import click
 
 from vines.cli._parameters import parameter_options
 from vines.model import STATE_NAMES, VI_NES, Params
+from vines.plain import plain
 
 if TYPE_CHECKING:
     from vines.orbits import Orbit
@@ -60,7 +60,7 @@ def command(
 
         orbit_log(orbits[0], log)
     if as_json:
-        rows = [_plain({**orbit_row(orbit), "remark": orbit.remark}) for orbit in orbits]
+        rows = [plain({**orbit_row(orbit), "remark": orbit.remark}) for orbit in orbits]
         shown: Any = {"complete": complete, "remark": remark, "orbits": rows} if every else rows[0]
         click.echo(json.dumps(shown, indent=1))
         return
@@ -134,12 +134,3 @@ def describe(orbit: Orbit) -> str:
 
 def _complex(z: complex) -> str:
     return f"{z.real:+.10f}" + (f" {z.imag:+.10f}i" if z.imag else "")
-
-
-def _plain(value: Any) -> Any:
-    """Return a value as JSON knows it; what is not finite is null."""
-    if isinstance(value, dict):
-        return {name: _plain(each) for name, each in value.items()}
-    if isinstance(value, list):
-        return [_plain(each) for each in value]
-    return None if isinstance(value, float) and not math.isfinite(value) else value

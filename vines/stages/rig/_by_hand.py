@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -12,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 from vines import schema
 from vines.errors import RigError, VinesError
 from vines.pipeline import CodeDigests
+from vines.plain import plain
 from vines.rig import RunInfo, compare, find_runs, load_reconstruction, match_ring_downs, read_folder
 from vines.rig.formats import readers
 from vines.rig.records import comparison_rows, impact_columns, reconstruction_row
@@ -91,7 +91,7 @@ def reconstruct_run(folder: Path, ring_downs: Sequence[Path] = (), *, study: Hom
     derived = folder / "derived"
     derived.mkdir(exist_ok=True)
     told, impacts = derived / "reconstruction.json", derived / "rig_impacts.parquet"
-    write_text(told, json.dumps({name: _plain(value) for name, value in row.items()}, indent=1) + "\n")
+    write_text(told, json.dumps(plain(row), indent=1) + "\n")
     origin = {"stage": "vines rig reconstruct", "code": code, "raw_sha256": found.sha256, "ring_downs": list(chosen)}
     write_parquet(impacts, "rig_impacts", schema.cast("rig_impacts", impact_columns([found])), provenance=origin)
     return Derived(found, tuple(chosen), row, (told, impacts))
@@ -136,7 +136,7 @@ def compare_run(folder: Path, ring_downs: Sequence[Path] = (), *, study: Home | 
     study = study or current()
     derived = reconstruct_run(folder, ring_downs, study=study)
     found = compare(derived.found, _near(derived.row, study))
-    rows = [{name: _plain(value) for name, value in row.items()} for row in comparison_rows(found)]
+    rows = [plain(row) for row in comparison_rows(found)]
     file = folder / "derived" / "comparison.json"
     write_text(file, json.dumps(rows, indent=1) + "\n")
     return Compared(derived, found, rows, file)
@@ -152,11 +152,6 @@ def _near(row: dict[str, Any], study: Home) -> list[dict[str, Any]]:
         f"qualify row_number() over (partition by pipeline, stage, branch_id order by {' + '.join(apart)}, A, mu) = 1",
         study=study,
     ).to_pylist()
-
-
-def _plain(value: Any) -> Any:
-    """Return a value as JSON knows it; what is not finite is null."""
-    return None if isinstance(value, float) and not math.isfinite(value) else value
 
 
 def _given(folders: Sequence[Path]) -> dict[str, Path]:
