@@ -9,6 +9,8 @@ import numpy as np
 import numpy.typing as npt
 from scipy.optimize import minimize_scalar
 
+from vines.rig.spread import spread_about
+
 __all__ = ["Restitution", "restitution"]
 
 Floats = npt.NDArray[np.float64]
@@ -87,7 +89,8 @@ def restitution(r: Floats, u: Floats, speed: Floats, side: Floats) -> Restitutio
     varied = spread > _VARIED and len(r) > 20
     # Of speeds that differ by less than they are measured to, a dependence would be that of their noise.
     told = len(r) > 20 and spread > _TOLD * float(np.sqrt(np.mean(u**2)) / abs(np.mean(r)))
-    sigma, mean, exponent = 1.4826 * float(np.median(np.abs(r - np.median(r)))) + 1e-3, float(np.median(r)), 0.0
+    mean, exponent = float(np.median(r)), 0.0
+    sigma = spread_about(mean, r) + 1e-3
     u_exponent, bend = float("inf"), 0.0
     for _ in range(4):
         # Gauss-Newton in the mean and the exponent, at the scatter found so far.

@@ -19,6 +19,7 @@ from vines.rig.fit._bins import Bins
 from vines.rig.fit._motion import Motion
 from vines.rig.fit._sine_fit import clumping
 from vines.rig.fit._slide import Push
+from vines.rig.spread import spread_about
 
 __all__ = ["TAIL", "JumpFit", "Jumps", "fit_jumps", "noise_of"]
 
@@ -295,7 +296,7 @@ def noise_of(bins: Bins) -> float:
     step = float(np.median(np.diff(bins.t))) / bins.smooth if bins.smooth else np.inf
     lag = np.subtract.outer(np.arange(5), np.arange(5))
     alike = np.where(lag == 0, 1.0, np.exp(-0.25 * np.where(lag == 0, 1, lag) ** 2 * step**2))
-    return float(np.median(np.abs(np.diff(bins.mean, 4))) / 0.6745 / np.sqrt(binomial @ alike @ binomial))
+    return spread_about(0.0, np.diff(bins.mean, 4)) / float(np.sqrt(binomial @ alike @ binomial))
 
 
 def _multiply(factor: Floats, vector: Floats) -> Floats:

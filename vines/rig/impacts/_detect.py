@@ -11,6 +11,7 @@ from vines.rig.fit import KEEP, LEAST, Bins, Fitter, JumpFit, bins_of, sine_fit,
 from vines.rig.impacts._pulses import Pulses, find_pulses, pulses_of, refine_pulses
 from vines.rig.impacts._split import split_flights
 from vines.rig.recording import Sampled
+from vines.rig.spread import spread_about
 
 __all__ = ["SIGMAS", "U_PULSE", "Detected", "detect", "inside", "threshold"]
 
@@ -242,7 +243,7 @@ def _bare(pulses: Pulses, bins: Bins, s: complex, omega: float) -> Pulses:
     for _ in range(3):
         linear = np.linalg.lstsq(part[:, near].T, some[near], rcond=None)[0]
         rest = some - linear @ part
-        near = np.abs(rest) < 3 * np.median(np.abs(rest)) / 0.6745
+        near = np.abs(rest) < 3 * spread_about(0.0, rest)
     values = values - linear @ columns
     return replace(pulses, values=values)
 

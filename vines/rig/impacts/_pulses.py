@@ -14,6 +14,7 @@ import numpy.typing as npt
 from scipy.ndimage import gaussian_filter1d
 
 from vines.rig.recording import Sampled
+from vines.rig.spread import spread_about
 
 __all__ = ["SMOOTH", "SMOOTH_DISPLACEMENT", "Pulses", "filled", "find_pulses", "pulses_of", "refine_pulses"]
 
@@ -92,7 +93,7 @@ class Pulses:
     @property
     def noise(self) -> float:
         """Standard deviation by the median, which sparse pulses do not reach [m/s^2]."""
-        return float(np.median(np.abs(self.values - np.median(self.values))) / 0.6745)
+        return spread_about(float(np.median(self.values)), self.values)
 
 
 def pulses_of(channel: Sampled, order: int = 2) -> Pulses:
