@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-import json
 import tempfile
 from pathlib import Path
 
 import click
+import msgspec
 
 from vines.cli._study import the_study
 from vines.errors import QueryError
-from vines.plain import plain
 
 SUFFIXES = {".csv": "csv", ".json": "json", ".parquet": "parquet"}
 
@@ -51,7 +50,9 @@ def command(sql: str, form: str | None, out: Path | None) -> None:
                 click.echo((Path(folder) / "answer.csv").read_text("utf-8"), nl=False)
         case "json":
             names, rows = rows_of(sql, study=study)
-            _put(json.dumps([plain(dict(zip(names, row, strict=True))) for row in rows], indent=1), out)
+            encoder = msgspec.json.Encoder(enc_hook=str, decimal_format="number")
+            found = encoder.encode([dict(zip(names, row, strict=True)) for row in rows])
+            _put(msgspec.json.format(found, indent=1).decode(), out)
         case _:
             from vines.cli._layout import lines
 

@@ -2,13 +2,10 @@
 
 from __future__ import annotations
 
-import dataclasses
-import json
 from pathlib import Path
 
 import click
-
-from vines.plain import plain
+import msgspec
 
 
 @click.command("inspect")
@@ -28,12 +25,8 @@ def command(file: Path, png: Path | None, as_json: bool) -> None:
     if png is not None:
         draw_file(found, file.name).savefig(png, dpi=150)
     if as_json:
-        rows = [plain(dataclasses.asdict(each)) for each in facts]
-        click.echo(
-            json.dumps(
-                {"form": found.form, "started": found.started, "channels": rows, "other": list(found.other)}, indent=1
-            )
-        )
+        said = {"form": found.form, "started": found.started, "channels": facts, "other": found.other}
+        click.echo(msgspec.json.format(msgspec.json.encode(said), indent=1))
         return
     from vines.cli._layout import print_rows
 

@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
+import msgspec
 
 from vines.cli._parameters import parameter_options
 from vines.model import STATE_NAMES, VI_NES, Params
-from vines.plain import plain
 
 if TYPE_CHECKING:
     from vines.orbits import Orbit
@@ -60,9 +59,9 @@ def command(
 
         orbit_log(orbits[0], log)
     if as_json:
-        rows = [plain({**orbit_row(orbit), "remark": orbit.remark}) for orbit in orbits]
+        rows = [{**orbit_row(orbit), "remark": orbit.remark} for orbit in orbits]
         shown: Any = {"complete": complete, "remark": remark, "orbits": rows} if every else rows[0]
-        click.echo(json.dumps(shown, indent=1))
+        click.echo(msgspec.json.format(msgspec.json.encode(shown, enc_hook=float), indent=1))
         return
     if every:
         count = f"{len(orbits)} orbit{'s' if len(orbits) > 1 else ''}"

@@ -10,7 +10,7 @@ from scipy.stats import t as student
 
 from vines.rig.recording import Uncertain
 
-__all__ = ["block_length", "combined", "error_ratio", "mean_over_periods", "standard_error"]
+__all__ = ["block_length", "combined", "error_ratio", "mean_over_periods", "robust_deviation", "standard_error"]
 
 Floats = npt.NDArray[np.float64]
 
@@ -103,6 +103,17 @@ def mean_over_periods(
     # A period adds so much to the sum beside what it would add at the mean.
     away = np.bincount(period, (values - mean) * size, periods).astype(np.float64)
     return Uncertain(mean, standard_error(away) * periods / float(np.sum(size)))
+
+
+def robust_deviation(distances: Floats) -> float:
+    """Return the standard deviation of normal values from distances to the middle, whatever a few wild ones are.
+
+    Examples
+    --------
+    >>> round(robust_deviation(np.append(np.random.default_rng(1).normal(size=9999), 1e9)), 2)
+    1.0
+    """
+    return float(np.median(np.abs(distances)) / 0.6745)
 
 
 def combined(value: float, *parts: float) -> Uncertain:

@@ -6,8 +6,8 @@ from scipy.integrate import solve_ivp
 
 from vines.errors import RigError
 from vines.rig import Sampled
+from vines.rig.fit import JumpModel, Train
 from vines.rig.fit._bins import Bins, bins_of
-from vines.rig.fit._jumps import fit_jumps
 from vines.rig.fit._motion import Motion
 
 OMEGA0, LAM, OMEGA, E = 55.4, 0.012, 55.0, 2.2e-4
@@ -49,7 +49,7 @@ def integrated():
 def test_displacement_gives_jumps_and_moves_times_that_are_20_us_off(integrated):
     times, sizes, before, signals = integrated
     given = times + np.random.default_rng(1).uniform(-2e-5, 2e-5, len(times))
-    fit = fit_jumps(signals[0], ROOT, OMEGA, given, 3e-5, sizes, draws=0)
+    fit = JumpModel(signals[0], ROOT, OMEGA).fit(Train.alike(given, sizes, 3e-5), draws=0)
     np.testing.assert_allclose(fit.jumps.t, times, rtol=0, atol=1e-7)
     np.testing.assert_allclose(fit.jumps.dv, sizes, rtol=0, atol=3e-7)
     np.testing.assert_allclose(fit.jumps.x, before[:, 0], rtol=0, atol=5e-8)
@@ -64,7 +64,7 @@ def test_displacement_gives_jumps_and_moves_times_that_are_20_us_off(integrated)
 
 def test_acceleration_gives_the_same_jumps_where_times_are_known(integrated):
     times, sizes, _, signals = integrated
-    fit = fit_jumps(signals[2], ROOT, OMEGA, times, 1e-7, sizes, order=2, draws=0)
+    fit = JumpModel(signals[2], ROOT, OMEGA, 2).fit(Train.alike(times, sizes, 1e-7), draws=0)
     np.testing.assert_allclose(fit.jumps.dv, sizes, rtol=0, atol=3e-7)
 
 
@@ -72,7 +72,8 @@ def test_stated_uncertainties_are_those_of_the_noise(integrated):
     times, sizes, _, signals = integrated
     rng = np.random.default_rng(2)
     noisy = Bins(signals[0].t, signals[0].mean + 1e-6 * rng.normal(size=len(signals[0].t)), WIDTH)
-    fit = fit_jumps(noisy, ROOT, OMEGA, times + 1e-5 * rng.normal(size=len(times)), 1e-5, sizes, draws=200)
+    given = Train.alike(times + 1e-5 * rng.normal(size=len(times)), sizes, 1e-5)
+    fit = JumpModel(noisy, ROOT, OMEGA).fit(given, draws=200)
     assert fit.residual == pytest.approx(1e-6, rel=0.05)
     assert fit.noise == pytest.approx(1e-6, rel=0.05)
     assert np.sqrt(np.mean(((fit.jumps.dv - sizes) / fit.u_dv) ** 2)) == pytest.approx(1.0, abs=0.3)
@@ -80,11 +81,20 @@ def test_stated_uncertainties_are_those_of_the_noise(integrated):
     assert np.sqrt(np.mean(((fit.jumps.t - times) / u_t) ** 2)) == pytest.approx(1.0, abs=0.3)
 
 
+def test_draws_are_those_of_the_seed(integrated):
+    times, sizes, _, signals = integrated
+    train = Train.alike(times, sizes, 1e-5)
+    one, again, other = (JumpModel(signals[0], ROOT, OMEGA, seed=seed).fit(train, draws=4) for seed in (0, 0, 1))
+    np.testing.assert_array_equal(one.draws.dv, again.draws.dv)
+    assert np.all(one.draws.dv != other.draws.dv)
+    np.testing.assert_array_equal(one.jumps.dv, other.jumps.dv)
+
+
 def test_a_missing_impact_spoils_its_neighbours_only(integrated):
     times, sizes, _, signals = integrated
     keep = ~np.isin(np.arange(len(times)), [20, 55])
     noisy = Bins(signals[0].t, signals[0].mean + 1e-6 * np.random.default_rng(3).normal(size=len(signals[0].t)), WIDTH)
-    fit = fit_jumps(noisy, ROOT, OMEGA, times[keep], 1e-5, sizes[keep], draws=0)
+    fit = JumpModel(noisy, ROOT, OMEGA).fit(Train.alike(times[keep], sizes[keep], 1e-5), draws=0)
     assert 2 <= np.count_nonzero(~fit.fair) <= 6
     assert fit.residual == pytest.approx(1e-6, rel=0.05)
     away = np.abs(np.subtract.outer(times[keep], times[~keep])).min(axis=1) > 0.2
@@ -93,11 +103,14 @@ def test_a_missing_impact_spoils_its_neighbours_only(integrated):
 
 def test_what_cannot_be_fitted_is_refused(integrated):
     times, sizes, _, signals = integrated
-    with pytest.raises(RigError, match="must ascend"):
-        fit_jumps(signals[0], ROOT, OMEGA, times[::-1], 1e-6, sizes)
+    model = JumpModel(signals[0], ROOT, OMEGA)
+    train = Train.alike(times, sizes, 1e-6)
+    for bad in (train.merged(train.only(np.array([3]))), train.later(-1.0)):
+        with pytest.raises(RigError, match="at times of their own, inside the record"):
+            model.fit(bad)
     many = np.linspace(0.01, times[-1], 4000)
     with pytest.raises(RigError, match="4000 impacts leave only"):
-        fit_jumps(signals[0], ROOT, OMEGA, many, 1e-6, np.ones(4000))
+        model.fit(Train.alike(many, np.ones(4000), 1e-6))
 
 
 @pytest.fixture(scope="module")
@@ -120,7 +133,7 @@ def test_equal_jumps_keep_their_size_beside_a_forced_response(train, noise):
     t = (np.arange(int(motion.stop * 3200)) + 0.5) / 3200
     signal = motion.at(t) + noise * np.random.default_rng(1).normal(size=len(t))
     bins = bins_of(Sampled("laser", "lo_disp", 3200.0, 0.5 / 3200, signal, np.ones(len(t), bool)))
-    fit = fit_jumps(bins, ROOT, OMEGA0, motion.starts[1:], 6e-6, dv)
+    fit = JumpModel(bins, ROOT, OMEGA0).fit(Train.alike(motion.starts[1:], dv, 6e-6))
     ratio = fit.jumps.dv / dv
     u = float((fit.draws.dv / dv).mean(axis=1).std())
     assert abs(ratio.mean() - 1) < 5e-5 + 3 * u

@@ -7,6 +7,7 @@ from hypothesis import strategies as st
 from scipy.signal import bilinear, lfilter
 
 from vines.rig import Sampled
+from vines.rig.fit import Train
 from vines.rig.impacts._pulses import SMOOTH, filled, find_pulses, pulses_of, refine_pulses
 
 RATE, FINE = 51200.0, 16
@@ -47,13 +48,13 @@ def test_area_and_centroid_of_half_sines_that_ring(places, data, gains):
     areas = np.array(data.draw(st.lists(size, min_size=count, max_size=count)))
     lengths = np.array(data.draw(st.lists(st.floats(70e-6, 200e-6), min_size=count, max_size=count)))
     pulses = pulses_of(heard(middles, areas, lengths, gains))
-    times, dv = find_pulses(pulses, 0.4)
-    np.testing.assert_allclose(times, middles, rtol=0, atol=4e-6)
+    found = find_pulses(pulses, 0.4)
+    np.testing.assert_allclose(found.t, middles, rtol=0, atol=4e-6)
     # Far below its resonance a mode of gain g shows as -g/omega^2 of the second derivative of the smoothed pulse, which
     # takes g/2(omega s)^2 and 3g/4(omega s)^4 off its area.
     slow = [1 / (2 * np.pi * f * SMOOTH) ** 2 for f, _ in MODES]
     quiet = 1 - sum(gain * (x / 2 + 3 * x**2 / 4) for gain, x in zip(gains, slow, strict=True))
-    np.testing.assert_allclose(dv, quiet * areas, rtol=0.004, atol=1e-5)
+    np.testing.assert_allclose(found.dv, quiet * areas, rtol=0.004, atol=1e-5)
 
 
 def test_noise_moves_a_pulse_by_its_own_error():
@@ -64,8 +65,8 @@ def test_noise_moves_a_pulse_by_its_own_error():
     sigma, errors = 0.03, []
     for _ in range(20):
         values = clean.values + sigma * rng.normal(size=len(clean.values))
-        times, dv = find_pulses(pulses_of(Sampled("acc", "lo_acc", RATE, clean.start, values, clean.valid)), 1.0)
-        errors.append(np.stack([times - middles, dv - 0.01]))
+        found = find_pulses(pulses_of(Sampled("acc", "lo_acc", RATE, clean.start, values, clean.valid)), 1.0)
+        errors.append(np.stack([found.t - middles, found.dv - 0.01]))
     u_dv = sigma * np.sqrt(SMOOTH / RATE * np.sqrt(2 * np.pi))
     u_t, seen = u_dv * SMOOTH / 0.01, np.std(errors, axis=(0, 2))
     assert seen[1] == pytest.approx(u_dv, rel=0.15)
@@ -76,9 +77,9 @@ def test_second_derivative_of_a_displacement_shows_the_same_jumps():
     t = (np.arange(round(0.4 * RATE)) + 0.5) / RATE
     middles, areas = np.array([0.0701, 0.1999, 0.3003]), np.array([0.02, -0.01, 0.03])
     x = sum(area * np.maximum(t - middle, 0.0) for middle, area in zip(middles, areas, strict=True))
-    times, dv = find_pulses(pulses_of(Sampled("laser", "lo_disp", RATE, t[0], x, np.ones(len(t), bool)), 0), 0.3)
-    np.testing.assert_allclose(times, middles, rtol=0, atol=2e-6)
-    np.testing.assert_allclose(dv, areas, rtol=2e-3)
+    found = find_pulses(pulses_of(Sampled("laser", "lo_disp", RATE, t[0], x, np.ones(len(t), bool)), 0), 0.3)
+    np.testing.assert_allclose(found.t, middles, rtol=0, atol=2e-6)
+    np.testing.assert_allclose(found.dv, areas, rtol=2e-3)
 
 
 def test_a_dropout_is_bridged_by_a_cubic():
@@ -95,8 +96,8 @@ def test_a_sloping_background_does_not_shift_a_small_pulse():
     middle, area = 0.2003, 2e-3
     pulses = pulses_of(heard([middle], [area], [2e-4], [0.0] * len(MODES)))
     sloping = pulses.less(-(0.1 + 60.0 * (pulses.t - middle)))
-    plain, _ = refine_pulses(sloping, np.array([middle]), np.array([area]))
-    level, dv = refine_pulses(sloping, np.array([middle]), np.array([area]), level=True)
-    assert abs(plain[0] - middle) > 1e-5
-    assert level[0] == pytest.approx(middle, abs=1e-6)
-    assert dv[0] == pytest.approx(area, rel=6e-3)
+    known = Train.alike(np.array([middle]), np.array([area]), 1e-6)
+    plain, level = refine_pulses(sloping, known), refine_pulses(sloping, known, level=True)
+    assert abs(plain.t[0] - middle) > 1e-5
+    assert level.t[0] == pytest.approx(middle, abs=1e-6)
+    assert level.dv[0] == pytest.approx(area, rel=6e-3)

@@ -11,7 +11,7 @@ import numpy.typing as npt
 from vines.rig.ball._ball import Cavity, Course, ball_motion
 from vines.rig.fit import Jumps
 from vines.rig.recording import Uncertain
-from vines.rig.spread import spread_about
+from vines.rig.uncertainty import robust_deviation
 
 __all__ = ["SWAPPED", "MomentumFit", "fit_momentum"]
 
@@ -142,7 +142,7 @@ def fit_momentum(
         noise = residual(draws, value)
         u = np.sqrt(np.mean((noise - base) ** 2, axis=0) + (2e-4 * np.abs(jumps.dv[1:-1])) ** 2 + 1e-12)
         scaled = base / u
-        spread = max(1.0, spread_about(0.0, scaled[good])) if good.any() else 1.0
+        spread = max(1.0, robust_deviation(scaled[good])) if good.any() else 1.0
         good = usable & (np.abs(scaled) < _FAR * spread)
         slope = np.stack(
             [(residual(jumps, value | {n: value[n] + step[n]}) - base) / step[n] / u for n in _NAMES], axis=1

@@ -15,8 +15,7 @@ from vines.rig.ball._restitution import Restitution, restitution
 from vines.rig.fit import Jumps, slide
 from vines.rig.impacts import Response
 from vines.rig.recording import Recording, Uncertain
-from vines.rig.spread import spread_about
-from vines.rig.uncertainty import combined
+from vines.rig.uncertainty import combined, robust_deviation
 
 __all__ = ["LINEARITY", "Rebounds", "mean_restitution", "measure_rebounds", "stated", "uncalibrated"]
 
@@ -197,7 +196,7 @@ def _law(
     """Return which impacts obey a common law of the restitution, and the law."""
     middle = float(np.median(motion.r[told])) if told.any() else 0.5
     away = np.abs(motion.r - middle)
-    spread = spread_about(0.0, away[told]) + 1e-3 if told.any() else 1.0
+    spread = robust_deviation(away[told]) + 1e-3 if told.any() else 1.0
     law = None
     measured = told & (away < _OUTLIES * np.hypot(spread, u_r))
     for _ in range(2):
@@ -207,7 +206,7 @@ def _law(
         law = restitution(motion.r[measured], u_r[measured], speed[measured], motion.side[measured])
         with np.errstate(divide="ignore", invalid="ignore"):
             away = np.abs(motion.r - law.at(speed))
-        spread = spread_about(0.0, away[measured]) + 1e-3
+        spread = robust_deviation(away[measured]) + 1e-3
         measured = told & (away < _OUTLIES * np.hypot(spread, u_r))
     assert law is not None
     return measured, law

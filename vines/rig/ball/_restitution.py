@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 from scipy.optimize import minimize_scalar
 
-from vines.rig.spread import spread_about
+from vines.rig.uncertainty import robust_deviation
 
 __all__ = ["Restitution", "restitution"]
 
@@ -90,7 +90,7 @@ def restitution(r: Floats, u: Floats, speed: Floats, side: Floats) -> Restitutio
     # Of speeds that differ by less than they are measured to, a dependence would be that of their noise.
     told = len(r) > 20 and spread > _TOLD * float(np.sqrt(np.mean(u**2)) / abs(np.mean(r)))
     mean, exponent = float(np.median(r)), 0.0
-    sigma = spread_about(mean, r) + 1e-3
+    sigma = robust_deviation(r - mean) + 1e-3
     u_exponent, bend = float("inf"), 0.0
     for _ in range(4):
         # Gauss-Newton in the mean and the exponent, at the scatter found so far.

@@ -2,20 +2,21 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Any
+from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
 
 from vines.rig.fit._bins import Bins
-from vines.rig.fit._jumps import JumpFit, fit_jumps, noise_of
+from vines.rig.fit._jump_model import JumpModel, noise_of
+from vines.rig.fit._jumps import JumpFit
+from vines.rig.fit._signal import Forced, Terms
 from vines.rig.fit._slide import Push, push, slide
+from vines.rig.fit._train import Train
 
 __all__ = ["KEEP", "LEAST", "Fitter"]
 
 Floats = npt.NDArray[np.float64]
-Forced = tuple[npt.NDArray[np.complex128], Floats]
 
 KEEP = 5.0
 
@@ -46,14 +47,8 @@ class Fitter:
 
     Attributes
     ----------
-    bins : Bins
+    model : JumpModel
         Of the channel.
-    s, omega : complex, float
-        Of the free oscillation and of the forcing [1/s].
-    order : {0, 2}
-        Derivative of x1 that the channel measures.
-    forced : tuple of ndarray or None
-        As of `fit_jumps`.
     driven : complex, optional
         First harmonic of the forced response that the base asks for [m].
     b : float
@@ -64,47 +59,50 @@ class Fitter:
         Relative standard uncertainties of omega0 and lam.
     """
 
-    bins: Bins
-    s: complex
-    omega: float
-    order: int
-    forced: Forced | None
+    model: JumpModel
     driven: complex | None = None
     b: float = 0.0
     friction: float = 0.0
     u_natural: tuple[float, float] = (1e-5, 1e-3)
 
-    def fit(
-        self,
-        times: Floats,
-        u: Floats,
-        dv: Floats,
-        draws: int = 8,
-        pushed: Push | None = None,
-        extra: tuple[Floats, Floats] | None = None,
-    ) -> JumpFit:
-        def once(forced: Forced | None, more: tuple[Floats, Floats] | None, draws: int, **given: Any) -> JumpFit:
-            return fit_jumps(
-                self.bins, self.s, self.omega, times, u, dv, order=self.order, draws=draws, forced=forced,
-                pushed=pushed, extra=more, **given,
-            )  # fmt: skip
+    @property
+    def bins(self) -> Bins:
+        """What is fitted."""
+        return self.model.bins
 
-        if self.order == 0:
-            free = once(self.forced, extra, draws)
+    def on(self, bins: Bins) -> Fitter:
+        """Return the fitter of other samples of the channel."""
+        return replace(self, model=replace(self.model, bins=bins))
+
+    def fit(self, train: Train, draws: int = 8, pushed: Push | None = None, extra: Terms | None = None) -> JumpFit:
+        """Fit the channel at given impacts, twice where flights that hold another one spoil the first fit.
+
+        Parameters
+        ----------
+        train, draws, pushed
+            As of `JumpModel.fit`.
+        extra : tuple of ndarray, optional
+            As of `JumpModel`; for a displacement.
+        """
+        held = replace(self.model, forced=self._held())
+        if self.model.order == 0:
+            model = replace(self.model, extra=extra)
+            free = model.fit(train, pushed=pushed, draws=draws)
             if free.residual < _CLEAN * free.noise:
                 return free
-            held = once(self._held(), extra, 0)
-            if np.array_equal(held.fair, free.fair):
+            fair = replace(held, extra=extra).fit(train, pushed=pushed, draws=0).fair
+            if np.array_equal(fair, free.fair):
                 return free
-            again = once(self.forced, extra, draws, fair=held.fair)
+            again = model.fit(train, pushed=pushed, fair=fair, draws=draws)
             return again if again.residual < free.residual else free
         # The flights give the jumps; areas of pulses only hold those that have no samples beside them.
-        expected = (dv, np.abs(dv) + LEAST)
+        expected = (train.dv, np.abs(train.dv) + LEAST)
         waves, u_waves = _wander(self.bins)
-        first = once(self._held(), (waves, u_waves), 0, expected=expected)
-        sideways = self.omega * first.motion.at(self.bins.t, 1)
+        first = replace(held, extra=(waves, u_waves)).fit(train, expected=expected, pushed=pushed, draws=0)
+        sideways = self.model.omega * first.motion.at(self.bins.t, 1)
         more = (np.vstack([sideways, waves]), np.append(_U_SIDEWAYS, u_waves))
-        return once(self.forced, more, draws, expected=expected, fair=first.fair)
+        model = replace(self.model, extra=more)
+        return model.fit(train, expected=expected, pushed=pushed, fair=first.fair, draws=draws)
 
     def _held(self) -> Forced | None:
         """Return the harmonics with the first one as the base asks for it, firmly.
@@ -114,27 +112,32 @@ class Fitter:
         forced response held, it is seen which flights these are. In the fit that follows it is free, so that base and
         oscillator can be compared.
         """
-        if self.driven is None or self.forced is None:
-            return self.forced
-        (c, u) = self.forced
+        if self.driven is None or self.model.forced is None:
+            return self.model.forced
+        c, u = self.model.forced
         return np.append(self.driven, c), np.append(_HELD * abs(self.driven), u)
 
-    def rubbed(self, fit: JumpFit, times: Floats) -> Push | None:
+    def rubbed(self, fit: JumpFit) -> Push | None:
         """Return what the friction of a ball that flies between the impacts of a fit adds to the displacement."""
+        times = fit.motion.starts[1:]
         if len(times) < 2:
             return None
         found = slide(fit.motion, fit.jumps.x + np.sign(fit.jumps.dv) * self.b)
-        return push(found, times, self.bins.t, self.s, self.friction / abs(self.s) ** 2, self.order)
+        return push(found, times, self.bins.t, self.model.s, self._moved(), self.model.order)
 
-    def fit_rubbed(self, times: Floats, u: Floats, dv: Floats, draws: int = 8) -> tuple[JumpFit, Push | None]:
+    def fit_rubbed(self, train: Train, draws: int = 8) -> tuple[JumpFit, Push | None]:
         """Fit with the ball's friction, if its size matters beside the noise, and say what that adds.
 
         Friction that turns in a slow flight bends it by micrometres: enough to say that a pulse came late.
         """
-        if self.order == 2 or self.friction / abs(self.s) ** 2 < _RUBS * noise_of(self.bins):
-            return self.fit(times, u, dv, draws), None
-        pushed = self.rubbed(self.fit(times, u, dv, 0), times)
-        return self.fit(times, u, dv, draws, pushed), pushed
+        if self.model.order == 2 or self._moved() < _RUBS * noise_of(self.bins):
+            return self.fit(train, draws), None
+        pushed = self.rubbed(self.fit(train, 0))
+        return self.fit(train, draws, pushed), pushed
+
+    def _moved(self) -> float:
+        """Return the static displacement by friction [m]."""
+        return self.friction / abs(self.model.s) ** 2
 
 
 def _wander(bins: Bins) -> tuple[Floats, Floats]:

@@ -11,6 +11,7 @@ from vines.rig.fit._bins import Bins
 from vines.rig.fit._fitter import Fitter
 from vines.rig.fit._motion import Motion
 from vines.rig.fit._slide import Push
+from vines.rig.fit._train import Train
 
 __all__ = ["straight"]
 
@@ -28,15 +29,15 @@ _HARMONICS = 1e-5
 """Standard uncertainty of the forced harmonics by the base's own, relative to the motion."""
 
 
-def straight(fitter: Fitter, times: Floats, u: Floats, dv: Floats, pushed: Push | None = None) -> Fitter:
+def straight(fitter: Fitter, train: Train, pushed: Push | None = None) -> Fitter:
     """Return the fitter with the displacement less what its sensor adds, if that explains a part of what is left.
 
     Parameters
     ----------
     fitter : Fitter
         Of a displacement.
-    times, u, dv : ndarray, shape (K,)
-        Impacts, as of `Fitter.fit`; false ones do no harm.
+    train : Train
+        Impacts; false ones do no harm.
     pushed : Push, optional
         What the ball's friction adds.
 
@@ -45,18 +46,18 @@ def straight(fitter: Fitter, times: Floats, u: Floats, dv: Floats, pushed: Push 
     Harmonics that the base does not have are the sensor's then: without that, they and jumps that repeat would say the
     same. A sensor that is off by .07 % can take two thirds off the jumps of a train of soft impacts at one phase.
     """
-    fit = fitter.fit(times, u, dv, 0, pushed)
+    fit = fitter.fit(train, 0, pushed)
     columns, sizes = _bends(fitter.bins, fit.motion, *fitter.u_natural)
     strict = fitter
-    if fitter.forced is not None:
-        c, u_c = fitter.forced
+    if fitter.model.forced is not None:
+        c, u_c = fitter.model.forced
         known = 0.03 * np.abs(c) + _HARMONICS * float(np.abs(fitter.bins.mean).max())
-        strict = replace(fitter, forced=(c, np.minimum(u_c, known)))
-    bent = strict.fit(times, u, dv, 0, pushed, (columns, sizes))
+        strict = replace(fitter, model=replace(fitter.model, forced=(c, np.minimum(u_c, known))))
+    bent = strict.fit(train, 0, pushed, (columns, sizes))
     if bent.residual > _EXPLAINS * fit.residual:
         return fitter
     n = len(_DEGREES)
-    return replace(strict, bins=replace(fitter.bins, mean=fitter.bins.mean - bent.extra[:n] @ columns[:n]))
+    return strict.on(replace(fitter.bins, mean=fitter.bins.mean - bent.extra[:n] @ columns[:n]))
 
 
 def _bends(bins: Bins, motion: Motion, u_omega0: float, u_lam: float) -> tuple[Floats, Floats]:

@@ -8,10 +8,11 @@ import numpy as np
 import numpy.typing as npt
 
 from vines.errors import RigError
-from vines.rig.fit import KEEP, Bins, Fitter, JumpFit, Push, bins_of, straight
-from vines.rig.impacts._detect import U_PULSE, Detected, detect, inside
-from vines.rig.impacts._detect_alone import detect_alone
+from vines.rig.fit import KEEP, U_PULSE, Bins, Fitter, Forced, JumpFit, JumpModel, Push, Train, bins_of, straight
+from vines.rig.impacts._acceleration_alone import search_acceleration
 from vines.rig.impacts._pulses import SMOOTH, pulses_of
+from vines.rig.impacts._search import Search, inside
+from vines.rig.impacts._with_displacement import search_displacement
 from vines.rig.recording import Recording, Sampled
 
 __all__ = ["Response", "measure_response"]
@@ -80,12 +81,13 @@ def measure_response(
     recording: Recording,
     s: complex,
     omega: float,
-    forced: tuple[npt.NDArray[np.complex128], Floats] | None = None,
+    forced: Forced | None = None,
     *,
     driven: complex,
     friction: float = 0.0,
     u_natural: tuple[float, float] = (1e-5, 1e-3),
     impacts: tuple[Floats, Floats] | None = None,
+    seed: int = 0,
 ) -> Response:
     """Find the impacts and fit the oscillator's motion.
 
@@ -97,7 +99,7 @@ def measure_response(
     omega : float
         Angular frequency of the forcing, measured [rad/s].
     forced : tuple of ndarray, optional
-        As of `fit_jumps`.
+        As of `JumpModel`.
     friction : float
         Acceleration of the oscillator by the ball's friction, mu times the ball's deceleration [m/s^2].
     u_natural : tuple of float
@@ -106,6 +108,8 @@ def measure_response(
         First harmonic of the forced response that the base asks for [m].
     impacts : tuple of ndarray, optional
         Times [s] on the clock of the oscillator's channel and velocity jumps [m/s], if they are known otherwise.
+    seed : int
+        Of the draws for uncertainties.
 
     Raises
     ------
@@ -118,36 +122,35 @@ def measure_response(
         raise RigError(f"run {recording.run.run_id!r} has no channel on the oscillator (lo_disp or lo_acc)")
     order = 0 if displacement is not None else 2
     bins = bins_of(channel) if order == 0 else _quiet(channel)
-    fitter = Fitter(bins, s, omega, order, forced, driven, recording.run.b.value, friction, u_natural)
+    model = JumpModel(bins, s, omega, order, forced, seed=seed)
+    fitter = Fitter(model, driven, recording.run.b.value, friction, u_natural)
     sensor = accelerometer if accelerometer is not None else channel
-    if impacts is None:
-        if order == 0:
-            found = detect(fitter, channel, sensor)
-        else:
-            found, fitter = detect_alone(fitter, channel)
-            bins = fitter.bins
+    if impacts is not None:
+        train = inside(bins, Train.alike(*impacts, U_PULSE))
+        found = Search(fitter, train, candidates=len(train))
+    elif order == 0:
+        found = search_displacement(fitter, channel, accelerometer)
     else:
-        times, dv, u = inside(bins, *impacts, np.full(len(impacts[0]), U_PULSE))
-        found = Detected(times, dv, u, len(times))
-    times, dv, u, delay = found.t, found.dv, found.u, found.delay
-    fit, _ = fitter.fit_rubbed(times + delay, u, dv)
+        found = search_acceleration(fitter, channel)
+        fitter = found.fitter
+    train, delay = found.train.later(found.delay), found.delay
+    fit, _ = fitter.fit_rubbed(train)
     for _ in range(_ROUNDS if impacts is None else 0):
-        keep = _credible(fit, dv, u, fitter)
+        keep = _credible(fit, train, fitter)
         if keep.all():
             break
-        times, dv, u = times[keep], dv[keep], u[keep]
-        fit, _ = fitter.fit_rubbed(times + delay, u, dv)
-    pushed = fitter.rubbed(fit, times + delay)
+        train = train.only(keep)
+        fit, _ = fitter.fit_rubbed(train)
+    pushed = fitter.rubbed(fit)
     if pushed is not None and order == 0:
-        fitter = straight(fitter, times + delay, u, dv, pushed)
-        bins = fitter.bins
-    fit = fitter.fit(times + delay, u, dv, draws=32, pushed=pushed)
+        fitter = straight(fitter, train, pushed)
+    fit = fitter.fit(train, 32, pushed)
     late, u_late = (
         _share(delay, found.u_delay, channel.u_time, sensor.u_time) if found.gain is not None else (0.0, channel.u_time)
     )
     return Response(
-        channel, order, bins, fit, pushed, dv, found.gain, late, u_late, found.drift, found.candidates,
-        found.candidates - len(times),
+        channel, order, fitter.bins, fit, pushed, train.dv, found.gain, late, u_late, found.drift, found.candidates,
+        found.candidates - len(train),
     )  # fmt: skip
 
 
@@ -165,7 +168,7 @@ def _quiet(accelerometer: Sampled) -> Bins:
     return Bins(t[fair], pulses.values[::stride][fair], 0.0, pulses.smooth)
 
 
-def _credible(fit: JumpFit, pulse: Floats, u: Floats, fitter: Fitter) -> npt.NDArray[np.bool_]:
+def _credible(fit: JumpFit, train: Train, fitter: Fitter) -> npt.NDArray[np.bool_]:
     """Say which impacts to keep; of several near each other, the least credible one goes first.
 
     An impact whose jump the motion shows stays, but of two in one place, with jumps that cancel, not the one that was
@@ -173,14 +176,13 @@ def _credible(fit: JumpFit, pulse: Floats, u: Floats, fitter: Fitter) -> npt.NDA
     larger one beside it left, and if the ball was at the wall then: it changes the ball's flight hardly. Beside a
     flight that is not one nothing can be said; and where many are denied, it is the fit that is wrong.
     """
-    dv, t = fit.jumps.dv, fit.motion.starts[1:]
-    heard = u <= U_PULSE
+    dv, t, pulse = fit.jumps.dv, train.t, train.dv
     shown = np.abs(dv) > KEEP * fit.u_dv
     denied = np.abs(dv - pulse) > KEEP * fit.u_dv
     blind = ~(fit.fair[:-1] & fit.fair[1:])
     soft = ~denied & ~_beside(t, dv, pulse) & (_off_the_wall(fit, fitter.b) < _AT_WALL * fitter.b)
     # An acceleration has weighed pulses and flights against each other before.
-    keep = shown | (heard & (blind | soft | (fitter.order == 2)))
+    keep = shown | (train.heard & (blind | soft | (fitter.model.order == 2)))
     if not len(keep) or np.mean(~keep) > _DENIED:
         return np.ones(len(t), bool)
     # In a cluster a false impact spoils the jumps of its neighbours.
@@ -189,8 +191,8 @@ def _credible(fit: JumpFit, pulse: Floats, u: Floats, fitter: Fitter) -> npt.NDA
         around = np.abs(t - t[k]) < _TWIN
         keep[k] = np.min(worth[around & ~keep], initial=np.inf) < worth[k]
     near = np.flatnonzero((np.diff(t) < _TWIN) & (dv[:-1] * dv[1:] < 0))
-    worse = np.where(u[near] > u[near + 1], near, near + 1)
-    keep[worse[(u[worse] > U_PULSE)]] = False
+    worse = np.where(train.u[near] > train.u[near + 1], near, near + 1)
+    keep[worse[~train.heard[worse]]] = False
     return keep
 
 

@@ -13,8 +13,9 @@ import numpy as np
 import numpy.typing as npt
 from scipy.ndimage import gaussian_filter1d
 
+from vines.rig.fit import U_PULSE, Train
 from vines.rig.recording import Sampled
-from vines.rig.spread import spread_about
+from vines.rig.uncertainty import robust_deviation
 
 __all__ = ["SMOOTH", "SMOOTH_DISPLACEMENT", "Pulses", "filled", "find_pulses", "pulses_of", "refine_pulses"]
 
@@ -93,7 +94,7 @@ class Pulses:
     @property
     def noise(self) -> float:
         """Standard deviation by the median, which sparse pulses do not reach [m/s^2]."""
-        return spread_about(float(np.median(self.values)), self.values)
+        return robust_deviation(self.values - np.median(self.values))
 
 
 def pulses_of(channel: Sampled, order: int = 2) -> Pulses:
@@ -137,9 +138,7 @@ def filled(channel: Sampled) -> Floats:
     return values
 
 
-def find_pulses(
-    pulses: Pulses, threshold: float, *, times: Floats | None = None, dv: Floats | None = None
-) -> tuple[Floats, Floats]:
+def find_pulses(pulses: Pulses, threshold: float, known: Train | None = None, *, u: float = U_PULSE) -> Train:
     """Return times [s] and velocity jumps [m/s] of the pulses higher than a threshold, those given first subtracted.
 
     Parameters
@@ -148,37 +147,38 @@ def find_pulses(
         With the smooth motion removed, so that only jumps are left.
     threshold : float
         Least height of a peak [m/s^2].
-    times, dv : ndarray, optional
+    known : Train, optional
         Known jumps; they are in the answer, refined.
+    u : float
+        Standard uncertainty of the times of new ones [s].
 
     Returns
     -------
-    times, dv : ndarray, shape (K,)
-        Ascending; jumps nearer than twice the smoothing are one, at the centroid.
+    Train
+        Jumps nearer than twice the smoothing are one, at the centroid.
 
     Examples
     --------
     >>> quiet = Pulses(0.0, 1e-4, np.zeros(2000), 6e-4)
     >>> noisy = quiet.less(-quiet.shape(np.array([0.05, 0.1234]), np.array([0.01, -0.002])))
-    >>> t, dv = find_pulses(noisy, 0.3)
-    >>> np.round(t, 6), np.round(dv, 6)
+    >>> found = find_pulses(noisy, 0.3)
+    >>> np.round(found.t, 6), np.round(found.dv, 6)
     (array([0.05  , 0.1234]), array([ 0.01 , -0.002]))
     """
-    times = np.zeros(0) if times is None else times
-    dv = np.zeros(0) if dv is None else dv
+    train = Train.alike(np.zeros(0), np.zeros(0), u) if known is None else known
     for _ in range(4):
-        left = pulses.values - pulses.shape(times, dv)
+        left = pulses.values - pulses.shape(train.t, train.dv)
         size = np.abs(left)
         peak = np.zeros(len(left), bool)
         peak[1:-1] = (size[1:-1] >= size[:-2]) & (size[1:-1] > size[2:]) & (size[1:-1] > threshold)
         found = np.flatnonzero(peak)
-        if len(times):
+        if len(train):
             # What a known jump leaves beside itself is its misfit, not another impact.
             t = pulses.start + pulses.step * found
-            right = np.searchsorted(times, t)
-            left_of, right_of = np.maximum(right - 1, 0), np.minimum(right, len(times) - 1)
-            a, b = np.abs(t - times[left_of]), np.abs(t - times[right_of])
-            near, height = np.minimum(a, b), np.abs(np.where(a < b, dv[left_of], dv[right_of]))
+            right = np.searchsorted(train.t, t)
+            left_of, right_of = np.maximum(right - 1, 0), np.minimum(right, len(train) - 1)
+            a, b = np.abs(t - train.t[left_of]), np.abs(t - train.t[right_of])
+            near, height = np.minimum(a, b), np.abs(np.where(a < b, train.dv[left_of], train.dv[right_of]))
             far = (near >= 4 * pulses.smooth) | (
                 size[found] > np.maximum(threshold, 0.2 * height / (pulses.smooth * 2.5))
             )
@@ -195,14 +195,12 @@ def find_pulses(
                 chosen.append(k)
                 blocked[max(0, k - apart) : k + apart + 1] = True
         new = np.array(chosen)
-        times = np.concatenate([times, pulses.start + pulses.step * new])
-        dv = np.concatenate([dv, left[new] * pulses.smooth * np.sqrt(2 * np.pi)])
-        ahead = np.argsort(times, kind="stable")
-        times, dv = refine_pulses(pulses, times[ahead], dv[ahead])
-    return times, dv
+        jumps = left[new] * pulses.smooth * np.sqrt(2 * np.pi)
+        train = refine_pulses(pulses, train.merged(Train.alike(pulses.start + pulses.step * new, jumps, u)))
+    return train
 
 
-def refine_pulses(pulses: Pulses, times: Floats, dv: Floats, *, level: bool = False) -> tuple[Floats, Floats]:
+def refine_pulses(pulses: Pulses, train: Train, *, level: bool = False) -> Train:
     """Refine times and sizes of all jumps by Gauss–Newton on the smoothed signal, and join what is too near.
 
     With `level` each pulse stands on a straight line of its own: harmonics that a sensor adds to a displacement are
@@ -211,13 +209,13 @@ def refine_pulses(pulses: Pulses, times: Floats, dv: Floats, *, level: bool = Fa
     reach = int(np.ceil((3.5 if level else 2.0) * pulses.smooth / pulses.step))
     offsets = np.arange(-reach, reach + 1)
     for _ in range(6):
-        if not len(times):
-            return times, dv
-        times, dv = _join(times, dv, 2 * pulses.smooth)
-        left = pulses.values - pulses.shape(times, dv)
-        middle = np.round((times - pulses.start) / pulses.step).astype(int)
+        if not len(train):
+            return train
+        train = _joined(train, 2 * pulses.smooth)
+        left = pulses.values - pulses.shape(train.t, train.dv)
+        middle = np.round((train.t - pulses.start) / pulses.step).astype(int)
         index = np.clip(middle[:, None] + offsets, 0, len(left) - 1)
-        away = (pulses.start + pulses.step * index - times[:, None]) / pulses.smooth
+        away = (pulses.start + pulses.step * index - train.t[:, None]) / pulses.smooth
         bell = np.exp(-0.5 * away**2) / (pulses.smooth * np.sqrt(2 * np.pi))
         here = left[index]
         slope = bell * away / pulses.smooth
@@ -228,19 +226,18 @@ def refine_pulses(pulses: Pulses, times: Floats, dv: Floats, *, level: bool = Fa
             free_slope = slope - tilt[:, None] * away
         up = np.sum(here * free_bell, axis=1) / np.sum(bell * free_bell, axis=1)
         moment = np.sum(here * free_slope, axis=1) / np.sum(slope * free_slope, axis=1)
-        dv = dv + up
+        dv = train.dv + up
         shift = np.where(np.abs(dv) > 1e-9, moment / np.where(dv == 0, 1.0, dv), 0.0)
-        times = times + np.clip(shift, -0.5 * pulses.smooth, 0.5 * pulses.smooth)
-        ahead = np.argsort(times, kind="stable")
-        times, dv = times[ahead], dv[ahead]
-    return times, dv
+        train = Train(train.t + np.clip(shift, -0.5 * pulses.smooth, 0.5 * pulses.smooth), dv, train.u)
+    return train
 
 
-def _join(times: Floats, dv: Floats, apart: float) -> tuple[Floats, Floats]:
+def _joined(train: Train, apart: float) -> Train:
     """Join jumps that are nearer than `apart` into one of the same sum, at the centroid."""
-    while len(times) > 1 and (near := np.flatnonzero(np.diff(times) < apart)).size:
-        k = int(near[np.argmin(np.diff(times)[near])])
-        weight = np.abs(dv[k : k + 2]) + 1e-12
-        times = np.concatenate([times[:k], [np.average(times[k : k + 2], weights=weight)], times[k + 2 :]])
-        dv = np.concatenate([dv[:k], [dv[k : k + 2].sum()], dv[k + 2 :]])
-    return times, dv
+    while (near := np.flatnonzero(np.diff(train.t) < apart)).size:
+        k = int(near[np.argmin(np.diff(train.t)[near])])
+        two = slice(k, k + 2)
+        centre = np.average(train.t[two], weights=np.abs(train.dv[two]) + 1e-12)
+        one = Train.alike(np.array([centre]), np.array([train.dv[two].sum()]), train.u[k])
+        train = train.without(np.isin(np.arange(len(train)), [k, k + 1])).merged(one)
+    return train

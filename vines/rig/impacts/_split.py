@@ -7,14 +7,17 @@ from dataclasses import replace
 import numpy as np
 import numpy.typing as npt
 
-from vines.rig.fit import Bins, JumpFit, Push
+from vines.rig.fit import Bins, JumpFit, Push, Train
 
-__all__ = ["split_flights"]
+__all__ = ["U_SILENT", "split_flights"]
 
 Floats = npt.NDArray[np.float64]
 
 _GRID = 1e-3
 """Distance of the times at which an impact is tried [s]."""
+
+U_SILENT = 5e-4
+"""Standard uncertainty of the time of an impact that only the motion shows [s]: half of the grid."""
 
 _COARSE = 4
 """First in steps so many times as long: what is left changes within some ten milliseconds."""
@@ -25,8 +28,8 @@ _BETTER = 0.2
 _LEAST = 12
 
 
-def split_flights(bins: Bins, fit: JumpFit, order: int, pushed: Push | None = None) -> tuple[Floats, Floats]:
-    """Return times and velocity jumps of the impacts that flights with a large residual ask for, one in each at most.
+def split_flights(bins: Bins, fit: JumpFit, order: int, pushed: Push | None = None) -> Train:
+    """Return the impacts that flights with a large residual ask for, one in each at most.
 
     Parameters
     ----------
@@ -38,11 +41,6 @@ def split_flights(bins: Bins, fit: JumpFit, order: int, pushed: Push | None = No
         Derivative of x1 that the channel measures.
     pushed : Push, optional
         What was taken off the signal before it was fitted.
-
-    Returns
-    -------
-    times, dv : ndarray, shape (n,)
-        [s], [m/s].
 
     Notes
     -----
@@ -62,7 +60,7 @@ def split_flights(bins: Bins, fit: JumpFit, order: int, pushed: Push | None = No
         if found is not None:
             times.append(found[0])
             dv.append(found[1])
-    return np.array(times), np.array(dv)
+    return Train.alike(np.array(times), np.array(dv), U_SILENT)
 
 
 def _kink(bins: Bins, fit: JumpFit, order: int, t: Floats, start: float) -> tuple[float, float] | None:

@@ -7,7 +7,7 @@ from itertools import combinations
 import numpy as np
 import numpy.typing as npt
 
-from vines.rig.fit import TAIL, Bins, JumpFit
+from vines.rig.fit import TAIL, Bins, JumpFit, Train
 
 __all__ = ["unclear", "unravel"]
 
@@ -49,7 +49,7 @@ def unclear(fit: JumpFit) -> list[tuple[int, int]]:
 
 
 def unravel(
-    bins: Bins, fit: JumpFit, stretch: tuple[int, int], t: Floats, area: Floats, order: int
+    bins: Bins, fit: JumpFit, stretch: tuple[int, int], pulses: Train, order: int
 ) -> tuple[Places, Floats] | None:
     """Return which of the pulses of a stretch are impacts, and the times of impacts that have none; None if unknown.
 
@@ -61,8 +61,8 @@ def unravel(
         Of it.
     stretch : tuple of int
         Of `unclear`.
-    t, area : ndarray, shape (n,)
-        Times [s] and areas [m/s] of all pulses between the impact before the stretch and the one after it.
+    pulses : Train
+        All pulses between the impact before the stretch and the one after it, with their areas.
     order : {0, 2}
         Derivative of x1 that the channel measures.
 
@@ -72,12 +72,12 @@ def unravel(
     and a response to each jump: a linear least squares of some hundred samples for each choice. An impact without a
     pulse is tried on a grid of times beside each.
     """
-    largest = np.sort(np.argsort(-np.abs(area), kind="stable")[:_MOST])
-    t_all, t, area = t, t[largest], area[largest]
+    largest = np.sort(np.argsort(-np.abs(pulses.dv), kind="stable")[:_MOST])
+    t, area = pulses.t[largest], pulses.dv[largest]
     starts, s = np.append(fit.motion.starts, fit.motion.stop), fit.motion.s
     low, high = starts[stretch[0]], starts[min(stretch[1] + 3, len(starts) - 1)]
     near = (fit.left_t > low) & (fit.left_t < high)
-    for one in t_all:
+    for one in pulses.t:
         near &= np.abs(fit.left_t - one) > TAIL * bins.smooth
     when = fit.left_t[near]
     if len(when) < 4 * (len(t) + 4):

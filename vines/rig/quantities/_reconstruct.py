@@ -22,7 +22,7 @@ from vines.rig.ball import (
     stated,
     uncalibrated,
 )
-from vines.rig.fit import fit_jumps, forced_response, root
+from vines.rig.fit import Forced, JumpModel, Train, forced_response, root
 from vines.rig.impacts import Response, measure_response
 from vines.rig.quantities._cycle import Track, slots
 from vines.rig.quantities._findings import judge
@@ -98,24 +98,24 @@ def _reconstructed(
     response = measure_response(
         recording, s, omega, forced,
         friction=mu * friction.value, u_natural=(omega0.u / omega0.value, lam.u / lam.value),
-        driven=complex(forced_response(base.e[0], omega, s)), impacts=impacts,
+        driven=complex(forced_response(base.e[0], omega, s)), impacts=impacts, seed=seed,
     )  # fmt: skip
     if len(response.fit.jumps.t) < 6:
         raise RigError(
             f"run {run.run_id!r} shows {len(response.fit.jumps.t)} impacts, allowed are 6 and more: did the ball move?"
         )
     side = -np.sign(response.fit.jumps.dv)
-    tuning = _tuned(base, omega0, lam, response, forced, mu, friction, seed)
+    tuning = _tuned(base, omega0, lam, response, forced, mu, friction)
     span = (response.bins.t[0] - response.late, response.bins.t[-1] - response.late)
     phase = omega * (response.fit.jumps.t - response.late) + base.phase.value + tuning.phase
     bounds = tuple(omega * t + base.phase.value + tuning.phase for t in span)
     periods = cut_into_periods(phase, side, (bounds[0], bounds[1]))
     pattern = find_pattern(periods, phase)
     ball = measure_rebounds(recording, response, side)
-    return _assembled(recording, base, response, side, tuning, phase, periods, pattern, ball, seed)
+    return _assembled(recording, base, response, side, tuning, phase, periods, pattern, ball)
 
 
-def _harmonics(base: Base, recording: Recording, s: complex) -> tuple[npt.NDArray[np.complex128], Floats]:
+def _harmonics(base: Base, recording: Recording, s: complex) -> Forced:
     """Return harmonics 2 to 5 of the forced response by the base's own, and what linearity adds to them."""
     n = np.arange(2, 6)
     e = np.zeros(4, complex)
@@ -136,32 +136,21 @@ def _tuned(
     omega0: Uncertain,
     lam: Uncertain,
     response: Response,
-    forced: tuple[npt.NDArray[np.complex128], Floats],
+    forced: Forced,
     mu: float,
     friction: Uncertain,
-    seed: int,
 ) -> Tuning:
     """Lay the forced response beside the base; its slopes by omega0 and lam are differences of two more fits."""
     omega, fit = base.fit.omega, response.fit
     s = root(omega0.value, lam.value)
     turn = np.exp(1j * omega * response.late)
 
+    train = Train.alike(fit.motion.starts[1:], fit.jumps.dv, 2e-5)
+
     def again(omega0_: float, lam_: float) -> complex:
         moved = root(omega0_, lam_)
-        other = fit_jumps(
-            response.bins,
-            moved,
-            omega,
-            fit.motion.starts[1:],
-            2e-5,
-            fit.jumps.dv,
-            order=response.order,
-            draws=0,
-            seed=seed,
-            forced=forced,
-            pushed=response.pushed,
-            fair=fit.fair,
-        )
+        model = JumpModel(response.bins, moved, omega, response.order, forced)
+        other = model.fit(train, pushed=response.pushed, fair=fit.fair, draws=0)
         return complex(_asked(other.motion.c[:1], moved, omega)[0] * turn)
 
     first = np.concatenate([fit.motion.c[:1], fit.first])
@@ -180,7 +169,7 @@ def _tuned(
 
 def _assembled(
     recording: Recording, base: Base, response: Response, side: Floats, tuning: Tuning, phase: Floats,
-    periods: Periods, pattern: Pattern, ball: Rebounds, seed: int,
+    periods: Periods, pattern: Pattern, ball: Rebounds,
 ) -> Reconstruction:  # fmt: skip
     run, fit = recording.run, response.fit
     complete = len(periods.words)

@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import msgspec
+
 from vines import schema
 from vines.errors import RigError, VinesError
 from vines.pipeline import CodeDigests
-from vines.plain import plain
 from vines.rig import RunInfo, compare, find_runs, load_reconstruction, match_ring_downs, read_folder
 from vines.rig.formats import readers
 from vines.rig.records import comparison_rows, impact_columns, reconstruction_row
@@ -91,7 +91,7 @@ def reconstruct_run(folder: Path, ring_downs: Sequence[Path] = (), *, study: Hom
     derived = folder / "derived"
     derived.mkdir(exist_ok=True)
     told, impacts = derived / "reconstruction.json", derived / "rig_impacts.parquet"
-    write_text(told, json.dumps(plain(row), indent=1) + "\n")
+    write_text(told, _json(row))
     origin = {"stage": "vines rig reconstruct", "code": code, "raw_sha256": found.sha256, "ring_downs": list(chosen)}
     write_parquet(impacts, "rig_impacts", schema.cast("rig_impacts", impact_columns([found])), provenance=origin)
     return Derived(found, tuple(chosen), row, (told, impacts))
@@ -136,10 +136,9 @@ def compare_run(folder: Path, ring_downs: Sequence[Path] = (), *, study: Home | 
     study = study or current()
     derived = reconstruct_run(folder, ring_downs, study=study)
     found = compare(derived.found, _near(derived.row, study))
-    rows = [plain(row) for row in comparison_rows(found)]
-    file = folder / "derived" / "comparison.json"
-    write_text(file, json.dumps(rows, indent=1) + "\n")
-    return Compared(derived, found, rows, file)
+    file, text = folder / "derived" / "comparison.json", _json(comparison_rows(found))
+    write_text(file, text)
+    return Compared(derived, found, msgspec.json.decode(text), file)
 
 
 def _near(row: dict[str, Any], study: Home) -> list[dict[str, Any]]:
@@ -152,6 +151,11 @@ def _near(row: dict[str, Any], study: Home) -> list[dict[str, Any]]:
         f"qualify row_number() over (partition by pipeline, stage, branch_id order by {' + '.join(apart)}, A, mu) = 1",
         study=study,
     ).to_pylist()
+
+
+def _json(content: Any) -> str:
+    """Return JSON in which what is not finite is null."""
+    return msgspec.json.format(msgspec.json.encode(content, enc_hook=float), indent=1).decode() + "\n"
 
 
 def _given(folders: Sequence[Path]) -> dict[str, Path]:
