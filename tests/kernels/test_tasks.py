@@ -52,6 +52,10 @@ def test_a_task_is_warm_until_one_of_its_kernels_changes(tmp_path: Path) -> None
     assert run()[0] == "True"
     path.write_text(WORK.replace("0.5 * x", "x * 0.5"))
     assert run() == ["False", "halving", "True"]
+    # What was recorded by other sources, of a module that has been removed since, is compiled anew.
+    (record,) = (tmp_path / "cache").rglob("tasks/half.json")
+    record.write_text('[["removed", "half"]]')
+    assert run() == ["False", "halving", "True"]
 
 
 def test_a_task_that_fails_is_one_line() -> None:

@@ -1,5 +1,6 @@
 """What a simulation settles to: n:m/pT, quasi-periodic, chaotic, without impact, or not settled yet."""
 
+from vines.attractors._alike import SAME, Motion, apart
 from vines.attractors._attractor import Attractor
 from vines.attractors._basins import Basins, basins
 from vines.attractors._classify import Classified, classify_many
@@ -9,10 +10,13 @@ from vines.attractors._shares import share_error
 from vines.attractors._warm_up import warm_up
 
 __all__ = [
+    "SAME",
     "Attractor",
     "Basins",
     "Classified",
     "Lifetime",
+    "Motion",
+    "apart",
     "basins",
     "classify_many",
     "settle",

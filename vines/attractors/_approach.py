@@ -7,10 +7,8 @@ import math
 from vines.attractors import _verdict as v
 from vines.attractors._contacts import difference, repetition
 from vines.attractors._multipliers import carry_on, multipliers, square_of
-from vines.dynamics import _advance as col
-from vines.dynamics._flight import derivatives, phasors
-from vines.dynamics._impact_law import after_impact_kernel
-from vines.dynamics._tangent import flow_basis, jump_basis
+from vines.dynamics.kernels import after_impact_kernel, derivatives, flow_basis, jump_basis, phasors
+from vines.dynamics.kernels import rows as col
 from vines.kernels import (
     cold_njit,
     complex_vector,
@@ -21,7 +19,7 @@ from vines.kernels import (
     njit,
     zero_vector,
 )
-from vines.orbits._equations import newton_kernel
+from vines.orbits.kernels import newton_kernel
 
 __all__ = ["LARGEST_P", "NO_ORBIT", "STABLE", "UNSTABLE", "comes_to_orbit", "nearest_orbit", "note_coming"]
 

@@ -14,20 +14,21 @@ from vines.attractors._attractor import Attractor
 from vines.attractors._look import look_at_block
 from vines.attractors._naming import attractor_from, word_of
 from vines.attractors._settle import NUDGE, ROUNDS, Patience
-from vines.dynamics import _advance as col
-from vines.dynamics import _totals as entry
+from vines.attractors._waiting import next_wait
 from vines.dynamics import ensemble
-from vines.dynamics._advance import set_state
-from vines.dynamics._ensemble import (
+from vines.dynamics.kernels import rows as col
+from vines.dynamics.kernels import set_state
+from vines.dynamics.kernels import totals as entry
+from vines.dynamics.runs import (
+    EVENTS_PER_PERIOD,
     STATUS_NAMES,
-    _measures,
-    _parameters,
-    _starts,
     each_thread,
+    impacts_of,
+    measures_of,
+    parameter_table,
+    start_table,
     threads_allowed,
 )
-from vines.dynamics._simulate import EVENTS_PER_PERIOD
-from vines.dynamics._trajectory import impacts_of
 from vines.model import FREQUENCY, MASS, PARAMETER_NAMES, START_NAMES, Params
 
 __all__ = ["Classified", "classify_many"]
@@ -121,7 +122,7 @@ class Classified:
     @cached_property
     def measures(self) -> npt.NDArray[np.void]:
         """Energy measures as `Ensemble.measures`: over one repetition if periodic, else over the recorded window."""
-        return _measures(self.parameters[:, MASS], self.totals)
+        return measures_of(self.parameters[:, MASS], self.totals)
 
     @property
     def sticks(self) -> Floats:
@@ -219,7 +220,7 @@ def classify_many(
     (['1:1', '1:1', '2:2/2T', '2:1', None], 'chaotic')
     """
     how = Patience(settle, record, patience, watch, tolerance, max_impacts_per_period)
-    table, given = _parameters(params), _starts(starts)
+    table, given = parameter_table(params), start_table(starts)
     n = np.broadcast_shapes(table.shape[:1], given.shape[:1])[0]
     parameters, begin = (np.ascontiguousarray(np.broadcast_to(each, (n, 5))) for each in (table, given))
     work = _Many(parameters, begin.copy(), how, impacts, threads)
@@ -266,8 +267,7 @@ class _Many:
             free, come = found[:, v.NEXT] == v.IS_FREED, found[:, v.NEXT] == v.WAITS
             if not np.any(free | come):
                 return
-            wait = _next_wait(np.where(come, found[:, v.REMAINING], 0.0))
-            wait = np.where(come & (found[:, v.REMAINING] > spare[runs]), spare[runs], wait)
+            wait = next_wait(np.where(come, found[:, v.REMAINING], 0.0), spare[runs], few_lengths=True)
             wait = np.where(free, float(self.how.settle), wait)
             nudged[runs[free]] = found[free, v.VALUE]
             self.states[runs[free], 3] += NUDGE
@@ -324,13 +324,3 @@ class _Many:
             ends = np.searchsorted(rows[:, col.ROW], np.arange(len(runs) + 1))
             for k, run in enumerate(runs.tolist()):
                 self.hits[run] = impacts_of(rows[ends[k] : ends[k + 1]])
-
-
-def _next_wait(remaining: Floats) -> Floats:
-    """Return how long to wait: 5 % more than is left, up to the next of 32, 48, 64, 96, 128, … forcing periods.
-
-    Waits of few lengths keep the lanes full.
-    """
-    least = np.maximum(1.05 * remaining + 1.0, 32.0)
-    power = 2.0 ** np.floor(np.log2(least))
-    return np.where(least <= power, power, np.where(least <= 1.5 * power, 1.5 * power, 2.0 * power))

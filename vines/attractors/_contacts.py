@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from vines.dynamics._advance import IMPACT, KIND, RUN, SIDE, STICK, TIME, V1, V2, X1
+from vines.dynamics.kernels import rows as col
 from vines.kernels import integer_vector, linked_njit, njit
 
 __all__ = ["contacts", "difference", "mirror_difference", "repetition"]
@@ -20,15 +20,15 @@ def contacts(rows, n, start):
     keep = integer_vector(n)
     count = 0
     for i in range(1, n):
-        kind = rows[i, KIND]
-        if kind == IMPACT and rows[i, TIME] > start:
+        kind = rows[i, col.KIND]
+        if kind == col.IMPACT and rows[i, col.TIME] > start:
             keep[count] = i
             count += 1
-        elif kind == STICK:
-            run = int(rows[i, RUN])
+        elif kind == col.STICK:
+            run = int(rows[i, col.RUN])
             while count > 0 and run > 0 and keep[count - 1] >= i - run:
                 count -= 1
-            if run > 0 and i - run > 0 and rows[i - run, TIME] > start:
+            if run > 0 and i - run > 0 and rows[i - run, col.TIME] > start:
                 keep[count] = i - run
                 count += 1
     while count > 1 and _same_run(rows, keep[count - 2], keep[count - 1]):
@@ -39,7 +39,7 @@ def contacts(rows, n, start):
 @njit
 def _same_run(rows, i, j):
     """Say whether rows i and j are neighbouring impacts on the same wall, with no other event between."""
-    return j == i + 1 and rows[i, SIDE] == rows[j, SIDE]
+    return j == i + 1 and rows[i, col.SIDE] == rows[j, col.SIDE]
 
 
 @linked_njit
@@ -64,21 +64,21 @@ def repetition(rows, kept, span):
     n = kept.shape[0]
     if n < 2:
         return 0, 0
-    target = rows[kept[0], TIME] + span
+    target = rows[kept[0], col.TIME] + span
     # The contact nearest to the target, the later one of two.
     low, lag = 1, n - 1
     while low < lag:
         middle = (low + lag) // 2
-        if rows[kept[middle], TIME] < target:
+        if rows[kept[middle], col.TIME] < target:
             low = middle + 1
         else:
             lag = middle
-    if lag > 1 and target - rows[kept[lag - 1], TIME] < abs(rows[kept[lag], TIME] - target):
+    if lag > 1 and target - rows[kept[lag - 1], col.TIME] < abs(rows[kept[lag], col.TIME] - target):
         lag -= 1
     pairs = n - lag
     filled = pairs // lag
     for i in range(pairs - filled * lag, pairs):
-        if rows[kept[i], SIDE] != rows[kept[i + lag], SIDE]:
+        if rows[kept[i], col.SIDE] != rows[kept[i + lag], col.SIDE]:
             return 0, 0
     return (lag, filled) if filled > 0 else (0, 0)
 
@@ -102,10 +102,10 @@ def difference(rows, kept, lag, span, scale, age):
         i, j = kept[k - lag], kept[k]
         worst = max(
             worst,
-            abs(rows[j, TIME] - rows[i, TIME] - span),
-            abs(rows[j, V1] - rows[i, V1]) / scale,
-            abs(rows[j, V2] - rows[i, V2]) / scale,
-            abs(rows[j, X1] - rows[i, X1]) / scale,
+            abs(rows[j, col.TIME] - rows[i, col.TIME] - span),
+            abs(rows[j, col.V1] - rows[i, col.V1]) / scale,
+            abs(rows[j, col.V2] - rows[i, col.V2]) / scale,
+            abs(rows[j, col.X1] - rows[i, col.X1]) / scale,
         )
     return worst
 
@@ -121,10 +121,10 @@ def mirror_difference(rows, kept, lag, span, scale):
     for k in range(lag):
         i = kept[n - 1 - k - half]
         j = kept[n - 1 - k]
-        if rows[i, SIDE] != -rows[j, SIDE]:
+        if rows[i, col.SIDE] != -rows[j, col.SIDE]:
             return np.inf
-        worst = max(worst, abs(rows[j, TIME] - rows[i, TIME] - 0.5 * span))
-        worst = max(worst, abs(rows[j, V1] + rows[i, V1]) / scale)
-        worst = max(worst, abs(rows[j, V2] + rows[i, V2]) / scale)
-        worst = max(worst, abs(rows[j, X1] + rows[i, X1]) / scale)
+        worst = max(worst, abs(rows[j, col.TIME] - rows[i, col.TIME] - 0.5 * span))
+        worst = max(worst, abs(rows[j, col.V1] + rows[i, col.V1]) / scale)
+        worst = max(worst, abs(rows[j, col.V2] + rows[i, col.V2]) / scale)
+        worst = max(worst, abs(rows[j, col.X1] + rows[i, col.X1]) / scale)
     return worst

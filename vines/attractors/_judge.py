@@ -8,8 +8,8 @@ from vines.attractors import _verdict as v
 from vines.attractors._approach import NO_ORBIT, comes_to_orbit, nearest_orbit, note_coming
 from vines.attractors._contacts import contacts, difference, mirror_difference, repetition
 from vines.attractors._multipliers import multipliers
-from vines.dynamics import _advance as col
-from vines.dynamics._tangent import tangent_product
+from vines.dynamics.kernels import rows as col
+from vines.dynamics.kernels import tangent_product
 from vines.kernels import byte_vector, cold_njit, complex_vector, new_vector, njit, zero_integers
 
 __all__ = ["MAX_P", "NEAR", "clear", "judge_window", "note_decay", "note_drift"]

@@ -8,9 +8,8 @@ from vines.attractors import _verdict as v
 from vines.attractors._follow import follow
 from vines.attractors._judge import clear, judge_window
 from vines.attractors._window import measure_window
-from vines.dynamics import _advance as col
-from vines.dynamics._constants import constants_kernel
-from vines.dynamics._window import open_window, run_window, with_room
+from vines.dynamics.kernels import constants_kernel, open_window, run_window, with_room
+from vines.dynamics.kernels import rows as col
 from vines.kernels import byte_vector, cold_njit, entry_njit, new_matrix, njit
 
 __all__ = ["look_at_block"]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from vines.kernels import cold_njit, complex_matrix, njit
-from vines.orbits._eigenvalues import eigenvalues_kernel
+from vines.orbits.kernels import eigenvalues_kernel
 
 __all__ = ["carry_on", "multipliers", "square_of"]
 

@@ -9,8 +9,7 @@ import numpy.typing as npt
 
 from vines.attractors import _verdict as v
 from vines.attractors._attractor import Attractor
-from vines.dynamics._measures import measures_from
-from vines.dynamics._simulate import STATUS
+from vines.dynamics.runs import STATUS, measures_from
 from vines.model import START_NAMES, VI_NES, Params, Word
 
 __all__ = ["attractor_from", "word_of"]

@@ -12,13 +12,11 @@ from vines.attractors import _verdict as v
 from vines.attractors._attractor import Attractor
 from vines.attractors._look import look_at_block
 from vines.attractors._naming import attractor_from, word_of
-from vines.dynamics import _advance as col
-from vines.dynamics import _totals as entry
-from vines.dynamics._advance import pass_over, set_state, shift_time
-from vines.dynamics._constants import constants
-from vines.dynamics._simulate import EVENTS_PER_PERIOD
-from vines.dynamics._start import check_start
-from vines.dynamics._trajectory import impacts_of
+from vines.attractors._waiting import next_wait
+from vines.dynamics.kernels import constants, pass_over, set_state, shift_time
+from vines.dynamics.kernels import rows as col
+from vines.dynamics.kernels import totals as entry
+from vines.dynamics.runs import EVENTS_PER_PERIOD, check_start, impacts_of
 from vines.errors import StateError
 from vines.model import START_NAMES, Params
 
@@ -182,7 +180,7 @@ def _settled(
     states = np.zeros((1, col.STATE))
     state = states[0]
     set_state(state, *begin, 0.0)
-    parameters = np.array([[p.mu, p.A, p.Omega, p.r, p.lam]])
+    parameters = np.array([list(p.as_dict().values())])
     room = np.empty((256, col.ROW))
     verdicts, totals = np.empty((1, v.VERDICT)), np.zeros((1, entry.TOTALS))
     verdict = verdicts[0]
@@ -205,8 +203,7 @@ def _settled(
             x1, v1, x2, v2, phase = verdict[v.FINAL : v.FINAL + 5].tolist()
             set_state(state, x1, v1, x2, v2 + NUDGE, phase, 0.0)
         else:
-            remaining = float(verdict[v.REMAINING])
-            wait = spare if remaining > spare else math.ceil(1.05 * remaining) + 1.0
+            wait = float(next_wait(verdict[v.REMAINING], spare, few_lengths=False))
             spare -= wait
     verdict[v.NUDGED], verdict[v.PERIODS] = nudged, ran - how.record
     word = word_of(sides, int(verdict[v.P])) if len(sides) else None

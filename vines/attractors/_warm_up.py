@@ -6,8 +6,8 @@ from collections.abc import Callable
 
 from vines.attractors._classify import classify_many
 from vines.attractors._settle import settle
-from vines.dynamics._warm_up import timed
-from vines.dynamics._warm_up import warm_up as warm_up_dynamics
+from vines.dynamics import warm_up as warm_up_dynamics
+from vines.dynamics.runs import timed
 from vines.model import Params
 
 __all__ = ["many_runs", "one_run", "warm_up"]

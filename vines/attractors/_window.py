@@ -5,10 +5,9 @@ from __future__ import annotations
 import math
 
 from vines.attractors import _verdict as v
-from vines.dynamics import _advance as col
-from vines.dynamics import _totals as entry
-from vines.dynamics._batches import BATCHES, close_batch, standard_errors
-from vines.dynamics._totals import window_totals
+from vines.dynamics.kernels import BATCHES, close_batch, standard_errors, window_totals
+from vines.dynamics.kernels import rows as col
+from vines.dynamics.kernels import totals as entry
 from vines.kernels import cold_njit, new_matrix, new_vector
 
 __all__ = ["measure_window"]

@@ -2,14 +2,11 @@
 
 from __future__ import annotations
 
-import json
-import math
 import tempfile
-from decimal import Decimal
 from pathlib import Path
-from typing import Any
 
 import click
+import msgspec
 
 from vines.cli._study import the_study
 from vines.errors import QueryError
@@ -53,7 +50,9 @@ def command(sql: str, form: str | None, out: Path | None) -> None:
                 click.echo((Path(folder) / "answer.csv").read_text("utf-8"), nl=False)
         case "json":
             names, rows = rows_of(sql, study=study)
-            _put(json.dumps([dict(zip(names, map(_plain, row), strict=True)) for row in rows], indent=1), out)
+            encoder = msgspec.json.Encoder(enc_hook=str, decimal_format="number")
+            found = encoder.encode([dict(zip(names, row, strict=True)) for row in rows])
+            _put(msgspec.json.format(found, indent=1).decode(), out)
         case _:
             from vines.cli._layout import lines
 
@@ -67,16 +66,3 @@ def _put(text: str, out: Path | None) -> None:
         raise QueryError(f"{out}: the folder {out.parent} does not exist; make it first")
     else:
         out.write_text(text + "\n", encoding="utf-8")
-
-
-def _plain(value: Any) -> Any:
-    """Return a value as JSON knows it; a NaN is null, and SQL's decimals are numbers."""
-    if isinstance(value, Decimal):
-        return float(value)
-    if isinstance(value, float):
-        return value if math.isfinite(value) else None
-    if isinstance(value, list | tuple):
-        return [_plain(each) for each in value]
-    if isinstance(value, dict):
-        return {str(key): _plain(each) for key, each in value.items()}
-    return value if value is None or isinstance(value, bool | int | str) else str(value)

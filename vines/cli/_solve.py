@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import json
-import math
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
+import msgspec
 
 from vines.cli._parameters import parameter_options
 from vines.model import STATE_NAMES, VI_NES, Params
@@ -60,9 +59,9 @@ def command(
 
         orbit_log(orbits[0], log)
     if as_json:
-        rows = [_plain({**orbit_row(orbit), "remark": orbit.remark}) for orbit in orbits]
+        rows = [{**orbit_row(orbit), "remark": orbit.remark} for orbit in orbits]
         shown: Any = {"complete": complete, "remark": remark, "orbits": rows} if every else rows[0]
-        click.echo(json.dumps(shown, indent=1))
+        click.echo(msgspec.json.format(msgspec.json.encode(shown, enc_hook=float), indent=1))
         return
     if every:
         count = f"{len(orbits)} orbit{'s' if len(orbits) > 1 else ''}"
@@ -134,12 +133,3 @@ def describe(orbit: Orbit) -> str:
 
 def _complex(z: complex) -> str:
     return f"{z.real:+.10f}" + (f" {z.imag:+.10f}i" if z.imag else "")
-
-
-def _plain(value: Any) -> Any:
-    """Return a value as JSON knows it; what is not finite is null."""
-    if isinstance(value, dict):
-        return {name: _plain(each) for name, each in value.items()}
-    if isinstance(value, list):
-        return [_plain(each) for each in value]
-    return None if isinstance(value, float) and not math.isfinite(value) else value

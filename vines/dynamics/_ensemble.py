@@ -26,7 +26,18 @@ from vines.dynamics._trajectory import IMPACT
 from vines.errors import ParameterError, StateError, nearest
 from vines.model import FREQUENCY, MASS, PARAMETER_NAMES, START_NAMES, VI_NES, X1, X2, Params
 
-__all__ = ["FINAL", "MEASURES", "STATUS_NAMES", "Ensemble", "ensemble", "threads_allowed"]
+__all__ = [
+    "FINAL",
+    "MEASURES",
+    "STATUS_NAMES",
+    "Ensemble",
+    "each_thread",
+    "ensemble",
+    "measures_of",
+    "parameter_table",
+    "start_table",
+    "threads_allowed",
+]
 
 Floats = npt.NDArray[np.float64]
 
@@ -205,8 +216,8 @@ def ensemble(
     >>> many.measures["impacts_left"]
     array([10, 10, 10, 10, 10])
     """
-    table = _parameters(params)
-    begin = _starts(starts)
+    table = parameter_table(params)
+    begin = start_table(starts)
     n = np.broadcast_shapes(table.shape[:1], begin.shape[:1])[0]
     # Copies: a kernel would be compiled once more for arrays that are read-only, as those of broadcast_to are.
     table = np.array(np.broadcast_to(table, (n, len(PARAMETER_NAMES))), order="C")
@@ -315,7 +326,7 @@ class _Work:
     def _measured(self) -> npt.NDArray[np.void] | _Runs | None:
         """Return the measures if they were taken; for impacts alone what is to be run again if they are asked for."""
         if self.totals is not None:
-            return _measures(self.runs.table[:, MASS], self.totals, self.errors)
+            return measures_of(self.runs.table[:, MASS], self.totals, self.errors)
         return self.runs if self.what & lanes.WITH_IMPACTS else None
 
     def _impacts(self) -> npt.NDArray[np.void]:
@@ -328,7 +339,8 @@ class _Work:
         return out
 
 
-def _measures(mu: Floats, totals: Floats, errors: Floats | None = None) -> npt.NDArray[np.void]:
+def measures_of(mu: Floats, totals: Floats, errors: Floats | None = None) -> npt.NDArray[np.void]:
+    """Return energy measures, dtype MEASURES, from totals of windows, shape (n, TOTALS), and their standard errors."""
     out = np.empty(len(totals), dtype=MEASURES)
     duration = totals[:, entry.DURATION]
     v1, v2 = totals[:, entry.V1_SQUARE], totals[:, entry.V2_SQUARE]
@@ -357,7 +369,8 @@ def _measures(mu: Floats, totals: Floats, errors: Floats | None = None) -> npt.N
     return out
 
 
-def _parameters(params: Params | Sequence[Params] | Mapping[str, npt.ArrayLike]) -> Floats:
+def parameter_table(params: Params | Sequence[Params] | Mapping[str, npt.ArrayLike]) -> Floats:
+    """Return the parameters of many runs, shape (n, 5), or raise `ParameterError`."""
     if isinstance(params, Params):
         return np.array([[getattr(params, name) for name in PARAMETER_NAMES]])
     if isinstance(params, Mapping):
@@ -404,7 +417,8 @@ def _check_parameters(table: Floats) -> Floats:
     return table
 
 
-def _starts(starts: Mapping[str, npt.ArrayLike] | None) -> Floats:
+def start_table(starts: Mapping[str, npt.ArrayLike] | None) -> Floats:
+    """Return the starts of many runs, shape (n, 5), or raise `StateError`."""
     table = _columns(starts or {}, _START_DEFAULTS, StateError, "start")
     bad = ~np.isfinite(table).all(axis=1)
     if bad.any():

@@ -106,8 +106,11 @@ def asked_for() -> set[tuple[str, str]]:
 
 
 def is_there(module: str, name: str) -> bool:
-    """Say whether a kernel is kept for the sources as they are."""
-    kernel = getattr(import_module(module), name, None)
+    """Say whether a kernel is kept for the sources as they are; one whose module was moved or removed is not."""
+    try:
+        kernel = getattr(import_module(module), name, None)
+    except ModuleNotFoundError:
+        return False
     cache = getattr(getattr(kernel, "dispatcher", kernel), "_cache", None)
     if not isinstance(cache, LazyCache):
         return False

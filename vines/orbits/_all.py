@@ -7,7 +7,7 @@ from collections.abc import Iterable
 import numpy as np
 import numpy.typing as npt
 
-from vines.dynamics._constants import constants
+from vines.dynamics.kernels import constants
 from vines.model import Params, Word
 from vines.orbits._assemble import assemble
 from vines.orbits._closed_form import family_of, impact_states, refuse_resonance, speeds

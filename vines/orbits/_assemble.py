@@ -7,7 +7,7 @@ import math
 import numpy as np
 import numpy.typing as npt
 
-from vines.dynamics._constants import constants
+from vines.dynamics.kernels import constants
 from vines.model import VI_NES, X1, X2, Params, Word
 from vines.orbits._budget import orbit_measures
 from vines.orbits._floquet import half_map, monodromy, sorted_multipliers, squared

@@ -8,11 +8,9 @@ import numpy as np
 import numpy.typing as npt
 
 from vines.dynamics import Measures
-from vines.dynamics import _advance as column
-from vines.dynamics._constants import Constants
-from vines.dynamics._impact_law import after_impact_kernel
-from vines.dynamics._measures import measures_from
-from vines.dynamics._totals import window_totals
+from vines.dynamics.kernels import Constants, after_impact_kernel, window_totals
+from vines.dynamics.kernels import rows as column
+from vines.dynamics.runs import measures_from
 from vines.kernels import entry_njit, zero_matrix
 from vines.model import Params, Word
 

@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from vines.dynamics._impact_law import impact_law, reversing
+from vines.dynamics.kernels import impact_law, reversing
 from vines.errors import ParameterError
 from vines.model import Params
 

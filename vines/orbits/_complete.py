@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from vines.dynamics._constants import Constants
+from vines.dynamics.kernels import Constants
 from vines.model import Params, Word
 from vines.orbits._boxes import NODES, common_zeros
 from vines.orbits._flights import sample_kernel, start_kernel

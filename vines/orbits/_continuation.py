@@ -10,6 +10,7 @@ import numpy as np
 
 from vines.errors import OrbitNotFound, ParameterError
 from vines.model import VI_NES
+from vines.orbits._arclength import Chord, Walk
 from vines.orbits._branch import Bifurcation, Branch
 from vines.orbits._conditions import (
     GRAZING,
@@ -28,8 +29,9 @@ from vines.orbits._symmetric import SymmetricProblem
 __all__ = ["continue_orbit"]
 
 _SMALLEST_STEP = 1e-8
-_SHARPEST_TURN = math.cos(0.15)
-"""Steps over which the tangent turns by more than .15 rad are halved, so that no fold or event slips through."""
+_TURN = 0.15
+_TOLERANCE = 1e-14
+"""Of the root of a defining equation, as a fraction of the step in which it lies."""
 
 
 def continue_orbit(
@@ -104,7 +106,7 @@ def continue_orbit(
         )
     if not 0 < step <= 1:
         raise ParameterError(f"step is {step!r}, allowed is 0 < step <= 1")
-    walk = _Walk(_problem(orbit, parameter), orbit, stop, low, high, tuple(at), step, beyond_grazing, max_points)
+    walk = _Branch(_problem(orbit, parameter), orbit, stop, low, high, tuple(at), step, beyond_grazing, max_points)
     return walk.run()
 
 
@@ -115,7 +117,7 @@ def _problem(orbit: Orbit, parameter: str) -> Problem:
 
 
 @dataclass
-class _Walk:
+class _Branch:
     """One run of the continuation."""
 
     problem: Problem
@@ -139,7 +141,15 @@ class _Walk:
         towards[-1] = np.sign(self.stop - start)
         here = Point(self.problem.start, self.curve.tangent(self.problem.start, towards), self.orbit)
         self.orbits.append(self.orbit)
-        end = self._follow(here)
+        end = Walk(
+            self.curve,
+            np.array([self.low]),
+            np.array([self.high]),
+            largest=self.step,
+            smallest=_SMALLEST_STEP,
+            turn=_TURN,
+            only_inside=True,
+        ).follow(here, self._record, self.max_points)
         return Branch(
             self.problem.word,
             self.problem.parameter,
@@ -149,52 +159,7 @@ class _Walk:
             ("range", end),
         )
 
-    def _follow(self, here: Point) -> str:
-        length = self.step / 4
-        for _ in range(self.max_points):
-            there, iterations, last = self._advance(here, length)
-            while there is None:
-                length /= 2
-                if length < _SMALLEST_STEP:
-                    return "lost"
-                there, iterations, last = self._advance(here, length)
-            end = self._record(here, there)
-            if end is not None:
-                return end
-            if last:
-                return "range"
-            if iterations <= 5 and here.tangent @ there.tangent > math.sqrt(_SHARPEST_TURN):
-                length = min(1.5 * length, self.step)
-            here = there
-        return "points"
-
-    def _advance(self, here: Point, length: float) -> tuple[Point | None, int, bool]:
-        """Return the next point, how many Newton steps it took, and whether it is at the end of the range."""
-        ahead = here.y + length * self.curve.scale * here.tangent
-        if not self.low < ahead[-1] < self.high:
-            # The model may not exist beyond the range, so the corrector is not to look there.
-            bound = self.low if ahead[-1] <= self.low else self.high
-            ahead = here.y + (bound - here.value) / (ahead[-1] - here.value) * (ahead - here.y)
-            y = self.curve.at_value(ahead, bound)
-            found = None if y is None else (y, 1)
-        else:
-            found = self.curve.correct(ahead, here.tangent)
-        if found is None:
-            return None, 0, False
-        y, iterations = found
-        last = not self.low < y[-1] < self.high
-        if last:
-            bound = self.low if y[-1] <= self.low else self.high
-            share = (bound - here.value) / (y[-1] - here.value) if y[-1] != here.value else 1.0
-            exact = self.curve.at_value(here.y + share * (y - here.y), bound)
-            if exact is None:
-                return None, 0, False
-            y = exact
-        there = self.curve.point(y, (y - here.y) / self.curve.scale)
-        turned = here.tangent @ there.tangent < _SHARPEST_TURN
-        return (None, 0, False) if turned else (there, iterations, last)
-
-    def _record(self, here: Point, there: Point) -> str | None:
+    def _record(self, here: Point, there: Point, last: bool) -> str | None:
         """Add what lies between two points, and the second one; return why the branch ends there, if it does."""
         met = sorted(
             (hit for condition in self.conditions if (hit := self._locate(condition, here, there)) is not None),
@@ -222,48 +187,29 @@ class _Walk:
                 return kind
         self._add_values(before, there)
         self.orbits.append(there.orbit)
-        return None
+        return "range" if last else None
 
     def _locate(self, condition: Condition, here: Point, there: Point) -> tuple[float, str, Point] | None:
         first, second = condition.function(here), condition.function(there)
         if not (math.isfinite(first) and math.isfinite(second)) or (first > 0) == (second > 0):
             return None
-        seen: dict[float, Point] = {0.0: here, 1.0: there}
-
-        def function(fraction: float) -> float:
-            if fraction not in seen:
-                seen[fraction] = self._between(here, there, fraction)
-            return condition.function(seen[fraction])
-
-        from scipy.optimize import root_scalar  # a third of a second to load: only where something is located
-
+        chord = Chord(self.curve, here, there)
         try:
-            root = float(root_scalar(function, bracket=(0.0, 1.0), method="brentq", xtol=1e-15, rtol=1e-14).root)
-            function(root)
+            root = chord.root(condition.function, _TOLERANCE)
         except OrbitNotFound:
             # Where families join the equations degenerate. The parameter has an extremum there, so that next to it
             # its value is right to the square of the distance.
-            last = list(seen)[-1]
-            if condition.type != "fold" or origin(seen[last].orbit) is None:
+            last = list(chord.seen)[-1]
+            if condition.type != "fold" or origin(chord.seen[last].orbit) is None:
                 raise
             root = last
         if condition.type == GRAZING:
             # The search may have come from beyond; the orbit to show is the last one that is still admissible.
             back = math.copysign(1e-15, -1 if first > 0 else 1)
-            while not grazing_margin(seen[root]) > 0:
+            while not grazing_margin(chord.point(root)) > 0:
                 root = min(max(root + back, 0.0), 1.0)
-                function(root)
                 back *= 2
-        return root, condition.type, seen[root]
-
-    def _between(self, here: Point, there: Point, fraction: float) -> Point:
-        point = self.curve.between(here, there, fraction)
-        if point is None:
-            raise OrbitNotFound(
-                f"the {self.problem.word} branch was lost between {self.problem.parameter} = {here.value:.9g} and "
-                f"{there.value:.9g} while a bifurcation was being located; give a smaller step than {self.step:g}"
-            )
-        return point
+        return root, condition.type, chord.point(root)
 
     def _add_values(self, here: Point, there: Point) -> None:
         """Add the orbits at the wanted values of the parameter between two points."""

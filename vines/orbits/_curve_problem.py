@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
-from vines.dynamics._constants import constants
+from vines.dynamics.kernels import constants
 from vines.kernels import entry_njit, linked_njit, new_vector
 from vines.model import PARAMETER_NAMES, V2, Params
 from vines.orbits._assemble import assemble

@@ -8,10 +8,15 @@ from __future__ import annotations
 
 import math
 
-from vines.dynamics._constants import oscillator
-from vines.dynamics._flight import derivatives, phasors, turn
-from vines.dynamics._impact_law import after_impact_kernel, impact_law_kernel
-from vines.dynamics._saltation import jacobian_kernel
+from vines.dynamics.kernels import (
+    after_impact_kernel,
+    derivatives,
+    impact_law_kernel,
+    jacobian_kernel,
+    oscillator,
+    phasors,
+    turn,
+)
 from vines.kernels import identity, linked_njit, new_matrix, zero_matrix
 from vines.model import AMPLITUDE, DAMPING, FREQUENCY, MASS, RESTITUTION, V1, V2, X1, X2
 from vines.orbits._elimination import eliminate

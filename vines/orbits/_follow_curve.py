@@ -11,6 +11,7 @@ import numpy.typing as npt
 
 from vines.errors import OrbitNotFound, ParameterError
 from vines.model import VI_NES
+from vines.orbits._arclength import Chord, Walk
 from vines.orbits._branch import Bifurcation
 from vines.orbits._curve import Curve, SpecialPoint
 from vines.orbits._curve_problem import CurveProblem
@@ -23,9 +24,14 @@ __all__ = ["follow_curve"]
 Floats = npt.NDArray[np.float64]
 
 _SMALLEST_STEP = 1e-7
-_SHARPEST_TURN = math.cos(0.2)
+_TURN = 0.2
+_REACH = 4.0
+_TOLERANCE = 1e-13
+"""Of a special point, as a fraction of the step in which it lies."""
 _ENDS = (END, "resonance_1_1", "resonance_1_2", "double_grazing", "degenerate_grazing")
 """Special points beyond which the equations describe something else."""
+_FIRST = 4
+"""Points before which a curve is not looked at for having closed."""
 
 
 def follow_curve(
@@ -132,69 +138,45 @@ class _Way:
     end: str = "points"
 
     def run(self, begin: Point) -> None:
-        functions = special_functions(self.problem)
-        here, length = begin, self.step / 4
-        values = [special.function(here) for special in functions]
-        for count in range(self.max_points):
-            found = self._advance(here, length)
-            while found is None:
-                length /= 2
-                if length < _SMALLEST_STEP:
-                    self.end = "lost"
-                    return
-                found = self._advance(here, length)
-            there, easy, last = found
-            after = [special.function(there) for special in functions]
-            hits = [self._cusp(here, there)] + [
-                self._locate(special, here, there, a, b) for special, a, b in zip(functions, values, after, strict=True)
-            ]
-            for _, kind, point in sorted((hit for hit in hits if hit is not None), key=lambda hit: hit[0]):
-                self._note(kind, point)
-                if kind in _ENDS and not (kind.startswith("resonance") and self.problem.kind != "neimark_sacker"):
-                    self.points.append(point)
-                    self.end = kind
-                    return
-            self.points.append(there)
-            if last:
-                self.end = "box"
-                return
-            if count > 3 and self._passes(begin, here, there):
-                self.end = "closed"
-                return
-            if easy:
-                length = min(1.5 * length, self.step)
-            here, values = there, after
+        self.begin = begin
+        self.functions = special_functions(self.problem)
+        self.values = [special.function(begin) for special in self.functions]
+        walk = Walk(
+            self.zero,
+            self.low,
+            self.high,
+            largest=self.step,
+            smallest=_SMALLEST_STEP,
+            turn=_TURN,
+            reach=_REACH,
+        )
+        self.end = walk.follow(begin, self._record, self.max_points)
 
-    def _advance(self, here: Point, length: float) -> tuple[Point, bool, bool] | None:
-        """Return the next point, whether the step may grow, and whether the point is on the border of the box."""
-        found = self.zero.correct(here.y + length * self.zero.scale * here.tangent, here.tangent)
-        if found is None:
-            return None
-        y, iterations = found
-        outside = np.flatnonzero((y[-2:] <= self.low) | (y[-2:] >= self.high))
-        if len(outside):
-            bounds = np.where(y[-2:] <= self.low, self.low, self.high)
-            move = (y - here.y)[-2:]
-            shares = [(bounds[k] - here.y[k - 2]) / move[k] for k in outside]
-            k = int(outside[np.argmin(shares)])
-            border = self.zero.at_value(here.y + min(shares) * (y - here.y), float(bounds[k]), k - 2)
-            if border is None:
-                return None
-            y = border
-        if self._far(here.y, y) > 4 * length:
-            return None
-        there = self.zero.point(y, (y - here.y) / self.zero.scale)
-        turn = float(here.tangent @ there.tangent)
-        if turn < _SHARPEST_TURN:
-            return None
-        return there, iterations <= 5 and turn > math.sqrt(_SHARPEST_TURN), len(outside) > 0
+    def _record(self, here: Point, there: Point, last: bool) -> str | None:
+        """Add what lies between two points, and the second one; return why the curve ends there, if it does."""
+        after = [special.function(there) for special in self.functions]
+        hits = [self._cusp(here, there)] + [
+            self._locate(special, here, there, a, b)
+            for special, a, b in zip(self.functions, self.values, after, strict=True)
+        ]
+        for _, kind, point in sorted((hit for hit in hits if hit is not None), key=lambda hit: hit[0]):
+            self._note(kind, point)
+            if kind in _ENDS and not (kind.startswith("resonance") and self.problem.kind != "neimark_sacker"):
+                self.points.append(point)
+                return kind
+        self.points.append(there)
+        self.values = after
+        if last:
+            return "box"
+        return "closed" if len(self.points) > _FIRST and self._passes(here, there) else None
 
     def _far(self, first: Floats, second: Floats) -> float:
         return float(np.linalg.norm((second - first) / self.zero.scale))
 
-    def _passes(self, begin: Point, here: Point, there: Point) -> bool:
-        near = self._far(begin.y, there.y) < self._far(here.y, there.y)
-        return near and float(begin.tangent @ there.tangent) > 0.9
+    def _passes(self, here: Point, there: Point) -> bool:
+        """Say whether the curve comes past the point at which it began."""
+        near = self._far(self.begin.y, there.y) < self._far(here.y, there.y)
+        return near and float(self.begin.tangent @ there.tangent) > 0.9
 
     def _note(self, kind: str, point: Point) -> None:
         first, second = point.y[-2:].tolist()
@@ -220,21 +202,9 @@ class _Way:
 
     def _root(self, function: Callable[[Point], float], here: Point, there: Point) -> tuple[float, Point] | None:
         """Return where between two points a function vanishes, or None if the curve is lost there."""
-        seen: dict[float, Point] = {0.0: here, 1.0: there}
-
-        def at(fraction: float) -> float:
-            if fraction not in seen:
-                point = self.zero.between(here, there, fraction)
-                if point is None:
-                    raise OrbitNotFound(f"the curve was lost at {here.orbit.params}")
-                seen[fraction] = point
-            return function(seen[fraction])
-
-        from scipy.optimize import root_scalar  # a third of a second to load: only where something is located
-
+        chord = Chord(self.zero, here, there)
         try:
-            root = float(root_scalar(at, bracket=(0.0, 1.0), method="brentq", xtol=1e-14, rtol=1e-13).root)
-            at(root)
+            root = chord.root(function, _TOLERANCE)
         except (OrbitNotFound, ValueError):
             return None
-        return root, seen[root]
+        return root, chord.point(root)

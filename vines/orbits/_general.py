@@ -7,7 +7,7 @@ import math
 import numpy as np
 import numpy.typing as npt
 
-from vines.dynamics._constants import constants
+from vines.dynamics.kernels import constants
 from vines.errors import OrbitNotFound, ParameterError
 from vines.model import V1, V2, Params, Word
 from vines.orbits._assemble import assemble, asymmetry

@@ -10,8 +10,8 @@ import numpy as np
 import numpy.typing as npt
 
 from vines.dynamics import Measures
-from vines.dynamics._impact_law import after_impact, impact_law
-from vines.dynamics._trajectory import IMPACT
+from vines.dynamics.kernels import after_impact, impact_law
+from vines.dynamics.runs import IMPACT
 from vines.model import V1, V2, Params, Word
 
 __all__ = ["Orbit", "short_hash"]

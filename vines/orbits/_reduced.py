@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from vines.dynamics._impact_law import impact_law, reversing
+from vines.dynamics.kernels import impact_law, reversing
 from vines.model import Params
 
 __all__ = ["Reduced", "manifold_amplitude", "manifold_range", "reduced_orbits", "reduced_range"]

@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from vines.dynamics import simulate
-from vines.dynamics._constants import Constants
+from vines.dynamics.kernels import Constants
 from vines.model import STATE_NAMES, VI_NES, Params, Word
 from vines.orbits._flights import start_kernel
 from vines.orbits._floquet import monodromy

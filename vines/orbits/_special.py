@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from vines.dynamics._constants import constants
+from vines.dynamics.kernels import constants
 from vines.orbits._conditions import grazing_margin
 from vines.orbits._criticality import branching_curvature
 from vines.orbits._curve_problem import CurveProblem

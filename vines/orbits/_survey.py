@@ -4,9 +4,7 @@ from __future__ import annotations
 
 import math
 
-from vines.dynamics._flight import derivatives, phasors, turn
-from vines.dynamics._impact_law import after_impact_kernel
-from vines.dynamics._saltation import jacobian_kernel
+from vines.dynamics.kernels import after_impact_kernel, derivatives, jacobian_kernel, phasors, turn
 from vines.kernels import copy_values, linked_njit, new_cube, njit
 from vines.orbits._turning import turning_points_kernel
 

@@ -8,10 +8,14 @@ import math
 import numpy as np
 import numpy.typing as npt
 
-from vines.dynamics._constants import constants_kernel
-from vines.dynamics._impact_law import after_impact_kernel, reversing_kernel
-from vines.dynamics._integrals import largest_displacement, segment_integrals
-from vines.dynamics._saltation import jacobian_kernel
+from vines.dynamics.kernels import (
+    after_impact_kernel,
+    constants_kernel,
+    jacobian_kernel,
+    largest_displacement,
+    reversing_kernel,
+    segment_integrals,
+)
 from vines.errors import ParameterError
 from vines.kernels import complex_matrix, complex_vector, entry_njit
 from vines.model import AMPLITUDE, DAMPING, FREQUENCY, LAM_TABLE_1, MASS, RESTITUTION, Params

@@ -8,7 +8,7 @@ computed.
 
 from __future__ import annotations
 
-from vines.dynamics._flight import derivatives, fourth_bound, turn
+from vines.dynamics.kernels import derivatives, fourth_bound, turn
 from vines.kernels import copy_values, linked_njit, new_vector, njit
 
 __all__ = ["turning_points_kernel"]

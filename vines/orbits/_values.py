@@ -11,8 +11,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from vines.dynamics._constants import oscillator
-from vines.dynamics._impact_law import impact_law_kernel
+from vines.dynamics.kernels import impact_law_kernel, oscillator
 from vines.kernels import njit
 from vines.model import AMPLITUDE, DAMPING, FREQUENCY, MASS, RESTITUTION, Params
 

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from vines.pipeline._axes import Axis
     from vines.pipeline._builder import Declaration, span
+    from vines.pipeline._chains import carried_id
     from vines.pipeline._code import CodeDigests
     from vines.pipeline._collection import Collection, load_collection, members
     from vines.pipeline._declaration import Carry, Pipeline, Refine, Stage
@@ -13,6 +14,7 @@ if TYPE_CHECKING:
     from vines.pipeline._files import available, file_of, find
     from vines.pipeline._form import json_schema
     from vines.pipeline._graph import mermaid, mermaid_of_all
+    from vines.pipeline._identity import free_ids
     from vines.pipeline._include import with_included
     from vines.pipeline._ingredients import what_changed
     from vines.pipeline._jobs import Batch, Input, Job, Point, Points, Range, WholeJob
@@ -22,6 +24,7 @@ if TYPE_CHECKING:
     from vines.pipeline._reading import load
     from vines.pipeline._run import run_pipeline
     from vines.pipeline._shard import Shard
+    from vines.pipeline._worker import body_of
 
 __all__ = [
     "KINDS",
@@ -48,9 +51,12 @@ __all__ = [
     "StagePlan",
     "WholeJob",
     "available",
+    "body_of",
+    "carried_id",
     "code_digests",
     "file_of",
     "find",
+    "free_ids",
     "json_schema",
     "kind",
     "kinds",
@@ -94,9 +100,12 @@ _HOME = {
     "StagePlan": "vines.pipeline._plan",
     "WholeJob": "vines.pipeline._jobs",
     "available": "vines.pipeline._files",
+    "body_of": "vines.pipeline._worker",
+    "carried_id": "vines.pipeline._chains",
     "code_digests": "vines.pipeline._plan",
     "file_of": "vines.pipeline._files",
     "find": "vines.pipeline._files",
+    "free_ids": "vines.pipeline._identity",
     "json_schema": "vines.pipeline._form",
     "kind": "vines.pipeline._kinds",
     "kinds": "vines.pipeline._kinds",

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import tempfile
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -29,8 +30,6 @@ __all__ = ["PointsAgain", "start_again"]
 _REGULAR = ("periodic", "no_impact")
 _PROMPT = 600
 """Forcing periods within which a start comes to its attractor without a chaotic transient."""
-_SAME = 1e-6
-"""As in the basins themselves: two periodic attractors whose measures differ by less are one."""
 
 
 class PointsAgain:
@@ -95,8 +94,7 @@ def _compute(result: Result, row: dict[str, Any]) -> dict[str, list[dict[str, An
     """Call the body of the stage for one point, which starts where its row says."""
     import msgspec
 
-    from vines.pipeline import Job, Points
-    from vines.pipeline._worker import body_of
+    from vines.pipeline import Job, Points, body_of
     from vines.store import Ids
 
     form: Any = result.manifest["ingredients"]
@@ -123,6 +121,8 @@ def start_again(result: Result, table: str, place: int) -> Comparison:
     Starts that came to a periodic motion late, or never, are not compared: where chaos is a long transient, rounding
     decides when it ends.
     """
+    from vines.attractors import SAME, Motion, apart
+
     row = stored_row(result, table, place)
     wanted = {each["attractor"]: each for each in result.table("attractors").to_pylist()}[row["attractor"]]
     comparison = Comparison()
@@ -136,10 +136,9 @@ def start_again(result: Result, table: str, place: int) -> Comparison:
     comparison.same("periodic motion", regular, found.regime in _REGULAR)
     if not regular or comparison.wrong:
         return comparison
-    n, m = found.n or 0, found.m or 0
-    if found.name is not None and wanted["name"] != found.name.replace(f"{n}:{m}", f"{m}:{n}", 1):
+    if math.isinf(apart(Motion.of_row(wanted), Motion.of(found))):
         comparison.same("name", wanted["name"], found.name)
-    allowed = TOLERANCE if table == "attractors" else _SAME
+    allowed = TOLERANCE if table == "attractors" else SAME
     for name in ("max_abs_x1", "kinetic_ratio"):
         value = getattr(found.measures, name)
         comparison.number(name, wanted[name], value, allowed * (1 + abs(wanted[name] or 0.0)))

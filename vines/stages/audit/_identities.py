@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
-from vines.pipeline._chains import carried_id
-from vines.pipeline._identity import free_ids
+from vines.pipeline import carried_id, free_ids
 
 if TYPE_CHECKING:
     import pyarrow as pa

@@ -9,8 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from vines.errors import VinesError
-from vines.pipeline import kind
-from vines.pipeline._code import CodeDigests
+from vines.pipeline import CodeDigests, kind
 from vines.stages.audit._again import PointsAgain, start_again
 from vines.stages.audit._located import locate_again
 from vines.stages.audit._resolved import resolve_again

@@ -7,15 +7,12 @@ from typing import Any
 
 import numpy as np
 
-from vines.attractors import Attractor, Classified, classify_many, share_error
+from vines.attractors import SAME, Attractor, Classified, Motion, apart, classify_many, share_error
 from vines.dynamics import no_ball
 from vines.model import PARAMETER_NAMES, START_NAMES, Params, Word
 from vines.stages.bodies._rows import outline
 
 __all__ = ["attractor_rows", "coexisting", "random_starts"]
-
-SAME = 1e-6
-"""Two periodic attractors of one name are one, or mirror images, if their max|x1| and K2/K1 differ by less."""
 
 
 def coexisting(
@@ -62,23 +59,15 @@ def coexisting(
     for point, listed in enumerate(found):
         for k in range(point * random, (point + 1) * random):
             word: Word | None = many.words[k]
-            kind = (regimes[k], settled[k], word.p if word else 0, sorted((word.n, word.m)) if word else [])
-            _count(listed, kind, (size[k], ratio[k]), many, k)
+            counts = (word.n, word.m, word.p) if word else (None, None, None)
+            _count(listed, Motion(regimes[k], *counts, ratio[k], size[k]), settled[k], many, k)
     return found
 
 
-def _count(
-    listed: list[tuple[Attractor, int]], kind: tuple[Any, ...], sizes: tuple[float, float], many: Classified, k: int
-) -> None:
+def _count(listed: list[tuple[Attractor, int]], motion: Motion, settled: bool, many: Classified, k: int) -> None:
     """Count run k with the attractor that it came to, or list it as a new one."""
     for at, (known, count) in enumerate(listed):
-        # n:m and its mirror image m:n are one attractor.
-        sides = sorted((known.n or 0, known.m or 0)) if known.p else []
-        same = kind == (known.regime, known.settled, known.p or 0, sides)
-        if same and known.p:
-            pairs = zip((known.measures.max_abs_x1, known.measures.kinetic_ratio), sizes, strict=True)
-            same = all(abs(x - y) <= SAME * (1.0 + abs(x)) for x, y in pairs)
-        if same:
+        if known.settled == settled and apart(Motion.of(known), motion) <= SAME:
             listed[at] = (known, count + 1)
             return
     listed.append((many.attractor(k), 1))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated, Literal
 
 import msgspec
 from msgspec import Meta
@@ -15,10 +15,16 @@ from vines.stages.kinds._parameters import PARAMETERS
 __all__ = ["KIND", "BasinsOptions", "Grid"]
 
 
+if TYPE_CHECKING:
+    _Coordinate = str
+else:
+    _Coordinate = Literal[START_NAMES]
+
+
 class Grid(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """A coordinate of the start with evenly spaced values, `from` and `to` included."""
 
-    name: Annotated[str, Meta(description="Which coordinate", extra_json_schema={"enum": list(START_NAMES)})]
+    name: Annotated[_Coordinate, Meta(description="Which coordinate")]
     start: Annotated[float, Meta(description="The first value")] = msgspec.field(name="from")
     stop: Annotated[float, Meta(description="The last value")] = msgspec.field(name="to")
     count: Annotated[int, Meta(ge=2, description="How many")] = 100
@@ -51,9 +57,9 @@ def _check(params: dict[str, float], options: BasinsOptions) -> None:
     names = {options.x.name, options.y.name}
     if len(names) < 2 or names & set(options.start):
         raise ParameterError(f"x is {options.x.name}, y is {options.y.name}: give two coordinates, not again in start")
-    for name in (options.x.name, options.y.name, *options.start):
+    for name in options.start:
         if name not in START_NAMES:
-            raise ParameterError(f"unknown coordinate {name!r} of the start: {nearest(name, START_NAMES)}")
+            raise ParameterError(f"unknown coordinate {name!r} in start: {nearest(name, START_NAMES)}")
 
 
 KIND = Kind(
