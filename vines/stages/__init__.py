@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from vines.stages.api._reference import reference_kinds, reference_plots
     from vines.stages.api._running import list_pipelines, run, status, status_of_each
     from vines.stages.api._study import init_study
-    from vines.stages.api._warm_up import compile_cold, compile_if_cold, warm_up
+    from vines.stages.api._warm_up import compile_for, compile_if_cold, warm_up
     from vines.stages.audit import Verification, verify
     from vines.stages.kinds._register import register_kinds
     from vines.stages.reports._report import report
@@ -42,7 +42,7 @@ __all__ = [
     "checks",
     "clean",
     "compare_run",
-    "compile_cold",
+    "compile_for",
     "compile_if_cold",
     "declaration_schema",
     "default_shown",
@@ -91,7 +91,7 @@ _HOME = {
     "compare_run": "rig._by_hand",
     "Difference": "api._keeping",
     "checks": "api._asking",
-    "compile_cold": "api._warm_up",
+    "compile_for": "api._warm_up",
     "compile_if_cold": "api._warm_up",
     "clean": "api._keeping",
     "declaration_schema": "api._declarable",
