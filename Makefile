@@ -26,7 +26,7 @@ test: $(INSTALLED_DEV)  ## install what tests too, then run the tests
 install: $(INSTALLED_DEV)  ## make .venv from the hashed locks (run, dev), byte-compiled, to be used by hand
 	@"$(BIN)/python" -m compileall -q -j 0 "$(VENV)"
 
-$(INSTALLED): requirements.lock pyproject.toml
+$(INSTALLED): requirements.lock pyproject.toml vines/__init__.py
 	@test -x "$(BIN)/python" || $(PYTHON) -m venv "$(VENV)"
 	@echo "installing what vines needs to run (half a minute the first time)"
 	@$(PIP) --require-hashes -r requirements.lock

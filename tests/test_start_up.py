@@ -1,8 +1,10 @@
 """What must be quick loads nothing heavy, and the public names are there."""
 
+import importlib
 import json
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
 
@@ -43,8 +45,22 @@ except SystemExit as end:
     assert loaded(code, tmp_path) == []
 
 
-def test_public_names_resolve():
-    for name in vines.__all__:
-        assert getattr(vines, name) is not None
-    with pytest.raises(AttributeError, match="no attribute 'nothing'"):
-        _ = vines.nothing
+LAZY = sorted(
+    ".".join(stub.relative_to(Path(vines.__file__).parents[1]).parent.parts)
+    for stub in Path(vines.__file__).parent.rglob("__init__.pyi")
+)
+
+
+@pytest.mark.parametrize("room", LAZY)
+def test_public_names_resolve_and_are_listed(room):
+    module = importlib.import_module(room)
+    assert set(dir(module)) == set(module.__all__)
+    for name in module.__all__:
+        assert getattr(module, name) is not None
+    with pytest.raises(AttributeError, match="nothing"):
+        _ = module.nothing
+
+
+def test_the_rooms_that_were_lazy_are():
+    rooms = ("catalogue", "figures", "pipeline", "rig", "schema", "stages", "store", "viewer")
+    assert ["vines", *(f"vines.{room}" for room in rooms)] == LAZY

@@ -6,6 +6,7 @@ import time
 
 import pytest
 
+from vines.errors import DeclarationError
 from vines.pipeline import load, plan
 from vines.pipeline._code import CodeDigests
 
@@ -107,6 +108,46 @@ def test_the_closure_follows_reexports_to_the_defining_module(lab):
     assert modules(lab) == {"toylab.start", "toylab.room._one"}
     lab.source("room/__init__", "from ._one import one\nLEVEL = compute()\n")
     assert modules(lab) == {"toylab.start", "toylab.room", "toylab.room._one"}
+
+
+def test_the_closure_follows_the_stub_of_a_lazy_package(lab):
+    (lab.package / "room").mkdir()
+    attach = "import lazy_loader\n__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)\n"
+    lab.source("room/__init__", attach)
+    stub = lab.package / "room" / "__init__.pyi"
+    stub.write_text("from ._one import one as one\nfrom ._two import two as deux\nfrom . import _three as _three\n")
+    for name in ("one", "two", "three"):
+        lab.source(f"room/_{name}", f"def {name}(): return 1\n")
+    assert modules(lab, start="from toylab.room import one\n") == {"toylab.start", "toylab.room._one"}
+    assert modules(lab, start="from toylab.room import deux\n") == {"toylab.start", "toylab.room._two"}
+    assert modules(lab, start="from toylab.room import _three\n") == {"toylab.start", "toylab.room._three"}
+    before = CodeDigests().digest("toylab.start:compute")
+    stub.write_text(stub.read_text() + "from ._one import one as more\n")
+    assert CodeDigests().digest("toylab.start:compute") == before
+    lab.source("room/_three", "def three(): return 3\n")
+    assert CodeDigests().digest("toylab.start:compute") != before
+    stub.unlink()
+    with pytest.raises(DeclarationError, match="stub of a lazy package is missing"):
+        modules(lab)
+
+
+def test_a_changed_stub_is_seen_through_the_cache(lab):
+    import os
+
+    (lab.package / "room").mkdir()
+    attach = "import lazy_loader\n__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)\n"
+    lab.source("room/__init__", attach)
+    lab.source("room/_one", "def one(): return 1\n")
+    lab.source("room/_two", "def one(): return 2\n")
+    lab.source("start", "from toylab.room import one\n")
+    stub, cache = lab.package / "room" / "__init__.pyi", lab.folder / "code.json"
+    for age, home in ((100, "_one"), (50, "_two")):
+        stub.write_text(f"from .{home} import one as one\n")
+        for path in lab.package.rglob("*.py*"):
+            os.utime(path, (time.time() - age,) * 2 if path == stub else (1e9, 1e9))
+        look = CodeDigests(cache)
+        assert set(look.modules("toylab.start:compute")) == {"toylab.start", f"toylab.room.{home}"}
+        look.save()
 
 
 def test_the_closure_follows_lazy_and_whole_imports_but_not_those_for_checkers(lab):

@@ -1,10 +1,14 @@
-"""Options of kinds: what they refuse, in one line, and that a kind's own option may be called as a general key."""
+"""Options of kinds: what they refuse, in one line, and that nothing asks for the name of a kind."""
+
+import ast
+from pathlib import Path
 
 import pytest
 
+import vines
 from vines.errors import DeclarationError
 from vines.pipeline import json_schema
-from vines.stages import describe_kind, load_pipeline, register_kinds
+from vines.stages import describe_kind, list_kinds, load_pipeline, register_kinds
 
 SWEEP = 'kind = "sweep"\nparams.mu = 0.01\nvary.A = [0.01, 0.02]\n'
 BRANCH = 'kind = "branch"\nparams.mu = 0.01\nword = "LR"\nvary.A = { from = 0.01, to = 0.02 }\n'
@@ -70,3 +74,33 @@ def test_every_option_says_what_it_is():
         if key not in ("plot", "kind") and "description" not in option
     ]
     assert silent == []
+
+
+def test_nothing_asks_for_the_name_of_a_kind():
+    """What a kind can do is in its spec, so that a kind of another package has the same rights."""
+    names = {row["name"] for row in list_kinds()}
+    package = Path(vines.__file__).parent
+    asked = [
+        f"{path.relative_to(package)}:{node.lineno}: {ast.unparse(node)}"
+        for path in sorted(package.rglob("*.py"))
+        if path.parent != package / "stages" / "kinds" or path.name.startswith("_")
+        for node in ast.walk(ast.parse(path.read_text("utf-8")))
+        if _asks(node, names)
+    ]
+    assert asked == []
+
+
+def _asks(node, names):
+    """Whether a comparison has the name of a kind beside a kind, or a table is looked up by what a kind is called."""
+    if isinstance(node, ast.Compare):
+        words = {inner.value for inner in ast.walk(node) if isinstance(inner, ast.Constant) and inner.value in names}
+        return bool(words) and "kind" in ast.unparse(node) and ".tables" not in ast.unparse(node)
+    if isinstance(node, ast.Subscript):
+        return _is_kind(node.slice)
+    if isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute) and node.func.attr == "get" and node.args:
+        return _is_kind(node.args[0]) and ast.unparse(node.func.value) not in ("KINDS", "kinds()")
+    return False
+
+
+def _is_kind(node):
+    return ast.unparse(node).endswith(("['kind']", ".kind", ".kind.name"))

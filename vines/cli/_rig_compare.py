@@ -28,9 +28,9 @@ def command(run: Path, ring_downs: tuple[Path, ...], as_json: bool) -> None:
     \b
     vines rig compare campaign/runs/01_up
     """  # noqa: D301
-    from vines.stages import compare_run, compile_cold
+    from vines.stages import compare_run, compile_for
 
-    compile_cold(lambda line: click.echo(line, err=True))
+    compile_for("compare", lambda line: click.echo(line, err=True))
     made = compare_run(run, ring_downs, study=the_study())
     if as_json:
         click.echo(made.file.read_text("utf-8"), nl=False)

@@ -2,7 +2,8 @@
 
 It is static. Comments, docstrings and blocks for type checkers don't count; imports are followed through the package of
 the body and through vines, also those inside functions. A name that a package re-exports leads to the module that
-defines it, so an ``__init__`` that only imports doesn't count, and adding an export makes nothing stale.
+defines it, so an ``__init__`` that only imports, or loads lazily what its stub lists, doesn't count, and adding an
+export makes nothing stale.
 """
 
 from __future__ import annotations
@@ -18,7 +19,7 @@ from pathlib import Path
 from typing import Any
 
 from vines.errors import DeclarationError
-from vines.pipeline._source import Source, read_source, read_source_once
+from vines.pipeline._source import Source, read_source, read_source_once, stub_of
 from vines.store import key_of, write_text
 
 __all__ = ["CodeDigests"]
@@ -161,15 +162,16 @@ class CodeDigests:
         return self._sources[module]
 
     def _read(self, module: str, file: str, status: os.stat_result) -> Source:
-        stamp = [status.st_mtime_ns, status.st_size, module]
+        times = [status.st_mtime_ns, *_stamp_of_stub(file)]
+        stamp = [*times, status.st_size, module]
         if self._cached is None:
             self._cached = self._load()
         entry = self._cached.get(file)
         if entry is not None and entry["stamp"] == stamp:
             return Source(entry["digest"], entry["imports"], entry["exports"], entry["light"])
-        if time.time_ns() - status.st_mtime_ns <= _SETTLED_NS:
+        if time.time_ns() - max(times) <= _SETTLED_NS:
             return read_source(module, Path(file))
-        read = read_source_once(module, Path(file), status.st_mtime_ns, status.st_size)
+        read = read_source_once(module, Path(file), (*times, status.st_size))
         self._cached[file] = {
             "stamp": stamp,
             "digest": read.digest,
@@ -186,6 +188,16 @@ class CodeDigests:
             return cached["files"] if cached.get("form") == _FORM else {}
         except (OSError, ValueError, KeyError, AttributeError):
             return {}
+
+
+def _stamp_of_stub(file: str) -> list[int]:
+    """Return when the stub of a package was changed; nothing for what has none."""
+    if not file.endswith("__init__.py"):
+        return []
+    try:
+        return [os.stat(stub_of(file)).st_mtime_ns]  # noqa: PTH116 - it is called often
+    except OSError:
+        return []
 
 
 def _root_of(top: str) -> str:

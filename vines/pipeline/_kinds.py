@@ -64,6 +64,8 @@ class Kind:
         ``code(options)`` returns what the body calls beside its imports, as `body`, so that its code counts too.
     again : {"", "points", "starts"}
         What of it ``vines verify --recompute`` can compute again in seconds from a row alone: a point, or a start.
+    scaled : tuple of str
+        Parameters that its rows may have other values of than a declaration fixes, because it scales them.
     kernels : tuple of str, or callable
         The kinds of tasks whose compiled kernels the body asks for, so that they are compiled before the run, and no
         others; ``kernels(options, carried)`` where it depends on the stage.
@@ -87,6 +89,7 @@ class Kind:
     variants: Register[Any] | None = None
     code: Callable[[Any], tuple[str, ...]] | None = None
     again: Literal["", "points", "starts"] = ""
+    scaled: tuple[str, ...] = ()
     kernels: tuple[str, ...] | Callable[[Any, bool], tuple[str, ...]] = ()
 
     def __post_init__(self) -> None:

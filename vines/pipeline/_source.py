@@ -14,7 +14,7 @@ from typing import Any
 
 from vines.errors import DeclarationError
 
-__all__ = ["Source", "read_source", "read_source_once"]
+__all__ = ["Source", "read_source", "read_source_once", "stub_of"]
 
 _LAZY = frozenset({"__dir__", "__getattr__"})
 _DOCUMENTED = frozenset({ast.Module, ast.ClassDef, ast.FunctionDef, ast.AsyncFunctionDef})
@@ -43,10 +43,21 @@ class Source:
 
 
 @functools.cache
-def read_source_once(module: str, file: Path, mtime_ns: int, size: int) -> Source:
-    """Return what a file of that time stamp and size says; whoever asks in one process shares it."""
-    del mtime_ns, size
+def read_source_once(module: str, file: Path, stamps: tuple[int, ...]) -> Source:
+    """Return what a file with these time stamps and sizes says; whoever asks in one process shares it."""
+    del stamps
     return read_source(module, file)
+
+
+def stub_of(file: str) -> str:
+    """Return the stub beside an ``__init__.py``, in which a lazy package (lazy_loader) says where its names come from.
+
+    Examples
+    --------
+    >>> stub_of("vines/__init__.py")
+    'vines/__init__.pyi'
+    """
+    return f"{file}i"
 
 
 def read_source(module: str, file: Path) -> Source:
@@ -55,23 +66,38 @@ def read_source(module: str, file: Path) -> Source:
     Raises
     ------
     DeclarationError
-        If it is not Python.
+        If it is not Python, or a lazy package has no stub.
     """
     is_package = file.name == "__init__.py"
     package = module if is_package else module.rpartition(".")[0]
-    try:
-        tree = ast.parse(file.read_bytes(), filename=str(file))
-    except SyntaxError as error:
-        raise DeclarationError(
-            f"{file}: line {error.lineno}: {error.msg}; the code of a stage has to be Python"
-        ) from None
+    tree = _parsed(file)
     found: list[ast.Import | ast.ImportFrom] = []
     digest = hashlib.sha256(_form(tree, found).encode()).hexdigest()
     imports = [pair for node in found for pair in _imports(node, package)]
     body = _counted(tree)
     exports = _exports(body, package) if is_package else {}
+    if is_package and any(_attaches_stub(node) for node in body):
+        exports |= _exports(_parsed(Path(stub_of(str(file)))).body, package)
     light = is_package and all(_is_light(node) for node in body)
     return Source(digest[:32], list(map(list, dict.fromkeys(map(tuple, imports)))), exports, light)
+
+
+def _parsed(file: Path) -> ast.Module:
+    try:
+        return ast.parse(file.read_bytes(), filename=str(file))
+    except SyntaxError as error:
+        raise DeclarationError(
+            f"{file}: line {error.lineno}: {error.msg}; the code of a stage has to be Python"
+        ) from None
+    except FileNotFoundError:
+        raise DeclarationError(f"{file}: the stub of a lazy package is missing; install its package again") from None
+
+
+def _attaches_stub(node: ast.stmt) -> bool:
+    """Whether a statement is ``__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)``."""
+    call = node.value if isinstance(node, ast.Assign) else None
+    function = call.func if isinstance(call, ast.Call) else None
+    return getattr(function, "attr", getattr(function, "id", "")) == "attach_stub"
 
 
 @functools.cache
@@ -172,7 +198,7 @@ def _is_light(node: ast.stmt) -> bool:
         return isinstance(node.value, ast.Constant)
     if isinstance(node, ast.Assign):
         names = [getattr(target, "id", "") for target in node.targets]
-        return "__all__" in names or _is_literal(node.value)
+        return "__all__" in names or _is_literal(node.value) or _attaches_stub(node)
     return isinstance(node, ast.AnnAssign) and (node.value is None or _is_literal(node.value))
 
 

@@ -4,48 +4,16 @@ Importing this room loads no rerun (PEP 562): each function does when it is call
 says so when one of its names is asked for.
 """
 
-from __future__ import annotations
+from typing import Any
 
-from importlib import import_module
-from typing import TYPE_CHECKING, Any
+import lazy_loader
 
 from vines.packages import need
 
-if TYPE_CHECKING:
-    from vines.viewer._browse import browse, catalogue_of
-    from vines.viewer._cache import cached_rrd
-    from vines.viewer._layout import Shown, blueprint
-    from vines.viewer._save import save_rrd
-    from vines.viewer._show import screenshot, view, web
-
-__all__ = [
-    "Shown",
-    "blueprint",
-    "browse",
-    "cached_rrd",
-    "catalogue_of",
-    "save_rrd",
-    "screenshot",
-    "view",
-    "web",
-]
-
-
-_HOME = {
-    "Shown": "_layout",
-    "blueprint": "_layout",
-    "browse": "_browse",
-    "cached_rrd": "_cache",
-    "catalogue_of": "_browse",
-    "save_rrd": "_save",
-    "screenshot": "_show",
-    "view": "_show",
-    "web": "_show",
-}
+_attached, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)
 
 
 def __getattr__(name: str) -> Any:
-    if name not in _HOME:
-        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    need("rerun")
-    return getattr(import_module(f"vines.viewer.{_HOME[name]}"), name)
+    if name in __all__:
+        need("rerun")
+    return _attached(name)

@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Collection, Iterable
 from typing import TYPE_CHECKING
 
-from vines.stages.kinds.compare import COMPARE
+from vines.pipeline import KINDS
+from vines.stages.kinds._register import register_kinds
 
 if TYPE_CHECKING:
     from vines.kernels import Task
     from vines.pipeline import StagePlan
 
-__all__ = ["compile_cold", "compile_if_cold", "warm_up"]
+__all__ = ["compile_for", "compile_if_cold", "warm_up"]
 
 
 def _tasks() -> dict[str, Task]:
@@ -43,12 +44,17 @@ def warm_up(report: Callable[[str], object] = print) -> None:
 
 def compile_if_cold(plans: Iterable[StagePlan], report: Callable[[str], object]) -> None:
     """Compile visibly the kernels that these plans will ask for and that are not there; no others."""
-    compile_cold(report, {name for plan in plans if plan.done < plan.wanted for name in plan.kernels})
+    _compile({name for plan in plans if plan.done < plan.wanted for name in plan.kernels}, report)
 
 
-def compile_cold(report: Callable[[str], object], wanted: Iterable[str] = COMPARE) -> None:
-    """Compile visibly the kernels of these kinds of tasks that are not there."""
-    wanted = set(wanted)
+def compile_for(kind: str, report: Callable[[str], object]) -> None:
+    """Compile visibly the kernels that a stage of a kind, which asks for the same always, asks for."""
+    register_kinds()
+    asked = KINDS.get(kind).kernels
+    _compile(set(asked if isinstance(asked, tuple) else ()), report)
+
+
+def _compile(wanted: Collection[str], report: Callable[[str], object]) -> None:
     if not wanted:
         return
     from vines.kernels import compile_tasks, expected, is_warm

@@ -10,6 +10,7 @@ import numpy as np
 
 from vines import schema
 from vines.model import PARAMETER_NAMES
+from vines.pipeline import kinds
 from vines.stages.audit._bifurcations import bifurcation_defects, branch_defects, curve_defects
 from vines.stages.audit._defect import Defect
 from vines.stages.audit._files import check_table
@@ -47,8 +48,6 @@ _CHECKS: dict[str, Callable[[Rows], Iterator[Defect]]] = {
 }
 _WHOLE = ("basins",)
 """Tables that are checked as a whole: their rows share a sum."""
-_SCALED = {"optimum": ("A",)}
-"""Parameters that a kind changes though they are fixed in its declaration: a longer cavity, a smaller A = E/b."""
 
 
 def check_physics(ledger: Ledger, where: str, result: Result, name: str) -> None:
@@ -115,7 +114,8 @@ def _note(
 def _fixed(rows: Rows, result: Result) -> Defect:
     """Return the check that parameters which do not vary are those of the declaration."""
     form = result.manifest["ingredients"]
-    varied = {axis[0] for axis in form["vary"]} | set(_SCALED.get(form["kind"], ()))
+    spec = kinds().get(form["kind"])  # a package that brought it may be gone
+    varied = {axis[0] for axis in form["vary"]} | set(spec.scaled if spec is not None else ())
     wrong = np.zeros(len(rows))
     for parameter, value in form["params"].items():
         if parameter not in varied and rows.has(parameter) and parameter in PARAMETER_NAMES:

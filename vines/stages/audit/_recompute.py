@@ -33,6 +33,8 @@ _SAYS = {
     "bifurcations": "located again from beside it, to 1e-9",
     "basins": "each start comes to the attractor of its cell",
 }
+_OTHERS = "with their point: to 1e-9"
+"""Of tables that another package brings."""
 
 
 @dataclass(frozen=True)
@@ -75,12 +77,12 @@ def recompute_rows(
     for where, result in results.items():
         for table in result.tables:
             source = _Source(where, result, table)
-            if table in _SAYS and source.rows and _can(result, table):
+            if source.rows and _can(result, table):
                 sources.setdefault(table, []).append(source)
     points, codes = PointsAgain(), CodeDigests(None)
     for table, share in _shares({name: sum(s.rows for s in found) for name, found in sources.items()}, count).items():
         say(f"computing {share} rows of {table} again")
-        line = ledger.line("recomputed", table, _SAYS[table], "rows", 1.0)
+        line = ledger.line("recomputed", table, _SAYS.get(table, _OTHERS), "rows", 1.0)
         for source, place in _draw(sources[table], _REDRAWN * share, rng):
             if line.checked == share:
                 break

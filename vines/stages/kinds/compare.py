@@ -10,10 +10,7 @@ from msgspec import Meta
 from vines.errors import DeclarationError
 from vines.pipeline import Kind, Pipeline, Stage
 
-__all__ = ["COMPARE", "KIND", "CompareOptions"]
-
-COMPARE = ("orbits", "one_run", "lanes", "many_runs", "scatter")
-"""Kinds of tasks whose kernels the comparison of a measured run with the model asks for."""
+__all__ = ["KIND", "CompareOptions"]
 
 
 class CompareOptions(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -31,11 +28,11 @@ class CompareOptions(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 def _fits(stage: Stage, pipeline: Pipeline) -> None:
     kinds = [pipeline.stages[need].kind for need in stage.needs]
     for need, kind in zip(stage.needs, kinds, strict=True):
-        if kind.name != "reconstruct" and "orbits" not in kind.tables:
+        if not {"reconstructions", "orbits"} & set(kind.tables):
             raise DeclarationError(
                 f"it compares reconstructed runs with orbits; {need} has neither, remove it from needs"
             )
-    if all(kind.name != "reconstruct" for kind in kinds):
+    if all("reconstructions" not in kind.tables for kind in kinds):
         raise DeclarationError("it compares what was reconstructed; name a stage of kind reconstruct in needs")
 
 
@@ -48,6 +45,6 @@ KIND = Kind(
     tables=("comparisons", "rig_cycles"),
     needs=True,
     logs=True,
-    kernels=COMPARE,
+    kernels=("orbits", "one_run", "lanes", "many_runs", "scatter"),
     fits=_fits,
 )

@@ -45,4 +45,5 @@ KIND = Kind(
     vary="range",
     check=_check,
     kernels=("orbits",),
+    scaled=("A",),  # with b, the length of the cavity
 )

@@ -21,7 +21,7 @@ class ReconstructOptions(msgspec.Struct, frozen=True, forbid_unknown_fields=True
 
 def _fits(stage: Stage, pipeline: Pipeline) -> None:
     for need in stage.needs:
-        if pipeline.stages[need].kind.name != "ingest":
+        if "rig_runs" not in pipeline.stages[need].kind.tables:
             raise DeclarationError(
                 f"it reconstructs what stages of kind ingest keep; {need} is none, remove it from needs",
             )

@@ -10,7 +10,7 @@ from vines.errors import DeclarationError, nearest
 if TYPE_CHECKING:
     from vines.pipeline import Pipeline, Stage
 
-__all__ = ["cells", "check_panels", "check_window", "needs_table", "one_axis", "one_stage"]
+__all__ = ["cells", "check_panels", "check_window", "has_diagram", "has_runs", "needs_table", "one_axis", "one_stage"]
 
 
 def check_window(options: Any) -> None:
@@ -32,6 +32,16 @@ def needs_table(stage: Stage, pipeline: Pipeline, table: str, kind: str) -> None
     if all(table not in pipeline.stages[name].kind.tables for name in stage.needs):
         plot = stage.options.__struct_config__.tag
         raise DeclarationError(f"plot {plot} needs a stage of kind {kind}; name one in needs")
+
+
+def has_runs(stage: Stage) -> bool:
+    """Say whether a stage logs runs of the simulator, which carry their impacts."""
+    return stage.kind.logs and "impacts" in stage.kind.tables
+
+
+def has_diagram(stage: Stage) -> bool:
+    """Say whether a stage has what diagrams draw: impacts of points, or orbits on branches."""
+    return "impacts" in stage.kind.tables or {"orbits", "branches"} <= set(stage.kind.tables)
 
 
 def one_axis(stage: Stage, pipeline: Pipeline) -> None:

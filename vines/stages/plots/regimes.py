@@ -25,7 +25,7 @@ class RegimesOptions(PlotOptions, frozen=True, tag="regimes"):
 
 def _check(stage: Stage, pipeline: Pipeline) -> None:
     def fits(one: Stage) -> bool:
-        return one.kind.name == "sweep" and len(one.axes) == 2
+        return one.kind.tables[:1] == ("points",) and len(one.axes) == 2
 
     one_stage(stage, pipeline, fits, "one sweep over two parameters")
 

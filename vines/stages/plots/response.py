@@ -53,7 +53,8 @@ class ResponseOptions(PlotOptions, frozen=True, tag="response"):
 def _check(stage: Stage, pipeline: Pipeline) -> None:
     for where, cell, shown in cells(stage, pipeline, _SHOWN):
         carried = {one.carry.axis if one.carry is not None else "" for one in shown}
-        if {one.kind.name for one in shown} != {"sweep"} or len(carried) != 1 or carried == {""}:
+        listed = all({"points", "impacts", "attractors"} <= set(one.kind.tables) for one in shown)
+        if not listed or len(carried) != 1 or carried == {""}:
             raise DeclarationError(f"{where} shows stages of kind 'sweep' that are carried along one axis")
         for name, value in cell.where.items():
             for one in shown:

@@ -11,7 +11,7 @@ from msgspec import Meta
 
 from vines.errors import DeclarationError
 from vines.figures import PANELS, RUN_PANELS
-from vines.stages.plots._checks import cells
+from vines.stages.plots._checks import cells, has_diagram, has_runs
 from vines.stages.plots._plot import Plot, PlotOptions
 
 if TYPE_CHECKING:
@@ -64,14 +64,16 @@ class SheetOptions(PlotOptions, frozen=True, tag="sheet"):
 
 def _check(stage: Stage, pipeline: Pipeline) -> None:
     for where, cell, shown in cells(stage, pipeline, _SHOWN):
-        kinds = {one.kind.name for one in shown}
         if cell.show in RUN_PANELS:
-            if kinds != {"trajectory"} or (cell.show != "phase_plane" and len(shown) > 1):
+            if not all(map(has_runs, shown)) or (cell.show != "phase_plane" and len(shown) > 1):
                 raise DeclarationError(f"{where} shows one stage of kind 'trajectory', a phase plane also more")
             continue
-        if not kinds <= {"sweep", "branch"} or len({tuple(axis.name for axis in one.axes) for one in shown}) != 1:
+        varied = {tuple(axis.name for axis in one.axes) for one in shown}
+        if not all(map(has_diagram, shown)) or len(varied) != 1 or {len(names) for names in varied} != {1}:
             raise DeclarationError(f"{where} shows sweeps and branches that vary one and the same parameter")
-        if cell.show == "multipliers" and (kinds != {"branch"} or len(cell.families) != 1):
+        if cell.show == "multipliers" and (
+            any("branches" not in one.kind.tables for one in shown) or len(cell.families) != 1
+        ):
             raise DeclarationError(f"{where} shows one family of stages of kind 'branch'; name it in families")
 
 

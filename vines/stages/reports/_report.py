@@ -2,26 +2,18 @@
 
 from __future__ import annotations
 
-import os
-from collections.abc import Iterator
 from datetime import datetime
 from pathlib import Path
-from typing import Any
 
-from vines import schema
 from vines.errors import FileMissingError, UnknownNameError, nearest
 from vines.pipeline import available, with_included
 from vines.stages.api._home import Home, current
 from vines.stages.api._stored import stored_pipelines
-from vines.stages.reports._page import Figure, Head, Run, Section, StageFacts, page
-from vines.store import Result, Store, canonical, write_text
+from vines.stages.reports._page import Section, page
+from vines.stages.reports._section import section_of
+from vines.store import Store, write_text
 
 __all__ = ["report"]
-
-_FEW = 10
-_ALL = ("checks", "bifurcations", "branches", "comparisons", "optima", "reconstructions")
-_MOST = 200
-"""Rows that are shown of a table: few, but of tables that are read line by line up to this many."""
 
 
 def report(name: str, out: Path | None = None, *, study: Home | None = None) -> Path:
@@ -73,74 +65,13 @@ def _section(store: Store, pipeline: str, files: dict[str, Path], folder: Path) 
     order = [stage for stage in _stages(pipeline, files) if stage in pins]
     stages = [*order, *(stage for stage in sorted(pins) if stage not in order)]
     results = {stage: store.result(pins[stage]["result"]) for stage in stages if store.has(pins[stage]["result"])}
-    seconds = _seconds(store, pipeline)
     title, source = _declared(pipeline, files)
-    checks = [row for r in results.values() if "checks" in r.tables for row in r.table("checks").to_pylist()]
-    return Section(
-        name=pipeline,
-        title=title,
-        source=source,
-        figures=[figure for stage, r in results.items() for figure in _figures(f"{pipeline}.{stage}", r, title)],
-        checks=checks,
-        comparisons=[
-            row for r in results.values() if "comparisons" in r.tables for row in r.table("comparisons").to_pylist()
-        ],
-        runs=[run for stage, result in results.items() for run in _runs(f"{pipeline}.{stage}", result, folder)],
-        tables=[head for stage, result in results.items() for head in _heads(f"{pipeline}.{stage}", result)],
-        stages=[_facts(stage, result, seconds.get(stage)) for stage, result in results.items()],
-    )
+    return section_of(pipeline, title, source, results, folder, _seconds(store, pipeline))
 
 
 def _stages(pipeline: str, files: dict[str, Path]) -> list[str]:
     stages = with_included(files[pipeline]).get("stages", {}) if pipeline in files else {}
     return list(stages) if isinstance(stages, dict) else []
-
-
-def _figures(where: str, result: Result, title: str) -> Iterator[Figure]:
-    path = result.folder / "picture.svg"
-    if path.is_file():
-        own = result.manifest["ingredients"]["options"].get("title")
-        yield Figure(where, own or title or where, path.read_bytes())
-
-
-def _runs(where: str, result: Result, folder: Path) -> Iterator[Run]:
-    logs = result.manifest["logs"]
-    for log in logs:
-        params = ", ".join(f"{name} = {value:g}" for name, value in log["params"].items() if name != "lam")
-        called = where if len(logs) == 1 else f"{where}/{log['point_id']}"
-        told = f"{log['name'] or 'run'} at {params}" if params else str(log["name"] or "")
-        link = Path(os.path.relpath(result.folder / log["file"], folder)).as_posix()
-        yield Run(called, told, link)
-
-
-def _heads(where: str, result: Result) -> Iterator[Head]:
-    import pyarrow as pa
-    import pyarrow.parquet as pq
-
-    for number, (name, about) in enumerate(result.manifest["tables"].items()):
-        view = where if number == 0 else f"{where}.{name}"
-        if not about["rows"] or name == "checks":
-            continue
-        most = _MOST if name in _ALL else _FEW
-        with pq.ParquetFile(result.folder / f"{name}.parquet") as file:
-            first: Any = pa.Table.from_batches([next(file.iter_batches(batch_size=most))])
-        columns = [c for c in schema.table(name).names if c in first.column_names]
-        told = [c for c in columns if c != "point_id" and first.column(c).null_count < first.num_rows]
-        rows = list(zip(*(first.column(c).to_pylist() for c in told), strict=True))
-        yield Head(view, name, about["rows"], told, rows)
-
-
-def _facts(stage: str, result: Result, seconds: float | None) -> StageFacts:
-    manifest = result.manifest
-    told: dict[str, Any] = manifest["provenance"]
-    provenance = {"key": result.key, "code": told["code"], "revision": told["revision"] or "no checkout"}
-    provenance["versions"] = ", ".join(f"{name} {version}" for name, version in told["versions"].items())
-    for name in ("params", "options", "vary", "inputs"):
-        if told.get(name):
-            provenance[name] = canonical(told[name])
-    provenance["written"] = str(manifest.get("written", ""))
-    size = sum(about["bytes"] for about in manifest["files"].values())
-    return StageFacts(stage, manifest["kind"], manifest["points"], manifest["failed"], size, seconds, provenance)
 
 
 def _seconds(store: Store, pipeline: str) -> dict[str, float]:

@@ -27,7 +27,7 @@ def compute(job: WholeJob[CompareOptions]) -> Batch:
     lost: list[dict[str, Any]] = []
     catalogue: list[dict[str, Any]] = []
     for stage in job.inputs.values():
-        if stage.kind == "reconstruct":
+        if "reconstructions" in stage.tables:
             runs += _reconstructions(stage)
             lost += _lost(stage)
         else:

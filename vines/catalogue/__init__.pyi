@@ -1,0 +1,9 @@
+from ._catalogue import Catalogue as Catalogue
+from ._catalogue import connect as connect
+from ._catalogue import connect_tables as connect_tables
+from ._diff import ColumnDifference as ColumnDifference
+from ._diff import TableDifference as TableDifference
+from ._diff import compare_tables as compare_tables
+from ._export import Collected as Collected
+from ._export import export_results as export_results
+from ._views import stage_results as stage_results
