@@ -15,6 +15,8 @@ from __future__ import annotations
 import importlib
 from typing import TYPE_CHECKING, Any
 
+from vines.imported import take_note_of_imports
+
 __version__ = "0.1.0"
 
 _HOME = {
@@ -100,6 +102,9 @@ if TYPE_CHECKING:
     from vines.stages import run as run
     from vines.stages import study as study
     from vines.stages import table as table
+
+
+take_note_of_imports()
 
 
 def __getattr__(name: str) -> Any:

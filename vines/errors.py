@@ -11,6 +11,7 @@ import difflib
 from collections.abc import Iterable
 
 __all__ = [
+    "CodeError",
     "DeclarationError",
     "EngineError",
     "FileMissingError",
@@ -68,6 +69,10 @@ class SchemaError(VinesError, TypeError):
 
 class StoreError(VinesError, RuntimeError):
     """A stored result is missing, damaged, or being written by another process."""
+
+
+class CodeError(VinesError, RuntimeError):
+    """A process runs other code than the key of what it should compute says; nothing that it made is stored."""
 
 
 class EngineError(VinesError, RuntimeError):

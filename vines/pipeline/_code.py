@@ -92,6 +92,11 @@ class CodeDigests:
             self._digests[bodies] = key_of([*bodies, self.modules_of_all(bodies)])
         return self._digests[bodies]
 
+    def read(self, module: str) -> tuple[str, int] | None:
+        """Return the digest of a module's source, and when that was changed, ns since the epoch; None without one."""
+        file, read = self._file(module), self._source(module)
+        return None if file is None or read is None else (read.digest, file[1].st_mtime_ns)
+
     def save(self) -> None:
         """Write the cache if something new was read. That it cannot be written does no harm."""
         if self.cache is not None and self._changed:

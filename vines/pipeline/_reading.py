@@ -153,7 +153,7 @@ def _stage(name: str, table: dict[str, Any], spec: Kind, common: dict[str, Any],
         options = msgspec.convert(plain, form)
     except msgspec.ValidationError as error:
         raise DeclarationError(_say(error, where)) from None
-    carry = read_carry(table["carry"], axes, f"{where}.carry") if "carry" in table else None
+    carry = read_carry(table["carry"], axes, table["vary"], f"{where}.carry") if "carry" in table else None
     refine = None
     if "refine" in table:
         refine = read_refine(table["refine"], spec, axes, zipped, carry, f"{where}.refine")

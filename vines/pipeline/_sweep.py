@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from vines.pipeline._demand import demand
 from vines.pipeline._engine import Engine
 from vines.pipeline._events import Event, Report
 from vines.pipeline._grid import Grid
@@ -163,6 +164,7 @@ class Sweep:
             broken="a point before it in the carried chain failed" if chunk.broken else "",
             data=self.store.data,
             pool=self.pool.folder,
+            demand=demand(self.prepared.ingredients, self.store, self.engine.token),
         )
 
     def _stored(self, done: Done, processes: int) -> None:
