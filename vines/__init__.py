@@ -15,7 +15,7 @@ from __future__ import annotations
 import importlib
 from typing import TYPE_CHECKING, Any
 
-from vines.imported import take_note_of_imports
+from vines import imported as imported
 
 __version__ = "0.1.0"
 
@@ -102,9 +102,6 @@ if TYPE_CHECKING:
     from vines.stages import run as run
     from vines.stages import study as study
     from vines.stages import table as table
-
-
-take_note_of_imports()
 
 
 def __getattr__(name: str) -> Any:

@@ -12,6 +12,8 @@ from collections.abc import Iterable
 
 __all__ = [
     "CodeError",
+    "DamageError",
+    "DamageWarning",
     "DeclarationError",
     "EngineError",
     "FileMissingError",
@@ -73,6 +75,14 @@ class StoreError(VinesError, RuntimeError):
 
 class CodeError(VinesError, RuntimeError):
     """A process runs other code than the key of what it should compute says; nothing that it made is stored."""
+
+
+class DamageError(StoreError):
+    """Something stored is not what was written; the message names it, and the next run makes it again."""
+
+
+class DamageWarning(UserWarning):
+    """An answer is without results that are damaged; the message names them."""
 
 
 class EngineError(VinesError, RuntimeError):

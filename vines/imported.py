@@ -10,7 +10,7 @@ import time
 from collections.abc import Sequence
 from types import ModuleType
 
-__all__ = ["imported_at", "take_note_of_imports"]
+__all__ = ["imported_at"]
 
 _BEGAN = time.time_ns()
 _TIMES: dict[str, int] = {}
@@ -25,12 +25,6 @@ class _Witness:
         _TIMES[name] = time.time_ns()
 
 
-def take_note_of_imports() -> None:
-    """Begin to write down when modules are imported; a second call changes nothing."""
-    if not any(isinstance(finder, _Witness) for finder in sys.meta_path):
-        sys.meta_path.insert(0, _Witness())
-
-
 def imported_at(module: str) -> int:
     """Return when the import of a module began, in nanoseconds since the epoch.
 
@@ -42,3 +36,6 @@ def imported_at(module: str) -> int:
     True
     """
     return _TIMES.get(module, _BEGAN)
+
+
+sys.meta_path.insert(0, _Witness())

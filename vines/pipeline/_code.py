@@ -19,7 +19,7 @@ from typing import Any
 
 from vines.errors import DeclarationError
 from vines.pipeline._source import Source, read_source, read_source_once
-from vines.store import key_of, write_text
+from vines.store import key_of, read_sealed, write_sealed
 
 __all__ = ["CodeDigests"]
 
@@ -101,7 +101,7 @@ class CodeDigests:
         """Write the cache if something new was read. That it cannot be written does no harm."""
         if self.cache is not None and self._changed:
             try:
-                write_text(self.cache, json.dumps({"form": _FORM, "files": self._cached}))
+                write_sealed(self.cache, json.dumps({"form": _FORM, "files": self._cached}))
             except OSError:
                 return
             self._changed = False
@@ -186,11 +186,9 @@ class CodeDigests:
         return read
 
     def _load(self) -> dict[str, Any]:
-        try:
-            cached = json.loads(self.cache.read_text("utf-8")) if self.cache is not None else {}
-            return cached["files"] if cached.get("form") == _FORM else {}
-        except (OSError, ValueError, KeyError, AttributeError):
-            return {}
+        text = read_sealed(self.cache) if self.cache is not None else None
+        cached = json.loads(text) if text is not None else {}
+        return cached["files"] if cached.get("form") == _FORM else {}
 
 
 def _root_of(top: str) -> str:

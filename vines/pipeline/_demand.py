@@ -34,8 +34,10 @@ class Demand:
 
     Attributes
     ----------
+    code : str
+        The digest of the code in the key.
     modules : mapping of str to str
-        Digest of each module that the results depend on, as the key says.
+        Digest of each module that it is made of.
     versions : mapping of str to str
         Versions of Python, numba and numpy of the run.
     data : Path
@@ -46,6 +48,7 @@ class Demand:
         What stands in it.
     """
 
+    code: str
     modules: Mapping[str, str]
     versions: Mapping[str, str]
     data: Path
@@ -125,7 +128,8 @@ def demand(ingredients: Ingredients, store: Store, token: tuple[Path, str] | Non
     """
     path, text = token or (None, "")
     packages = {name: version for name, version in versions().items() if name != "vines"}
-    return Demand(ingredients.form["code"]["modules"], packages, store.data, path, text)
+    code = ingredients.form["code"]
+    return Demand(code["digest"], code["modules"], packages, store.data, path, text)
 
 
 def _other_code(wanted: Mapping[str, str], code: CodeDigests) -> list[str]:

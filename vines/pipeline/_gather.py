@@ -191,6 +191,7 @@ def _logs(
         part = parts[located.part[i]]
         log = part.logs.get(point)
         if log is not None:
+            part.check(log)
             _link(part.folder / log, folder / "logs" / log)
             params = {**grid.fixed(), **{name: float(values[i]) for name, values in columns.items()}}
             found.append({"point_id": point, "file": f"logs/{log}", "params": params, "name": names.get(point)})

@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from functools import partial
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
-from vines.errors import SchemaError
+from vines.errors import DamageError, SchemaError
 from vines.pipeline._declaration import Pipeline
 from vines.pipeline._events import Event, Report, RunSummary, StageOutcome, silent
 from vines.pipeline._plan import Planner, Prepared, StagePlan
@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from vines.pipeline._engine import Engine
     from vines.pipeline._kinds import Kind
     from vines.pipeline._shard import Shard
+    from vines.store import Pool
 
 __all__ = ["run_pipeline"]
 
@@ -247,6 +248,23 @@ class _Run:
         self.report(Event("progress", name, of, done, jobs=processes))
 
     def _points(self, prepared: Prepared, each: StagePlan, *, force: bool) -> StageOutcome:
+        """Compute what is missing and put the result together; again without the parts that turn out to be damaged."""
+        pool = self.store.pool(prepared.pool_key)
+        if force and pool.examine():
+            self._discard(pool)
+        while True:
+            try:
+                return self._once(prepared, each, force=force)
+            except DamageError:
+                if not pool.examine():
+                    raise
+            self._discard(pool)
+
+    def _discard(self, pool: Pool) -> None:
+        with self.store.staging() as trash:
+            pool.discard_damaged(trash)
+
+    def _once(self, prepared: Prepared, each: StagePlan, *, force: bool) -> StageOutcome:
         from vines.pipeline._gather import put_together
         from vines.pipeline._sweep import Sweep
 
@@ -294,6 +312,7 @@ def _pin(prepared: Prepared, outcome: StageOutcome) -> dict[str, Any]:
 
     return {
         "result": outcome.key,
+        **({"pool": prepared.pool_key} if prepared.stage.kind.shape == "points" else {}),
         "request": prepared.request,
         "kind": prepared.stage.kind.name,
         "points": outcome.wanted,

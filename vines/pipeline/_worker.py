@@ -168,7 +168,16 @@ def compute_task(task: Task) -> Done:
 
         tables = {name: pa.concat_tables(pieces) for name, pieces in gathered.tables.items()}
         failed = gathered.failed
-        commit_part(task.pool, part, task.number, tables, ids=task.points.key, failed=failed, logs=gathered.logs)
+        commit_part(
+            task.pool,
+            part,
+            task.number,
+            tables,
+            ids=task.points.key,
+            failed=failed,
+            logs=gathered.logs,
+            code=task.demand.code,
+        )
     last = None
     if task.carry is not None and task.points.key.take([-1]).text() not in failed:
         last = _last_row(tables[task.tables[0]])

@@ -14,7 +14,8 @@ if TYPE_CHECKING:
     from vines.store._parquet import TableFile, read_parquet, write_parquet
     from vines.store._pools import Located, Part, Pool, commit_part
     from vines.store._provenance import revision, versions
-    from vines.store._results import Result, describe_table, read_result
+    from vines.store._results import Result, describe_file, describe_table, read_result
+    from vines.store._sealed import read_sealed, write_sealed
     from vines.store._store import Store
 
 __all__ = [
@@ -28,15 +29,18 @@ __all__ = [
     "TableFile",
     "canonical",
     "commit_part",
+    "describe_file",
     "describe_table",
     "find_garbage",
     "key_of",
     "read_parquet",
     "read_result",
+    "read_sealed",
     "remove_garbage",
     "revision",
     "versions",
     "write_parquet",
+    "write_sealed",
     "write_text",
 ]
 
@@ -51,15 +55,18 @@ _HOMES = {
     "TableFile": "vines.store._parquet",
     "canonical": "vines.store._keys",
     "commit_part": "vines.store._pools",
+    "describe_file": "vines.store._results",
     "describe_table": "vines.store._results",
     "find_garbage": "vines.store._garbage",
     "key_of": "vines.store._keys",
     "read_parquet": "vines.store._parquet",
     "read_result": "vines.store._results",
+    "read_sealed": "vines.store._sealed",
     "remove_garbage": "vines.store._garbage",
     "revision": "vines.store._provenance",
     "versions": "vines.store._provenance",
     "write_parquet": "vines.store._parquet",
+    "write_sealed": "vines.store._sealed",
     "write_text": "vines.store._atomic",
 }
 
