@@ -50,6 +50,7 @@ class CodeDigests:
     _sources: dict[str, Source | None] = field(default_factory=dict)
     _roots: dict[str, str] = field(default_factory=dict)
     _bodies: dict[str, dict[str, str]] = field(default_factory=dict)
+    _several: dict[tuple[str, ...], dict[str, str]] = field(default_factory=dict)
     _digests: dict[tuple[str, ...], str] = field(default_factory=dict)
 
     def modules(self, body: str) -> dict[str, str]:
@@ -83,8 +84,12 @@ class CodeDigests:
         return self._bodies[body]
 
     def modules_of_all(self, bodies: Iterable[str]) -> dict[str, str]:
-        """Return the digests of the modules of several bodies."""
-        return dict(sorted({name: code for body in bodies for name, code in self.modules(body).items()}.items()))
+        """Return the digests of the modules of several bodies; whoever asks for the same ones shares them."""
+        several = tuple(bodies)
+        if several not in self._several:
+            found = {name: code for body in several for name, code in self.modules(body).items()}
+            self._several[several] = dict(sorted(found.items()))
+        return self._several[several]
 
     def digest(self, *bodies: str) -> str:
         """Return one digest for a body, or for one and what it calls beside its imports: SHA-256 over the modules."""
