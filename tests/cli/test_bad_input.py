@@ -26,6 +26,7 @@ BAD = {
     "r above 1": ("Omega = 1.0", "r = 1.2", "0 <= r <= 1"),
     "mu not positive": ("mu = 0.01", "mu = 0.0", "mu > 0"),
     "lam too large": ("Omega = 1.0", "lam = 2.0", "0 <= lam < 2"),
+    "a point of years": ("settle = 10", "settle = 99999999999999", "settle <= 10000000 periods a point; VINES_LONG"),
     "ball outside": ("settle = 10", "settle = 10\nstart = { x1 = 1.5 }", "|w| <= 1"),
     "wrong type": ("settle = 10", 'settle = "ten"', "settle"),
     "no TOML": ("[params]", "[params", "line"),

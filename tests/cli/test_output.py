@@ -151,8 +151,10 @@ def test_interrupted_run_says_how_to_go_on(project):
 
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
-def test_a_signal_ends_a_run_that_is_inside_a_kernel_for_years(project, number):
+def test_a_signal_ends_a_run_that_is_inside_a_kernel_for_years(project, number, monkeypatch):
     from filelock import FileLock
+
+    monkeypatch.setenv("VINES_LONG_POINTS", "1")
 
     (project.root / "pipelines" / "endless.toml").write_text(
         '[params]\nmu = 0.01\n[stages.up]\nkind = "sweep"\nvary.A = [0.015]\ncarry = "A"\nsettle = 99999999999999\n'

@@ -296,7 +296,12 @@ def _read_part(folder: Path) -> Part:
         for name, said in about.get("files", {}).items():
             if (folder / name).stat().st_size != said["bytes"]:
                 raise DamageError(f"{folder / name} is damaged: its size is not what was written; {_REMEDY}")
-    except (OSError, ValueError, KeyError, AttributeError) as error:
+    except (
+        FileNotFoundError,
+        ValueError,
+        KeyError,
+        AttributeError,
+    ) as error:  # no other error of the system: it may pass
         raise DamageError(f"{folder}: {error}; {_REMEDY}") from None
     return Part(
         folder=folder,

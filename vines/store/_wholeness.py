@@ -45,8 +45,7 @@ def look(result: Result, seen: Path, names: Collection[str] | None = None, *, th
             return f"{name} is missing"
         if status.st_size != about["bytes"]:
             return f"{name} is damaged: it has {status.st_size} bytes, the manifest says {about['bytes']}"
-        # a log shares its bytes with the pool, and whoever draws it checks its contents
-        if not name.startswith("logs/") and known.get(name) != status.st_mtime_ns and (thorough or name in known):
+        if known.get(name) != status.st_mtime_ns and (thorough or name in known):
             unsure.append(name)
     for name in unsure:
         if not result.is_intact(name):
@@ -59,9 +58,8 @@ def look(result: Result, seen: Path, names: Collection[str] | None = None, *, th
 def remember(result: Result, seen: Path, names: Collection[str]) -> None:
     """Note that some files of a result are right as they are now; that it cannot be noted does no harm."""
     with contextlib.suppress(OSError):
-        stamps = {name: (result.folder / name).stat().st_mtime_ns for name in names if not name.startswith("logs/")}
-        if stamps:
-            write_sealed(seen, json.dumps({**_known(seen), **stamps}))
+        stamps = {name: (result.folder / name).stat().st_mtime_ns for name in names}
+        write_sealed(seen, json.dumps({**_known(seen), **stamps}))
 
 
 def _known(seen: Path) -> dict[str, int]:

@@ -2,15 +2,22 @@
 
 from __future__ import annotations
 
+import os
+from collections.abc import Mapping
 from typing import Any
 
 import msgspec
 
-from vines.errors import StateError
+from vines.errors import ParameterError, StateError
 from vines.model import Params
 from vines.stages.kinds._checks import check_least
 
 __all__ = ["Start", "check_simulation"]
+
+MOST_PERIODS = 10_000_000
+"""Forcing periods of one point that nobody computes by mistake: it takes a minute, and a sweep has hundreds."""
+ALLOWED_BY = "VINES_LONG_POINTS"
+"""Variable of the environment that allows more; no option, since it changes no result and belongs to no key."""
 
 
 class Start(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -28,6 +35,7 @@ def check_simulation(params: dict[str, float], options: Any) -> None:
     limits = {"settle": 0, "record": 2, "watch": 16, "per_period": 2, "keep": 0, "random": 0, "seed": 0}
     values = msgspec.structs.asdict(options)
     check_least(values, {name: least for name, least in limits.items() if name in values})
+    _check_length(values)
     if options.start == "random":
         return
     gap = options.start.x1 - options.start.x2
@@ -35,3 +43,12 @@ def check_simulation(params: dict[str, float], options: Any) -> None:
         raise StateError(
             f"start has the gap w = x1 - x2 = {gap:g}, allowed is |w| <= 1: the ball would be outside the cavity"
         )
+
+
+def _check_length(values: Mapping[str, Any]) -> None:
+    for name in ("settle", "record", "watch"):
+        if values.get(name, 0) > MOST_PERIODS and not os.environ.get(ALLOWED_BY):
+            raise ParameterError(
+                f"{name} is {values[name]}, allowed is {name} <= {MOST_PERIODS} periods a point; "
+                f"{ALLOWED_BY}=1 in the environment allows more"
+            )
