@@ -53,7 +53,7 @@ class Project:
             contextlib.redirect_stderr(err),
         ):
             try:
-                vines.cli.main()
+                vines.cli.main(supervised=False)
             except SystemExit as end:
                 code = end.code
         said = Said(code, *(stream.buffer.getvalue().decode() for stream in (out, err)))

@@ -12,6 +12,8 @@ Examples
 
 import lazy_loader
 
+from vines import imported as imported
+
 __version__ = "0.2.0"
 
 __getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

@@ -11,6 +11,9 @@ import difflib
 from collections.abc import Iterable
 
 __all__ = [
+    "CodeError",
+    "DamageError",
+    "DamageWarning",
     "DeclarationError",
     "EngineError",
     "FileMissingError",
@@ -68,6 +71,18 @@ class SchemaError(VinesError, TypeError):
 
 class StoreError(VinesError, RuntimeError):
     """A stored result is missing, damaged, or being written by another process."""
+
+
+class CodeError(VinesError, RuntimeError):
+    """A process runs other code than the key of what it should compute says; nothing that it made is stored."""
+
+
+class DamageError(StoreError):
+    """Something stored is not what was written; the message names it, and the next run makes it again."""
+
+
+class DamageWarning(UserWarning):
+    """An answer is without results that are damaged; the message names them."""
 
 
 class EngineError(VinesError, RuntimeError):

@@ -10,8 +10,8 @@ import pytest
 
 from vines import schema
 from vines.catalogue import connect, connect_tables
-from vines.errors import QueryError, SchemaError, UnknownNameError
-from vines.store import Store, write_parquet
+from vines.errors import DamageWarning, QueryError, SchemaError, UnknownNameError
+from vines.store import Store, describe_file, write_parquet
 
 VERSION = schema.table("points").version
 
@@ -35,7 +35,6 @@ def store(tmp_path):
             manifest = {"kind": "toy", "ingredients": {}, "provenance": {"key": key}, "tables": tables, "logs": [log]}
             made.commit(key, folder, manifest)
         made.pin(pipeline, stage, {"result": key})
-    made.pin("second", "lost", {"result": "c" * 64})
     return made
 
 
@@ -69,6 +68,7 @@ def test_logs_come_from_the_manifests(store):
 def test_columns_that_an_older_result_lacks_are_null(store, monkeypatch):
     path = store.results / ("a" * 64) / "manifest.json"
     manifest = json.loads(path.read_text())
+    del manifest["check"]  # as versions before it wrote
     manifest["tables"]["points"]["columns"].remove("name")
     path.write_text(json.dumps(manifest))
     with connect(store) as catalogue:
@@ -107,6 +107,48 @@ def test_tables_in_memory_answer_like_the_catalogue():
             query("select * from point")
 
 
+def seal(path):
+    """Put what a file is now into the manifest of its result, as an earlier version would have written it."""
+    manifest = json.loads((path.parent / "manifest.json").read_text())
+    manifest.pop("check", None)
+    manifest["files"][path.name] = describe_file(path)
+    (path.parent / "manifest.json").write_text(json.dumps(manifest))
+
+
+@pytest.mark.parametrize(
+    "sql", ["select count(*) from points", "select count(*) from POINTS where pipeline = 'second'"]
+)
+def test_what_is_damaged_is_named_and_the_rest_answers(store, sql):
+    path = store.results / ("a" * 64) / "points.parquet"
+    whole = path.read_bytes()
+    flipped = bytes([*whole[:200], whole[200] ^ 4, *whole[201:]])
+    for damaged in (whole[:-100], b"", flipped):
+        path.write_bytes(damaged)
+        with (
+            connect(store) as catalogue,
+            pytest.warns(DamageWarning, match=r"points\.parquet is damaged: .* 'vines run first' me"),
+        ):
+            assert catalogue.fetch(sql)[1] == [(3,)]
+        with connect(store) as catalogue:
+            assert catalogue.fetch("select count(*) from second.symmetric")[1] == [(3,)]
+            assert catalogue.fetch('select count(*) from "first.up.impacts"')[1] == [(1,)]
+            with pytest.raises(
+                QueryError, match=r"points\.parquet is damaged: .* 'vines run first' mends it"
+            ) as caught:
+                catalogue.fetch("select * from first.up")
+            assert "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize("name", ["pipelines/first.pins.json", f"results/{'a' * 64}/manifest.json"])
+def test_damaged_pins_or_a_manifest_stop_no_other_query(store, name):
+    path = store.data / name
+    path.write_bytes(path.read_bytes()[:-20])
+    with connect(store) as catalogue, pytest.warns(DamageWarning, match=path.name):
+        assert catalogue.fetch("select distinct pipeline from points")[1] == [("second",)]
+    with connect(store) as catalogue, pytest.raises(QueryError, match=path.name):
+        catalogue.fetch('select * from "first.up"')
+
+
 def test_a_file_of_another_version_or_unit_is_one_clear_line(store):
     path = store.results / ("a" * 64) / "points.parquet"
     table = pq.read_table(path)
@@ -116,6 +158,7 @@ def test_a_file_of_another_version_or_unit_is_one_clear_line(store):
         ({"units": {**about["units"], "A": "m"}}, "the unit of 'A' is told as 'm', the schema says '1'"),
     ):
         pq.write_table(table.replace_schema_metadata({"vines": json.dumps(about | change)}), path)
+        seal(path)
         for sql in (
             "select * from points",
             "select * from first.up",
@@ -168,3 +211,37 @@ def test_polars_and_pandas_read_the_files_as_they_are(store):
     with connect(store) as catalogue:
         assert catalogue.table("points").to_pandas()["A"].max() == 3.0
         assert pl.from_arrow(catalogue.table("points")).height == 6
+
+
+@pytest.mark.parametrize(
+    ("sql", "words"),
+    [
+        ("explain analyze copy (select 1) to 'FILE'", "the catalogue is read only"),
+        ("EXPLAIN\n ANALYZE copy points to 'FILE'", "the catalogue is read only"),
+        ("explain create table t as select 1", "the catalogue is read only"),
+        ("copy (select 1) to 'FILE'", "the catalogue is read only"),
+        ("attach 'FILE'", "the catalogue is read only"),
+        ("set enable_external_access = true", "the catalogue is read only"),
+        ("select * from read_csv('/etc/passwd')", "a query reads the results of the study and nothing else"),
+        ("select * from '/etc/passwd'", "'/etc/passwd'"),
+        ("select * from read_text('/etc/hostname')", "a query reads the results of the study and nothing else"),
+        ("select * from glob('/etc/*')", "a query reads the results of the study and nothing else"),
+        ("select * from read_text('RESULTS/../pipelines/first.pins.json')", "reads the results of the study and noth"),
+    ],
+)
+def test_a_query_writes_no_file_and_reads_none_but_the_results(store, tmp_path, sql, words):
+    file = tmp_path / "written"
+    asked = sql.replace("FILE", str(file).replace("'", "''")).replace("RESULTS", str(store.results).replace("'", "''"))
+    for answer in ("query", "fetch"):
+        with connect(store) as catalogue, pytest.raises(QueryError) as caught:
+            getattr(catalogue, answer)(asked)
+        assert words in str(caught.value)
+        assert "\n" not in str(caught.value)
+    assert not file.exists()
+
+
+def test_a_query_is_explained_and_a_comment_is_no_statement(store):
+    with connect(store) as catalogue:
+        assert catalogue.fetch("explain analyze select A from points")[1]
+        assert catalogue.fetch("-- how many\nselect count(*) from points")[1] == [(6,)]
+        assert catalogue.fetch("/* how many */ select count(*) from points")[1] == [(6,)]

@@ -26,6 +26,7 @@ BAD = {
     "r above 1": ("Omega = 1.0", "r = 1.2", "0 <= r <= 1"),
     "mu not positive": ("mu = 0.01", "mu = 0.0", "mu > 0"),
     "lam too large": ("Omega = 1.0", "lam = 2.0", "0 <= lam < 2"),
+    "a point of years": ("settle = 10", "settle = 99999999999999", "settle <= 10000000 periods a point; VINES_LONG"),
     "ball outside": ("settle = 10", "settle = 10\nstart = { x1 = 1.5 }", "|w| <= 1"),
     "wrong type": ("settle = 10", 'settle = "ten"', "settle"),
     "no TOML": ("[params]", "[params", "line"),
@@ -89,3 +90,44 @@ def test_wrong_use(project, arguments, expected):
     assert done.stderr.count("\n") == 1, done.stderr
     assert expected in done.stderr
     assert not (project.data / "results").exists()
+
+
+def test_arguments_are_checked_where_nothing_is_left_to_do(quickstart):
+    assert quickstart.vines("run", "quickstart").returncode == 0
+    for shard in ("5/4", "0/4", "x"):
+        done = quickstart.vines("run", "quickstart", "--shard", shard, check=False)
+        assert (done.returncode, done.stdout, done.stderr.count("\n")) == (2, "", 1)
+        assert f"--shard '{shard}' is not i/n with 1 <= i <= n" in done.stderr
+
+
+def test_an_error_of_the_system_is_explained_by_what_caused_it(project, monkeypatch):
+    import vines.stages
+
+    def time_out(*args, **options):
+        raise TimeoutError("timed out")
+
+    monkeypatch.setattr(vines.stages, "status_of_each", time_out)
+    done = project.vines("status", check=False)
+    assert (done.returncode, done.stderr) == (2, "vines: timed out\n")
+
+
+def test_a_folder_that_a_variable_names_and_that_cannot_be_made_is_told_with_it(project, monkeypatch):
+    (project.root / "file").write_text("")
+    monkeypatch.setenv("VINES_DATA", str(project.root / "file" / "data"))
+    done = project.vines("run", "quickstart", "up", check=False)
+    assert done.returncode == 2
+    assert done.stderr.endswith(f"; VINES_DATA names the folder {project.root / 'file' / 'data'}\n")
+
+
+def test_data_that_may_only_be_read_answer_status_query_and_a_run_with_nothing_to_do(quickstart, tmp_path):
+    import shutil
+
+    from tests.project import Project
+
+    shutil.copytree(quickstart.root, tmp_path / "copy")
+    copy = Project(tmp_path / "copy")
+    shutil.rmtree(copy.data / "cache")
+    (copy.data / "cache").write_text("")  # no file can be made below it, not even by a superuser
+    assert "nothing to compute" in copy.vines("run", "quickstart").stdout
+    assert "up to date" in copy.vines("status", "quickstart").stdout
+    assert "181" in copy.vines("query", "select count(*) from quickstart.up").stdout

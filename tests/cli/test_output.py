@@ -155,3 +155,53 @@ def test_interrupted_run_says_how_to_go_on(project):
     assert running.returncode not in (0, 1)
     assert "Traceback" not in told
     assert "vines run long" in told
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_a_signal_ends_a_run_that_is_inside_a_kernel_for_years(project, number, monkeypatch):
+    from filelock import FileLock
+
+    monkeypatch.setenv("VINES_LONG_POINTS", "1")
+
+    (project.root / "pipelines" / "endless.toml").write_text(
+        '[params]\nmu = 0.01\n[stages.up]\nkind = "sweep"\nvary.A = [0.015]\ncarry = "A"\nsettle = 99999999999999\n'
+    )
+    running = project.start("run", "endless", stderr=subprocess.PIPE, stdout=subprocess.DEVNULL)
+    while not any(project.data.glob("staging/*/work-*")) and running.poll() is None:
+        time.sleep(0.01)
+    time.sleep(4.0)  # the kernel is loaded and runs
+    running.send_signal(number)
+    _, told = running.communicate(timeout=60)
+    assert (running.returncode, told) == (
+        130,
+        "vines: stopped; what is finished is kept, 'vines run endless' goes on\n",
+    )
+    with FileLock(project.data / "store.lock").acquire(timeout=30):
+        assert not any(project.data.glob("points/*/0*"))
+
+
+def test_sql_that_begins_with_a_comment_is_sql(quickstart):
+    for sql in ("-- how many\nselect 3 as n", "--how many\nselect 3 as n"):
+        assert json.loads(quickstart.vines("query", sql, "--format", "json").stdout) == [{"n": 3}]
+        assert json.loads(quickstart.vines("query", "--format", "json", "--", sql).stdout) == [{"n": 3}]
+    assert quickstart.vines("query", "select 1", "--fromat", "json", check=False).returncode == 2
+
+
+def test_two_columns_of_one_name_are_both_in_json(quickstart):
+    told = quickstart.vines("query", "select 1 as A, 2 as A", "--format", "json").stdout
+    assert json.loads(told) == [{"A": 1, "A_1": 2}]
+
+
+def test_a_letter_that_the_locale_does_not_have_is_no_traceback(quickstart):
+    import os
+    import subprocess
+    import sys
+
+    said = subprocess.run(
+        [sys.executable, "-X", "utf8=0", "-m", "vines.cli", "query", "select 'ü' as letter"],
+        env={**os.environ, **quickstart.environment, "LC_ALL": "C", "PYTHONIOENCODING": "ascii", "PYTHONUTF8": "0"},
+        cwd=quickstart.root,
+        capture_output=True,
+        check=False,
+    )
+    assert (said.returncode, said.stdout, said.stderr) == (0, "letter\nü\n".encode(), b"")

@@ -195,14 +195,21 @@ class Cluster:
         self.processes = []
         self.file = folder / "scheduler.json"
 
-    def begin(self):
-        """Start a scheduler, and two workers as soon as it has written where it is."""
+    def begin(self, workers=2):
+        """Start a scheduler, and workers as soon as it has written where it is."""
         self.scheduler = self.spawn(
             "scheduler", "--host", "127.0.0.1", "--port", "0", "--no-dashboard", "--scheduler-file", self.file
         )
         wait_for(self.written, self.scheduler)
         self.address = json.loads(self.file.read_text())["address"]
-        self.workers = [self.worker(), self.worker()]
+        self.workers = [self.worker() for _ in range(workers)]
+
+    def wait_for(self, workers):
+        """Wait until so many workers have come."""
+        from distributed import Client
+
+        with Client(self.address, set_as_default=False) as client:
+            client.wait_for_workers(workers, timeout=60)
 
     def written(self):
         """Say whether the file of the scheduler is there as a whole."""
@@ -211,8 +218,8 @@ class Cluster:
         except (FileNotFoundError, json.JSONDecodeError):
             return False
 
-    def spawn(self, what, *arguments):
-        command = [sys.executable, "-m", f"distributed.cli.dask_{what}", *map(str, arguments)]
+    def spawn(self, what, *arguments, before=()):
+        command = [*before, sys.executable, "-m", f"distributed.cli.dask_{what}", *map(str, arguments)]
         sink = (self.folder / f"{what}-{len(self.processes)}.log").open("w")
         with sink:
             process = subprocess.Popen(
@@ -221,10 +228,9 @@ class Cluster:
         self.processes.append(process)
         return process
 
-    def worker(self):
-        return self.spawn(
-            "worker", self.address, "--nthreads", "1", "--no-nanny", "--no-dashboard", "--host", "127.0.0.1"
-        )
+    def worker(self, before=()):
+        options = ("--nthreads", "1", "--no-nanny", "--no-dashboard", "--host", "127.0.0.1")
+        return self.spawn("worker", self.address, *options, before=before)
 
     def close(self):
         for process in self.processes:

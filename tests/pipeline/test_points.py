@@ -134,7 +134,7 @@ def test_a_chain_may_run_along_zipped_axes(lab):
         ("zip = ['A']", "list two or more axes"),
         ("zip = [['A', 'mu'], ['mu', 'A']]", "names an axis twice"),
         ("vary.mu = [1, 2]\n    zip = ['A', 'mu']", "equally many values: A has 5, mu has 2"),
-        ("carry = 'mu'\n    zip = ['A', 'mu']", "mu is zipped and does not rise or fall"),
+        ("carry = 'mu'\n    zip = ['A', 'mu']", "the values of mu neither rise nor fall throughout"),
         ("refine = { on = ['nam'], tolerance = 1 }", "no column 'nam' to watch: did you mean 'name'"),
         ("refine = { on = ['name'] }", "'tolerance' is missing"),
         ("refine = { on = 'name', tolerance = 1 }", "list columns"),
@@ -249,3 +249,32 @@ def test_shares_are_disjoint_complete_and_even():
     for text in ("0/4", "5/4", "1", "1/0", "a/b"):
         with pytest.raises(DeclarationError, match="is not i/n"):
             Shard.read(text)
+
+
+@pytest.mark.parametrize(
+    ("values", "carry", "order"),
+    [
+        ("{ from = 0.5, to = 0.1, count = 3 }", "'A'", [0.5, 0.3, 0.1]),
+        ("{ from = 0.1, to = 0.5, count = 3 }", "'A'", [0.1, 0.3, 0.5]),
+        ("[0.5, 0.3, 0.1]", "'A'", [0.5, 0.3, 0.1]),
+        ("[0.1, 0.3, 0.5]", "{ axis = 'A', direction = 'down' }", [0.5, 0.3, 0.1]),
+        ("{ from = 0.5, to = 0.1, count = 3 }", "{ axis = 'A', direction = 'up' }", [0.1, 0.3, 0.5]),
+    ],
+)
+def test_a_chain_runs_as_its_values_are_declared(lab, values, carry, order):
+    declared = lab.declare(f'[stages.up]\nkind = "toy"\nvary.A = {values}\ncarry = {carry}\n')
+    lab.run(declared, jobs=1)
+    state, wanted = None, {}
+    for a in order:
+        state = wanted[a] = math.sin(a) + (0.5 * state if state is not None else 0.0)
+    rows = lab.rows("up")
+    assert [row["A"] for row in rows] == [0.1, 0.3, 0.5]
+    assert {row["A"]: row["end_x1"] for row in rows} == wanted
+
+
+def test_a_list_without_an_order_is_refused_where_states_are_carried(lab):
+    declared = lab.declare('[stages.up]\nkind = "toy"\nvary.A = [1.02, 1.0, 1.01]\ncarry = "A"\n')
+    with pytest.raises(
+        DeclarationError, match="the values of A neither rise nor fall throughout, and a chain runs up or"
+    ):
+        load(declared, root=lab.folder)

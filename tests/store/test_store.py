@@ -87,11 +87,11 @@ def test_what_is_not_there_is_said_in_one_line(tmp_path):
     with pytest.raises(UnknownNameError, match="no table 'points'"):
         result.table("points")
     (result.folder / "manifest.json").write_text("{")
-    with pytest.raises(StoreError, match="--force"):
+    with pytest.raises(StoreError, match="the next run of its pipeline makes it again"):
         store.result("k" * 64)
     store.pin("one", "up", {"result": "k"})
     (store.pipelines / "one.pins.json").write_text("nonsense")
-    with pytest.raises(StoreError, match=r"one\.pins\.json cannot be read"):
+    with pytest.raises(StoreError, match=r"one\.pins\.json is damaged"):
         store.pins("one")
 
 

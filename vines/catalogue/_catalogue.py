@@ -4,14 +4,15 @@ from __future__ import annotations
 
 import contextlib
 import re
-from collections.abc import Callable, Iterable, Iterator, Mapping
+import warnings
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from pathlib import Path
 from types import TracebackType
 from typing import TYPE_CHECKING, Any, Literal
 
 from vines import schema
 from vines.catalogue._views import View, list_views, quote, select, stage_results, text
-from vines.errors import QueryError, SchemaError, UnknownNameError, nearest
+from vines.errors import DamageWarning, QueryError, SchemaError, UnknownNameError, nearest
 from vines.packages import need
 from vines.store import Store
 
@@ -23,7 +24,8 @@ __all__ = ["Catalogue", "connect", "connect_tables"]
 _NO_TABLE = re.compile(r"Table with name (\S+) does not exist")
 _NEAR = re.compile(r"syntax error at or near \"(\w+)\"")
 _ABOUT = ("information_schema", "duckdb_", "pragma", "show ", "describe ", "sqlite_master", "pg_catalog")
-_KIND = re.compile(r"^(Catalog|Parser|Binder|Conversion|Invalid Input|Out of Range) Error: ")
+_KIND = re.compile(r"^(Catalog|Parser|Binder|Conversion|Invalid Input|Out of Range|Permission) Error: ")
+_EXPLAIN = re.compile(r"\s*explain(\s+analyze)?\b", re.IGNORECASE)
 
 
 class Catalogue:
@@ -35,12 +37,26 @@ class Catalogue:
         In memory.
     views : sequence of View
         The views there are. One is made when a query may use it: to make all takes longer than most queries.
+    store : Store, optional
+        Where their files are; without one they are made already.
+    absent : mapping of str to str, optional
+        Why a pipeline, or ``<pipeline>.<stage>``, is in none of the views though it is pinned.
     """
 
-    def __init__(self, connection: Any, views: Iterable[View]) -> None:
+    def __init__(
+        self,
+        connection: Any,
+        views: Iterable[View],
+        store: Store | None = None,
+        absent: Mapping[str, str] | None = None,
+    ) -> None:
         self._connection = connection
         self._views = {view.name: view for view in views}
-        self._made: set[str] = set()
+        self._store = store
+        self._absent = dict(absent or {})
+        self._refused: dict[str, str] = {}
+        self._told: set[str] = set()
+        self._made: set[str] = set(self._views) if store is None else set()
         self.names = tuple(self._views)
 
     def __enter__(self) -> Catalogue:
@@ -58,10 +74,13 @@ class Catalogue:
     def query(self, sql: str) -> pa.Table:
         """Answer a query with an Arrow table; columns that keep the name of a stored one keep its unit.
 
+        Over all pipelines it is answered without the results that are damaged; a `DamageWarning` names each.
+
         Raises
         ------
         QueryError
-            If the query cannot be answered; one line, with the nearest table if one was misspelt.
+            If the query cannot be answered; one line, with the nearest table if one was misspelt, or what is wrong
+            with the stage that it asks for.
         SchemaError
             If a file that it reads is not what the schema of its table says.
         """
@@ -87,12 +106,16 @@ class Catalogue:
         QueryError
             As :meth:`query`.
         """
+        answer = self.query(sql)
         if form == "csv":
-            self._run(sql, lambda relation: relation.write_csv(str(path)))
+            import duckdb
+
+            with duckdb.connect(":memory:") as writer:  # the connection of the catalogue writes nothing
+                writer.from_arrow(answer).write_csv(str(path))
             return
         import pyarrow.parquet as pq
 
-        pq.write_table(self.query(sql), path, compression="zstd")
+        pq.write_table(answer, path, compression="zstd")
 
     def count(self, name: str) -> int:
         """Return the number of rows of a view."""
@@ -122,10 +145,10 @@ class Catalogue:
 
         try:
             statements = duckdb.extract_statements(sql)
-            if len(statements) != 1 or statements[0].type not in (
-                duckdb.StatementType.SELECT,
-                duckdb.StatementType.EXPLAIN,
-            ):
+            if [each.type for each in statements] == [duckdb.StatementType.EXPLAIN]:
+                # what is analysed is carried out
+                statements = duckdb.extract_statements(_EXPLAIN.sub("", sql, count=1))
+            if [each.type for each in statements] != [duckdb.StatementType.SELECT]:
                 shown = " ".join(sql.split())[:60]
                 raise QueryError(f"{shown!r} is not one query; the catalogue is read only, ask with a single select")
             self._make(sql)
@@ -140,25 +163,51 @@ class Catalogue:
         for view in self._views.values():
             if view.name in self._made or not (everything or all(word in words for word in view.words)):
                 continue
+            problems = self._problems(view, thorough=not everything)
+            if problems and view.is_single:
+                # it may be that the query is about another view: what it lacks is told when DuckDB does not find it
+                self._refused[view.name] = next(iter(problems.values()))
+                continue
             self._made.add(view.name)
+            if not view.is_single:
+                self._tell([*self._absent.values(), *problems.values()])
             if not everything:
-                self._check(view)
-            for statement in view.statements:
+                self._check(view, problems)
+            for statement in view.statements(problems):
                 self._connection.execute(statement)
 
-    def _check(self, view: View) -> None:
+    def _problems(self, view: View, *, thorough: bool) -> dict[Path, str]:
+        """Return the files of a view that are damaged, and why."""
+        found: dict[Path, str] = {}
+        if self._store is None:
+            return found
+        for source in view.sources:
+            problem = self._store.problem(source.key, (source.path.name,), thorough=thorough)
+            if problem:
+                found[source.path] = f"{source.path.parent}: {problem}; 'vines run {source.pipeline}' mends it"
+        return found
+
+    def _tell(self, lines: Iterable[str]) -> None:
+        """Warn of what an answer lacks, once."""
+        for line in lines:
+            if line not in self._told:
+                self._told.add(line)
+                warnings.warn(f"{line}; the answer is without it", DamageWarning, stacklevel=2)
+
+    def _check(self, view: View, left_out: Collection[Path]) -> None:
         """See that the files of a view tell the units and version of their schemas."""
-        if not view.sources:
+        sources = [each for each in view.sources if each.path not in left_out]
+        if not sources:
             return
-        files = ", ".join(text(str(path)) for _, path, _ in view.sources)
+        files = ", ".join(text(str(each.path)) for each in sources)
         found = self._connection.execute(
             f"SELECT file_name, value FROM parquet_kv_metadata([{files}]) WHERE key = 'vines'"
         ).fetchall()
         told = {Path(name): value for name, value in found}
         wrong = {
-            path: (lines[0], pipeline)
-            for name, path, pipeline in view.sources
-            if (lines := schema.metadata_disagreements(name, told.get(path)))
+            each.path: (lines[0], each.pipeline)
+            for each in sources
+            if (lines := schema.metadata_disagreements(each.table, told.get(each.path)))
         }
         if wrong:
             path, (line, _) = next(iter(wrong.items()))
@@ -171,12 +220,17 @@ class Catalogue:
     def _say(self, text: str) -> str:
         unknown = _NO_TABLE.search(text)
         if unknown:
-            name = unknown.group(1)
+            name = unknown.group(1).strip('"!')
+            for where, why in {**self._absent, **self._refused}.items():
+                if name == where or name.startswith(f"{where}.") or where.endswith(f".{name}"):
+                    return why
             return f"no table {name!r}: {nearest(name, self.names)}"
         near = _NEAR.search(text)
         if near and near.group(1).lower() in _column_names():
             word = near.group(1)
             return f'{word} is a word of SQL itself; as a column write it with its table or in quotes: "{word}"'
+        if text.startswith("Permission Error"):
+            return f"{_KIND.sub('', text.splitlines()[0])}; a query reads the results of the study and nothing else"
         lines = [line.strip() for line in text.splitlines() if line.strip() and not line.startswith("LINE ")]
         told = [line for line in lines[1:] if line.startswith(("Candidate", "Did you mean"))]
         return "; ".join([_KIND.sub("", lines[0]) if lines else "the query failed", *told])
@@ -218,7 +272,8 @@ def connect(store: Store) -> Catalogue:
     ...     catalogue.fetch("select count(*) from points")
     (['count_star()'], [(0,)])
     """
-    return Catalogue(_open(), list_views(stage_results(store)))
+    results, absent = stage_results(store)
+    return Catalogue(_open(store.results), list_views(results), store, absent)
 
 
 @contextlib.contextmanager
@@ -246,13 +301,14 @@ def connect_tables(
                 pieces.append(select(spec, "", stage, f"vines_{name}_{i}", table.column_names))
             view = " UNION ALL ".join(pieces) or select(spec, "", "", None, ())
             connection.execute(f"CREATE VIEW {quote(name)} AS {view}")
-        catalogue = Catalogue(connection, [View(name, (), (), (name,)) for name in schema.tables()])
+        catalogue = Catalogue(connection, [View(name, (name,)) for name in schema.tables()])
         yield lambda sql: catalogue.fetch(sql)[1]
     finally:
         connection.close()
 
 
-def _open() -> Any:
+def _open(*folders: Path) -> Any:
+    """Return a connection that reads from some folders only, and whose configuration nobody changes."""
     need("duckdb")
     import duckdb
 
@@ -261,4 +317,11 @@ def _open() -> Any:
     )
     # A result never changes, and its footer tells where to look: to read it again takes longer than a narrow query.
     connection.execute("SET parquet_metadata_cache = true")
+    connection.execute(f"SET allowed_directories = [{', '.join(text(str(each.absolute())) for each in folders)}]")
+    for setting in (
+        "enable_external_access = false",
+        "python_enable_replacements = false",
+        "lock_configuration = true",
+    ):
+        connection.execute(f"SET {setting}")
     return connection

@@ -17,8 +17,8 @@ from typing import Any
 from vines import schema
 from vines.catalogue._readme import readme
 from vines.catalogue._views import list_views
-from vines.errors import StoreError
-from vines.store import Result
+from vines.errors import DamageError, StoreError
+from vines.store import Result, describe_file
 
 __all__ = ["Collected", "export_results"]
 
@@ -76,7 +76,9 @@ def export_results(collected: Collected, target: Path) -> list[str]:
     Raises
     ------
     StoreError
-        If the folder is not empty, or a file of a result is missing.
+        If the folder is not empty.
+    DamageError
+        If a file of a result is missing or damaged.
     """
     if target.exists() and (not target.is_dir() or any(target.iterdir())):
         raise StoreError(f"{target} is not an empty folder; name one that is, or that does not exist yet")
@@ -88,9 +90,9 @@ def export_results(collected: Collected, target: Path) -> list[str]:
                 place = collected.place(pipeline, stage, file)
                 if place is None:
                     continue
-                if not path.is_file():
-                    raise StoreError(f"{path} is missing; run 'vines verify', and {pipeline!r} again with --force")
                 _copy(path, folder / place)
+                if describe_file(folder / place) != result.manifest["files"][file]:
+                    raise DamageError(f"{path} is damaged; 'vines run {pipeline}' mends it, then export again")
             _write(folder / "provenance" / f"{pipeline}.{stage}.json", _provenance(collected, pipeline, stage, result))
         for name, text in collected.declarations.items():
             _write(folder / "declarations" / name, text)
@@ -123,7 +125,10 @@ def _staged(target: Path) -> Iterator[Path]:
 
 def _copy(source: Path, target: Path) -> None:
     target.parent.mkdir(parents=True, exist_ok=True)
-    shutil.copyfile(source, target)
+    try:
+        shutil.copyfile(source, target)
+    except FileNotFoundError:
+        raise DamageError(f"{source} is missing; 'vines run' of its pipeline mends it, then export again") from None
 
 
 def _write(path: Path, text: str) -> None:
@@ -158,7 +163,7 @@ def _load(collected: Collected) -> str:
         "-- say first: SET file_search_path = '/path/to/this/folder';",
     ]
     for view in list_views(collected.results, collected.place):
-        lines += [f"{each.replace('CREATE VIEW', 'CREATE OR REPLACE VIEW', 1)};" for each in view.statements]
+        lines += [f"{each.replace('CREATE VIEW', 'CREATE OR REPLACE VIEW', 1)};" for each in view.statements()]
     return "\n".join(lines) + "\n"
 
 

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterable, Iterator
+from collections.abc import Callable, Collection, Iterable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 from vines import schema
+from vines.errors import StoreError
 from vines.schema import Table
 from vines.store import Result, Store, canonical
 
@@ -58,6 +59,16 @@ def select(spec: Table, pipeline: str, stage: str, source: str | None, there: Co
     return f"SELECT {names}, {', '.join(columns)} {origin}"
 
 
+class Source(NamedTuple):
+    """A stored table that is one piece of a view: its table of ``schemas/``, file, pipeline, result, and query."""
+
+    table: str
+    path: Path
+    pipeline: str
+    key: str
+    query: str
+
+
 @dataclass(frozen=True, slots=True)
 class View:
     """A view that can be made.
@@ -66,22 +77,42 @@ class View:
     ----------
     name : str
         What a query calls it.
-    statements : tuple of str
-        SQL that makes it, and its short name without quotes if it has one.
-    sources : tuple of (str, Path, str)
-        Table, file and pipeline of each piece.
     words : tuple of str
         All of them, in lower case, stand in a query that uses the view.
+    sources : tuple of Source
+        Its pieces.
+    empty : str
+        The query where there is no piece.
+    short : tuple of str
+        Pipeline and stage, where the view also answers to them without quotes.
     """
 
     name: str
-    statements: tuple[str, ...]
-    sources: tuple[tuple[str, Path, str], ...]
     words: tuple[str, ...]
+    sources: tuple[Source, ...] = ()
+    empty: str = ""
+    short: tuple[str, ...] = ()
+
+    @property
+    def is_single(self) -> bool:
+        """Whether it shows one stage alone."""
+        return len(self.words) > 1
+
+    def statements(self, left_out: Collection[Path] = ()) -> list[str]:
+        """Return the SQL that makes it, without the pieces in some files."""
+        pieces = [each.query for each in self.sources if each.path not in left_out]
+        made = [f"CREATE VIEW {quote(self.name)} AS {' UNION ALL '.join(pieces) or self.empty}"]
+        if self.short:
+            schema_name, view = map(quote, self.short)
+            made = [f"CREATE SCHEMA IF NOT EXISTS {schema_name}", *made]
+            made.append(f"CREATE VIEW {schema_name}.{view} AS SELECT * FROM {quote(self.name)}")
+        return made
 
 
-def stage_results(store: Store, pipelines: Collection[str] | None = None) -> Iterator[tuple[str, str, Result]]:
-    """Yield pipeline, stage and result of everything that is pinned and stored.
+def stage_results(
+    store: Store, pipelines: Collection[str] | None = None
+) -> tuple[list[tuple[str, str, Result]], dict[str, str]]:
+    """Return what is pinned and stored, and what is pinned and cannot be read.
 
     Parameters
     ----------
@@ -89,12 +120,25 @@ def stage_results(store: Store, pipelines: Collection[str] | None = None) -> Ite
         Where the results are.
     pipelines : collection of str, optional
         Only of these.
+
+    Returns
+    -------
+    results : list of (str, str, Result)
+        Pipeline, stage and result.
+    absent : dict of str to str
+        Why a pipeline, or ``<pipeline>.<stage>``, is not among them.
     """
-    for pipeline, pins in store.pinned().items():
+    pinned, damaged = store.readable_pins()
+    found: list[tuple[str, str, Result]] = []
+    absent = {name: why for name, why in damaged.items() if pipelines is None or name in pipelines}
+    for pipeline, pins in pinned.items():
         if pipelines is None or pipeline in pipelines:
             for stage, pin in sorted(pins.items()):
-                if store.has(pin["result"]):
-                    yield pipeline, stage, store.result(pin["result"])
+                try:
+                    found.append((pipeline, stage, store.result(pin["result"])))
+                except StoreError as error:
+                    absent[f"{pipeline}.{stage}"] = str(error)
+    return found, absent
 
 
 def list_views(
@@ -114,8 +158,7 @@ def list_views(
     def path_of(pipeline: str, stage: str, result: Result, file: str) -> str | None:
         return str(result.folder / file) if place is None else place(pipeline, stage, file)
 
-    pieces: dict[str, list[str]] = {name: [] for name, spec in schema.tables().items() if spec.stored}
-    files: dict[str, list[tuple[str, Path, str]]] = {name: [] for name in pieces}
+    pieces: dict[str, list[Source]] = {name: [] for name, spec in schema.tables().items() if spec.stored}
     logs: list[str] = []
     single: list[View] = []
     for pipeline, stage, result in results:
@@ -124,22 +167,18 @@ def list_views(
             if name not in pieces:
                 continue
             path = result.folder / f"{name}.parquet"
-            source = f"read_parquet({text(str(path_of(pipeline, stage, result, path.name)))})"
-            query = select(schema.table(name), pipeline, stage, source, about["columns"])
-            pieces[name].append(query)
-            files[name].append((name, path, pipeline))
+            place_of = f"read_parquet({text(str(path_of(pipeline, stage, result, path.name)))})"
+            query = select(schema.table(name), pipeline, stage, place_of, about["columns"])
+            piece = Source(name, path, pipeline, result.key, query)
+            pieces[name].append(piece)
             called = f"{pipeline}.{stage}" if i == 0 else f"{pipeline}.{stage}.{name}"
-            made = [f"CREATE VIEW {quote(called)} AS {query}"]
-            if i == 0:
-                made = [f"CREATE SCHEMA IF NOT EXISTS {quote(pipeline)}", *made]
-                made.append(f"CREATE VIEW {quote(pipeline)}.{quote(stage)} AS SELECT * FROM {quote(called)}")
-            single.append(View(called, tuple(made), ((name, path, pipeline),), (pipeline.lower(), stage.lower())))
-    whole = []
-    for name, queries in pieces.items():
-        query = " UNION ALL ".join(queries) or select(schema.table(name), "", "", None, ())
-        whole.append(View(name, (f"CREATE VIEW {quote(name)} AS {query}",), tuple(files[name]), (name,)))
-    whole.append(View("logs", (_logs(logs),), (), ("logs",)))
-    return [*whole, *single]
+            short = (pipeline, stage) if i == 0 else ()
+            single.append(View(called, (pipeline.lower(), stage.lower()), (piece,), short=short))
+    whole = [
+        View(name, (name,), tuple(found), empty=select(schema.table(name), "", "", None, ()))
+        for name, found in pieces.items()
+    ]
+    return [*whole, View("logs", ("logs",), empty=_logs(logs)), *single]
 
 
 def _log_rows(pipeline: str, stage: str, result: Result, path_of: Callable[[str], str | None]) -> list[str]:
@@ -163,13 +202,13 @@ def _log_rows(pipeline: str, stage: str, result: Result, path_of: Callable[[str]
 
 
 def _logs(rows: list[str]) -> str:
-    """Return the SQL of ``logs``, whose rows come from manifests and not from a Parquet file."""
+    """Return the query of ``logs``, whose rows come from manifests and not from a Parquet file."""
     spec = schema.table("logs")
     if not rows:
-        return f"CREATE VIEW logs AS {select(spec, '', '', None, ())}"
+        return select(spec, "", "", None, ())
     names = ", ".join(quote(name) for name in ("pipeline", "stage", *spec.names))
     typed = ", ".join(f"CAST({quote(c.name)} AS {_TYPES[c.dtype]}) AS {quote(c.name)}" for c in spec.columns)
-    return f"CREATE VIEW logs AS SELECT pipeline, stage, {typed} FROM (VALUES {', '.join(rows)}) AS t({names})"
+    return f"SELECT pipeline, stage, {typed} FROM (VALUES {', '.join(rows)}) AS t({names})"
 
 
 def _literal(value: Any) -> str:

@@ -7,15 +7,18 @@ from __future__ import annotations
 
 import gc
 import importlib
+import io
 import os
 import sys
+import warnings
 from pathlib import Path
 from typing import Any
 
 import click
 
 from vines import __version__
-from vines.errors import VinesError, nearest
+from vines.cli._supervised import STOPPED, go_on_in_a_child, is_supervised
+from vines.errors import DamageWarning, VinesError, nearest
 
 __all__ = ["app", "main"]
 
@@ -47,6 +50,10 @@ COMMANDS = {
 }
 
 
+_COMPUTING = frozenset({"check", "merge", "report", "rig", "run", "solve", "verify", "warm-up"})
+"""Commands that may be inside a kernel for long."""
+_KEEPING = frozenset({"merge", "run"})
+"""Those of them that keep what they have computed."""
 _THRESHOLDS = (100_000, 50, 100)
 """New objects, and rounds, after which Python looks for cycles; its own are 700, 10, 10."""
 
@@ -107,16 +114,31 @@ def app(root: Path | None) -> None:
     del root  # commands ask for it: vines.cli._study
 
 
-def main() -> None:
-    """Run the command line; every expected error ends as one line and its exit code."""
+def main(*, supervised: bool = True) -> None:
+    """Run the command line; every expected error ends as one line and its exit code.
+
+    Parameters
+    ----------
+    supervised : bool
+        Whether a command that computes goes on in a child process, which a signal ends even inside a kernel.
+    """
+    command = next((each for each in sys.argv[1:] if each in COMMANDS), "")
+    if supervised and command in _COMPUTING:
+        again = " ".join(["vines", *sys.argv[1:]])
+        go_on_in_a_child(f"; what is finished is kept, '{again}' goes on" if command in _KEEPING else "")
     os.environ.setdefault("RERUN_ANALYTICS", "0")
     # What libraries make at their import lives to the end; to look for cycles there takes a twelfth of a first run.
     gc.set_threshold(*_THRESHOLDS)
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, io.TextIOWrapper):  # a letter that the terminal does not have is no error
+            stream.reconfigure(errors="backslashreplace")
+    warnings.showwarning = _show
     try:
         code = app.main(standalone_mode=False)
     except click.exceptions.Abort:
-        click.echo("vines: stopped", err=True)
-        code = 130
+        if not is_supervised():
+            click.echo("vines: stopped", err=True)
+        code = STOPPED
     except click.exceptions.NoArgsIsHelpError as error:
         click.echo(error.format_message())
         code = 0
@@ -131,8 +153,25 @@ def main() -> None:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         code = 0
     except OSError as error:
-        # A folder that cannot be made or a full disk: ours to tell in a line, not to trace.
+        # A folder that cannot be made, a full disk, a time-out: ours to tell in a line, not to trace.
         place = f"{error.filename}: " if error.filename else ""
-        click.echo(f"vines: {place}{error.strerror or error}; VINES_DATA, VINES_ROOT and --root name folders", err=True)
+        click.echo(f"vines: {place}{error.strerror or error}{_named(error)}", err=True)
         code = 2
     sys.exit(code if isinstance(code, int) else 0)
+
+
+def _show(message: Warning | str, category: type[Warning], *place: Any) -> None:
+    """Print in one line what an answer lacks, and other warnings as Python does."""
+    if issubclass(category, DamageWarning):
+        click.echo(f"vines: {message}", err=True)
+    else:
+        click.echo(warnings.formatwarning(message, category, *place[:2]), err=True, nl=False)
+
+
+def _named(error: OSError) -> str:
+    """Say which variable named the folder that an error is about, if one did."""
+    for variable in ("VINES_DATA", "VINES_ROOT"):
+        folder = os.environ.get(variable)
+        if folder and error.filename and Path(os.fsdecode(error.filename)).is_relative_to(Path(folder).absolute()):
+            return f"; {variable} names the folder {folder}"
+    return ""

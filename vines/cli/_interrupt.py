@@ -12,10 +12,10 @@ from types import FrameType
 
 import click
 
+from vines.cli._supervised import STOPPED, is_supervised
+
 __all__ = ["stoppable"]
 
-STOPPED = 130
-"""Exit code of a shell command that SIGINT ended."""
 _PATIENCE = 0.6
 
 
@@ -47,7 +47,8 @@ def stoppable(remedy: str) -> Iterator[None]:
     try:
         yield
     except KeyboardInterrupt:
-        click.echo(f"vines: stopped; what is finished is kept, {remedy}", err=True)
+        if not is_supervised():
+            click.echo(f"vines: stopped; what is finished is kept, {remedy}", err=True)
         _leave_soon()
         raise SystemExit(STOPPED) from None
     finally:

@@ -36,6 +36,7 @@ class Lines(Quiet):
 
     def __init__(self) -> None:
         self._started: dict[str, tuple[float, int]] = {}
+        self._measured: dict[str, tuple[float, int]] = {}
         self._said = 0.0
 
     def __call__(self, event: Event) -> None:
@@ -49,9 +50,12 @@ class Lines(Quiet):
                 self._said = now
                 if event.wanted > 1:
                     click.echo(f"{event.stage}: {event.text}")
-            case "progress" if now - self._said >= PAUSE:
-                self._said = now
-                click.echo(f"{event.stage}: {event.done} of {event.wanted}{self._pace(event, now)}")
+            case "progress":
+                if now - self._said >= PAUSE:
+                    self._said = now
+                    click.echo(f"{event.stage}: {event.done} of {event.wanted}{self._pace(event, now)}")
+                if event.stage not in self._measured:  # the first points took what was imported and compiled as well
+                    self._measured[event.stage] = (now, event.done)
             case "done":
                 click.echo(f"{event.stage}: done{self._took(event, now)}{_failures(event)}")
             case "failed" | "skipped":
@@ -60,10 +64,10 @@ class Lines(Quiet):
                 pass
 
     def _pace(self, event: Event, now: float) -> str:
-        start, before = self._started.get(event.stage, (now, event.done))
+        start, before = self._measured.get(event.stage, (now, event.done))
         fresh = event.done - before
         if fresh <= 0 or now <= start:
-            return ""
+            return _failures(event)
         rate = fresh / (now - start)
         return f", {rate:.3g} points/s, {(event.wanted - event.done) / rate:.0f} s left{_failures(event)}"
 

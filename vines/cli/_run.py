@@ -57,6 +57,10 @@ def command(
 
     if scheduler is not None and engine != "dask":
         raise DeclarationError(f"--scheduler {scheduler} needs --engine dask")
+    if shard is not None:
+        from vines.pipeline import Shard
+
+        Shard.read(shard)
     if shard is not None and force:
         raise DeclarationError("--shard cannot be forced: shards see what others computed; force without --shard")
 

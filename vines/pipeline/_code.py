@@ -20,7 +20,7 @@ from typing import Any
 
 from vines.errors import DeclarationError
 from vines.pipeline._source import Source, read_source, read_source_once, stub_of
-from vines.store import key_of, write_text
+from vines.store import key_of, read_sealed, write_sealed
 
 __all__ = ["CodeDigests"]
 
@@ -51,6 +51,7 @@ class CodeDigests:
     _sources: dict[str, Source | None] = field(default_factory=dict)
     _roots: dict[str, str] = field(default_factory=dict)
     _bodies: dict[str, dict[str, str]] = field(default_factory=dict)
+    _several: dict[tuple[str, ...], dict[str, str]] = field(default_factory=dict)
     _digests: dict[tuple[str, ...], str] = field(default_factory=dict)
 
     def modules(self, body: str) -> dict[str, str]:
@@ -84,8 +85,12 @@ class CodeDigests:
         return self._bodies[body]
 
     def modules_of_all(self, bodies: Iterable[str]) -> dict[str, str]:
-        """Return the digests of the modules of several bodies."""
-        return dict(sorted({name: code for body in bodies for name, code in self.modules(body).items()}.items()))
+        """Return the digests of the modules of several bodies; whoever asks for the same ones shares them."""
+        several = tuple(bodies)
+        if several not in self._several:
+            found = {name: code for body in several for name, code in self.modules(body).items()}
+            self._several[several] = dict(sorted(found.items()))
+        return self._several[several]
 
     def digest(self, *bodies: str) -> str:
         """Return one digest for a body, or for one and what it calls beside its imports: SHA-256 over the modules."""
@@ -93,11 +98,16 @@ class CodeDigests:
             self._digests[bodies] = key_of([*bodies, self.modules_of_all(bodies)])
         return self._digests[bodies]
 
+    def read(self, module: str) -> tuple[str, int] | None:
+        """Return the digest of a module's source, and when that was changed, ns since the epoch; None without one."""
+        file, read = self._file(module), self._source(module)
+        return None if file is None or read is None else (read.digest, file[1].st_mtime_ns)
+
     def save(self) -> None:
         """Write the cache if something new was read. That it cannot be written does no harm."""
         if self.cache is not None and self._changed:
             try:
-                write_text(self.cache, json.dumps({"form": _FORM, "files": self._cached}))
+                write_sealed(self.cache, json.dumps({"form": _FORM, "files": self._cached}))
             except OSError:
                 return
             self._changed = False
@@ -183,11 +193,9 @@ class CodeDigests:
         return read
 
     def _load(self) -> dict[str, Any]:
-        try:
-            cached = json.loads(self.cache.read_text("utf-8")) if self.cache is not None else {}
-            return cached["files"] if cached.get("form") == _FORM else {}
-        except (OSError, ValueError, KeyError, AttributeError):
-            return {}
+        text = read_sealed(self.cache) if self.cache is not None else None
+        cached = json.loads(text) if text is not None else {}
+        return cached["files"] if cached.get("form") == _FORM else {}
 
 
 def _stamp_of_stub(file: str) -> list[int]:

@@ -7,11 +7,12 @@ import logging
 import multiprocessing
 import time
 from concurrent.futures import CancelledError, Executor
+from functools import partial
 from typing import Any
 
 from vines.errors import EngineError
 from vines.packages import need
-from vines.pipeline._worker import compute_apart, compute_task
+from vines.pipeline._worker import compute_apart
 
 __all__ = ["Dask"]
 
@@ -37,6 +38,7 @@ class Dask:
 
     worth = 0.0
     """Who asks for dask gets it: the time to start a cluster, or to reach one, is spent already."""
+    apart = True
 
     def __init__(self, address: str | None, jobs: int) -> None:
         need("distributed")
@@ -136,5 +138,5 @@ class _Apart(Executor):
         self._executor = executor
 
     def submit(self, fn: Any, /, *args: Any, **kwargs: Any) -> Any:
-        """Submit a chunk."""
-        return self._executor.submit(compute_apart if fn is compute_task else fn, *args, **kwargs)
+        """Submit a call."""
+        return self._executor.submit(partial(compute_apart, fn), *args, **kwargs)

@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
+import contextlib
 import math
+import uuid
 from collections.abc import Callable, Sequence
 from concurrent.futures import FIRST_COMPLETED, Executor, Future, wait
+from pathlib import Path
 from types import TracebackType
 from typing import Protocol, TypeVar
 
 from vines.errors import StoreError
 from vines.pipeline._work import Chunk, Pace, Work
 from vines.pipeline._worker import Done, Task, compute_task
+from vines.store import Store
 
 __all__ = ["Crew", "Engine"]
 
@@ -26,6 +30,8 @@ class Crew(Protocol):
 
     worth: float
     """Seconds of work from which on it is used; below, this process computes alone."""
+    apart: bool
+    """Whether others have started its processes, so that each has to prove that it sees the store."""
 
     def size(self) -> int:
         """Return how many chunks it computes at the same time; starts it where only it can know."""
@@ -67,10 +73,20 @@ class Engine:
     ----------
     crew : Crew
         Who helps.
+    store : Store
+        Where what is computed goes.
+
+    Attributes
+    ----------
+    token : tuple of (Path, str) or None
+        File in the store, and what stands in it: who reads it sees the store. None where that needs no proof.
     """
 
-    def __init__(self, crew: Crew) -> None:
+    def __init__(self, crew: Crew, store: Store) -> None:
         self.crew = crew
+        self.token: tuple[Path, str] | None = None
+        self._store = store
+        self._open = contextlib.ExitStack()
 
     def compute(self, work: Work, make: Callable[[Chunk], Task], stored: Callable[[Done, int], None]) -> None:
         """Compute everything that is left.
@@ -180,6 +196,10 @@ class Engine:
             return None
 
     def __enter__(self) -> Engine:
+        if self.crew.apart:
+            path = self._open.enter_context(self._store.staging()) / "token"
+            self.token = (path, uuid.uuid4().hex)
+            path.write_text(self.token[1], "utf-8")
         return self
 
     def __exit__(
@@ -187,6 +207,7 @@ class Engine:
     ) -> None:
         # after an interruption a chunk may have seconds to go; its part is not there yet, so nothing is lost
         self.crew.stop(now=kind is not None)
+        self._open.close()
 
     def _together(
         self, work: Work, make: Callable[[Chunk], Task], stored: Callable[[Done, int], None], pace: Pace

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from vines import schema
+from vines.errors import StoreError
 from vines.pipeline._plan import Prepared
 from vines.store import Located, Part, Pool, Store, TableFile, describe_table
 
@@ -55,10 +56,18 @@ def put_together(
         Whether to replace a result of the same key that differs.
     remark : str
         Why the refinement ended early, for the manifest.
+
+    Raises
+    ------
+    StoreError
+        If points or rows are not there after all; then nothing is stored.
     """
     stage = prepared.stage
     pool = store.pool(prepared.pool_key)
     located = pool.locate(grid.ids)
+    absent = located.part < 0
+    if absent.any():
+        raise _lost(prepared, grid, np.flatnonzero(absent))
     failed = grid.ids.take(located.failed).hex()
     key = prepared.result_key(grid, failed)
     parts = pool.parts()
@@ -73,7 +82,9 @@ def put_together(
         for name in stage.kind.tables:
             sorted_by = _sorted_by(grid, name)
             with TableFile(folder / f"{name}.parquet", name, provenance=provenance, sorted_by=sorted_by) as file:
-                for rows in _blocks(pool, located, name):
+                for start, rows in _blocks(pool, located, name):
+                    if name == stage.kind.tables[0]:
+                        _match(prepared, grid, start, rows)
                     file.add(rows)
             about[name] = describe_table(name, file.rows)
         manifest = {
@@ -111,8 +122,29 @@ class _Tables:
         return table
 
 
-def _blocks(pool: Pool, located: Located, name: str) -> Iterator[pa.Table]:
-    """Yield the rows of a table in the order of the points; rows of one point keep theirs."""
+def _match(prepared: Prepared, grid: Grid | Refined, start: int, rows: pa.Table) -> None:
+    """See that these are the rows of the points from a place on, one each."""
+    wanted = grid.ids.take(slice(start, start + _BLOCK)).hex()
+    there: list[Any] = rows.column("point_id").to_pylist()
+    if there != wanted:
+        known = set(there)
+        lost = [start + place for place, identity in enumerate(wanted) if identity not in known]
+        raise _lost(prepared, grid, np.array(lost or [start]))
+
+
+def _lost(prepared: Prepared, grid: Grid | Refined, places: np.ndarray) -> StoreError:
+    """Return the error that names points which should be in the pool and are not."""
+    first = ", ".join(f"{name} = {values[0]:.12g}" for name, values in grid.columns(places[:1]).items())
+    where = f", the first at {first}" if first else ""
+    return StoreError(
+        f"{len(places)} of {len(grid)} points of stage {prepared.stage.name} were told to be stored and are not in "
+        f"{prepared.pool_key[:12]} below data/points{where}; nothing was put together; whoever computed them does "
+        "not see this folder; run again"
+    )
+
+
+def _blocks(pool: Pool, located: Located, name: str) -> Iterator[tuple[int, pa.Table]]:
+    """Yield where a block of points begins, and its rows of a table in their order; rows of one point keep theirs."""
     import pyarrow as pa
     import pyarrow.compute
 
@@ -139,7 +171,7 @@ def _blocks(pool: Pool, located: Located, name: str) -> Iterator[pa.Table]:
         order = np.concatenate(ranks)
         if (np.diff(order) < 0).any():
             whole = whole.take(pa.array(np.argsort(order, kind="stable")))
-        yield whole
+        yield start, whole
 
 
 def _logs(
@@ -159,6 +191,7 @@ def _logs(
         part = parts[located.part[i]]
         log = part.logs.get(point)
         if log is not None:
+            part.check(log)
             _link(part.folder / log, folder / "logs" / log)
             params = {**grid.fixed(), **{name: float(values[i]) for name, values in columns.items()}}
             found.append({"point_id": point, "file": f"logs/{log}", "params": params, "name": names.get(point)})

@@ -35,7 +35,7 @@ def parse(path: Path) -> dict[str, Any]:
         raise DeclarationError(f"{path}: not a TOML file: {str(error).splitlines()[0]}") from None
 
 
-@functools.lru_cache(maxsize=64)
+@functools.lru_cache(maxsize=1024)
 def _loads(text: str) -> dict[str, Any]:
     """Parse a text once: a declaration is read for its title, as a collection, and as a pipeline."""
     return tomllib.loads(text, parse_float=Decimal)

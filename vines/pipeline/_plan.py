@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, Literal
 
+from vines.errors import DamageError
 from vines.pipeline._code import CodeDigests
 from vines.pipeline._declaration import Pipeline, Stage
 from vines.pipeline._grid import Grid
@@ -66,6 +67,8 @@ class Prepared:
     ingredients: Ingredients
     grid: Grid
     pin: dict[str, Any]
+    damaged: dict[str, str] = field(default_factory=dict)
+    """Parts of its pool that are not what was written, and why."""
 
     @property
     def origin(self) -> str:
@@ -116,7 +119,7 @@ class Planner:
     def __init__(self, pipeline: Pipeline, store: Store, code: CodeDigests | None = None) -> None:
         self.pipeline = pipeline
         self.store = store
-        self.pins = store.pins(pipeline.name)
+        self.pins, self.damage = _pins(pipeline, store)
         self.keys: dict[str, str] = {}
         self.code = code_digests(store) if code is None else code
         self._prepared: dict[str, Prepared] = {}
@@ -170,6 +173,7 @@ class Planner:
         if not pool.names():  # the ids, and numpy for them, are only needed where something is there
             return prepared.request, len(grid), 0, 0
         located = pool.locate(grid.ids)
+        prepared.damaged = pool.damaged
         failed = grid.ids.take(located.failed).hex()
         return prepared.result_key(failed=failed), len(grid), int((located.part >= 0).sum()), len(failed)
 
@@ -179,12 +183,15 @@ class Planner:
             left += ", and those of the refinement" if done < wanted else ", or some of the refinement"
         elif done == wanted:
             left = "everything is computed, the result has to be put together"
+        if prepared.damaged:
+            left += f" ({next(iter(prepared.damaged.values()))})"
         pin = prepared.pin
         if not pin:
-            return "never", f"never finished; {left}"
+            return "never", f"{self.damage or 'never finished'}; {left}"
         changed = what_changed(pin.get("ingredients", {}), prepared.ingredients.form)
-        if not changed and not self.store.has(pin["result"]):
-            return "missing", f"the result {pin['result'][:12]} is gone; {left}"
+        problem = "" if changed else self.store.problem(pin["result"])
+        if problem:
+            return "missing", f"result {pin['result'][:12]}: {problem}; {left}"
         return "stale", f"{changed or 'the form of the key changed'}; {left}"
 
     def _origin(self, stage: Stage) -> str:
@@ -193,6 +200,14 @@ class Planner:
             return ""
         source = self.prepare(stage.carry.stage)
         return f"{source.pool_key}/{source.grid.identity(dict(stage.carry.at))}"
+
+
+def _pins(pipeline: Pipeline, store: Store) -> tuple[dict[str, dict[str, Any]], str]:
+    """Return the pins of a pipeline, and why there are none if their file is damaged."""
+    try:
+        return store.pins(pipeline.name), ""
+    except DamageError as error:
+        return {}, str(error)
 
 
 def code_digests(store: Store) -> CodeDigests:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
+from fractions import Fraction
 from typing import Any
 
 from vines import schema
@@ -18,23 +19,40 @@ REFINE = ("along", "jump", "most", "on", "tolerance")
 _WATCHED = ("bool", "float64", "int8", "int64", "string")
 
 
-def read_carry(form: object, axes: tuple[Axis, ...], where: str) -> Carry:
+def read_carry(form: object, axes: tuple[Axis, ...], vary: Mapping[str, Any], where: str) -> Carry:
     """Read ``carry``: an axis, or a table with ``axis``, ``direction`` and ``start``.
+
+    Where no direction is given the chain runs as the values were declared: down if they fall.
+
+    Parameters
+    ----------
+    form : object
+        What was declared.
+    axes : tuple of Axis
+        The varied parameters.
+    vary : mapping
+        As they were declared.
+    where : str
+        File and key, for messages.
 
     Raises
     ------
     DeclarationError
-        If the axis is not varied, or a key or value is not allowed.
+        If the axis is not varied or neither rises nor falls throughout, or a key or value is not allowed.
     """
     table = {"axis": form} if isinstance(form, str) else _table(form, CARRY, where)
     names = [axis.name for axis in axes]
     axis = table.get("axis")
     if axis not in names:
         raise DeclarationError(f"{where}: axis {axis!r} is not varied: {nearest(str(axis), names)}")
-    ends = next(each for each in axes if each.name == axis).ends
-    if list(ends) != sorted(set(ends), reverse=ends[0] > ends[-1]):
-        raise DeclarationError(f"{where}: {axis} is zipped and does not rise or fall throughout; carry needs an order")
-    direction = table.get("direction", "up")
+    values = _declared(vary[str(axis)], f"{where}: vary.{axis}")
+    falls = values[0] > values[-1]
+    if isinstance(vary[str(axis)], list) and values != sorted(set(values), reverse=falls):
+        raise DeclarationError(
+            f"{where}: the values of {axis} neither rise nor fall throughout, and a chain runs up or down; "
+            "list them in one order, or make a stage of each stretch that starts from the end of the one before it"
+        )
+    direction = table.get("direction", "down" if falls else "up")
     if direction not in ("up", "down"):
         raise DeclarationError(f"{where}.direction is {direction!r}; allowed: up, down")
     if "start" not in table:
@@ -48,6 +66,12 @@ def read_carry(form: object, axes: tuple[Axis, ...], where: str) -> Carry:
         raise DeclarationError(f"{where}.start.at is {at!r}; a table of keys is needed here")
     point = {name: float(exact(value, f"{where}.start.at.{name}")) for name, value in at.items()}
     return Carry(axis, direction, stage, tuple(sorted(point.items())))
+
+
+def _declared(form: object, where: str) -> list[Fraction]:
+    """Return the values of a list, or the ends of a range, in the order in which they were declared."""
+    values = form if isinstance(form, list) else [form["from"], form["to"]] if isinstance(form, Mapping) else []
+    return [exact(value, where) for value in values]
 
 
 def read_zipped(form: object, vary: object, where: str) -> tuple[tuple[str, ...], ...]:

@@ -89,6 +89,8 @@ class Processes:
         How many.
     """
 
+    apart = False
+
     def __init__(self, jobs: int) -> None:
         self.worth = WORTH_SECONDS
         self._jobs = jobs

@@ -148,7 +148,7 @@ def _stage(name: str, table: dict[str, Any], spec: Kind, common: dict[str, Any],
     own = {key: value for key, value in table.items() if key not in general}
     plain = {key: _plain(value, f"{where}.{key}") for key, value in own.items()}
     options = read_options(plain, form, where)
-    carry = read_carry(shared["carry"], axes, f"{where}.carry") if "carry" in shared else None
+    carry = read_carry(shared["carry"], axes, shared["vary"], f"{where}.carry") if "carry" in shared else None
     refine = None
     if "refine" in shared:
         refine = read_refine(shared["refine"], spec, axes, zipped, carry, f"{where}.refine")

@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from functools import partial
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
-from vines.errors import SchemaError
+from vines.errors import DamageError, SchemaError
 from vines.pipeline._declaration import Pipeline
 from vines.pipeline._events import Event, Report, RunSummary, StageOutcome, silent
 from vines.pipeline._plan import Planner, Prepared, StagePlan
@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from vines.pipeline._engine import Engine
     from vines.pipeline._kinds import Kind
     from vines.pipeline._shard import Shard
+    from vines.store import Pool
 
 __all__ = ["run_pipeline"]
 
@@ -88,7 +89,7 @@ def run_pipeline(
     planner = Planner(pipeline, store)
     plans = [planner.plan(name) for name in order]
     if shard is not None:
-        crew = _crew(engine, scheduler, jobs)
+        crew = _crew(engine, scheduler, jobs, store)
         return _share(planner.afresh(), order, shard, crew, retry_failed=retry_failed, report=report)
     gone = [name for name in planner.pins if name not in pipeline.stages]
     if not (force or gone) and all(_settled(each, retry_failed) for each in plans):
@@ -98,7 +99,7 @@ def run_pipeline(
         return RunSummary(pipeline.name, tuple(_kept(each) for each in plans))
     with store.writing(lambda: report(Event("waiting"))):
         # another process may have done some of it meanwhile
-        run = _Run(planner.afresh(), _crew(engine, scheduler, jobs), retry_failed, merge, report)
+        run = _Run(planner.afresh(), _crew(engine, scheduler, jobs, store), retry_failed, merge, report)
         forced = set(order if named is None else named) if force else set()
         left = {each.name for each in plans if each.name in forced or not _settled(each, retry_failed)}
         last = max(
@@ -120,17 +121,17 @@ def _is_heavy(kind: Kind) -> bool:
     return kind.shape == "points" or kind.pictures
 
 
-def _crew(engine: str, scheduler: str | None, jobs: int | None) -> Engine:
+def _crew(engine: str, scheduler: str | None, jobs: int | None, store: Store) -> Engine:
     from vines.cores import cores
     from vines.pipeline._engine import Engine
     from vines.pipeline._processes import Processes
 
     count = jobs if jobs is not None else cores()
     if engine == "local":
-        return Engine(Processes(count))
+        return Engine(Processes(count), store)
     from vines.pipeline._dask import Dask
 
-    return Engine(Dask(scheduler, count))
+    return Engine(Dask(scheduler, count), store)
 
 
 def _share(
@@ -208,7 +209,7 @@ class _Run:
         elif self.store.has(each.key) and not force:
             self._done(prepared, StageOutcome(name, "computed", 1, 0, 0, each.key, each.reason))
         else:
-            task = whole_task(prepared, self.store, self.planner, replace=force)
+            task = whole_task(prepared, self.store, self.planner, replace=force, token=self.engine.token)
             future = self.engine.aside(compute_whole, task) if more and stage.kind.pictures else None
             self.aside[name] = _Aside(prepared, each, task, future)
             if future is None:
@@ -247,6 +248,23 @@ class _Run:
         self.report(Event("progress", name, of, done, jobs=processes))
 
     def _points(self, prepared: Prepared, each: StagePlan, *, force: bool) -> StageOutcome:
+        """Compute what is missing and put the result together; again without the parts that turn out to be damaged."""
+        pool = self.store.pool(prepared.pool_key)
+        if force and pool.examine():
+            self._discard(pool)
+        while True:
+            try:
+                return self._once(prepared, each, force=force)
+            except DamageError:
+                if not pool.examine():
+                    raise
+            self._discard(pool)
+
+    def _discard(self, pool: Pool) -> None:
+        with self.store.staging() as trash:
+            pool.discard_damaged(trash)
+
+    def _once(self, prepared: Prepared, each: StagePlan, *, force: bool) -> StageOutcome:
         from vines.pipeline._gather import put_together
         from vines.pipeline._sweep import Sweep
 
@@ -294,6 +312,7 @@ def _pin(prepared: Prepared, outcome: StageOutcome) -> dict[str, Any]:
 
     return {
         "result": outcome.key,
+        **({"pool": prepared.pool_key} if prepared.stage.kind.shape == "points" else {}),
         "request": prepared.request,
         "kind": prepared.stage.kind.name,
         "points": outcome.wanted,

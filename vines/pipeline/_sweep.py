@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from vines.pipeline._demand import demand
 from vines.pipeline._engine import Engine
 from vines.pipeline._events import Event, Report
 from vines.pipeline._grid import Grid
@@ -80,6 +81,9 @@ class Sweep:
         """Compute what is missing, with a refinement until no round adds a point; return how many points failed."""
         rule = self.prepared.stage.refine
         self.pool.describe(self.prepared.ingredients.form)
+        self.pool.parts()
+        if self.pool.damaged:
+            self.mend()
         settled: Ids | None = None
         while True:
             self._round(settled)
@@ -92,6 +96,11 @@ class Sweep:
             if grid is self.grid:
                 return self._failed
             self.grid = grid
+
+    def mend(self) -> None:
+        """Put away the parts of the pool that are known to be damaged, so that their points are computed again."""
+        with self.store.staging() as trash:
+            self.pool.discard_damaged(trash)
 
     def look(self) -> None:
         """Find out what is missing, as :meth:`compute` does, but compute nothing."""
@@ -163,6 +172,7 @@ class Sweep:
             broken="a point before it in the carried chain failed" if chunk.broken else "",
             data=self.store.data,
             pool=self.pool.folder,
+            demand=demand(self.prepared.ingredients, self.store, self.engine.token),
         )
 
     def _stored(self, done: Done, processes: int) -> None:

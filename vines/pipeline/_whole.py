@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from vines.errors import SchemaError
+from vines.errors import CodeError, SchemaError
+from vines.pipeline._demand import Checked, Demand, demand
 from vines.pipeline._jobs import Batch, Input, Range, Spread, WholeJob, one_by_one
 from vines.pipeline._worker import body_of
 from vines.store import Result, Store, describe_table, write_parquet
@@ -39,6 +41,8 @@ class WholeTask:
         The folder of the store.
     replace : bool
         Whether to replace a result of the same key.
+    demand : Demand
+        What a process has to prove before the result is stored.
     """
 
     kind: str
@@ -50,9 +54,12 @@ class WholeTask:
     form: dict[str, Any]
     data: Path
     replace: bool
+    demand: Demand
 
 
-def whole_task(prepared: Prepared, store: Store, planner: Planner, *, replace: bool) -> WholeTask:
+def whole_task(
+    prepared: Prepared, store: Store, planner: Planner, *, replace: bool, token: tuple[Path, str] | None = None
+) -> WholeTask:
     """Gather what a stage is computed from.
 
     Parameters
@@ -65,6 +72,8 @@ def whole_task(prepared: Prepared, store: Store, planner: Planner, *, replace: b
         Knows the keys of the inputs.
     replace : bool
         Whether to replace a result of the same key.
+    token : tuple of (Path, str), optional
+        What proves that a process sees the store, where others have started it.
     """
     stage = prepared.stage
     key = prepared.request
@@ -81,7 +90,16 @@ def whole_task(prepared: Prepared, store: Store, planner: Planner, *, replace: b
     )
     spec = stage.kind
     return WholeTask(
-        spec.name, spec.body, spec.tables, spec.pictures, job, key, prepared.ingredients.form, store.data, replace
+        kind=spec.name,
+        body=spec.body,
+        tables=spec.tables,
+        pictures=spec.pictures,
+        job=job,
+        key=key,
+        form=prepared.ingredients.form,
+        data=store.data,
+        replace=replace,
+        demand=demand(prepared.ingredients, store, token),
     )
 
 
@@ -94,17 +112,31 @@ def compute_whole(task: WholeTask, spread: Spread = one_by_one) -> str:
         The stage.
     spread : Spread
         Shares the work of the body among processes, if the body asks for it.
+
+    Raises
+    ------
+    CodeError
+        If a process has imported other code than that of the key.
     """
+
+    def share(function: Callable[[Any], Any], items: Sequence[Any]) -> list[Any]:
+        return spread(Checked(function, task.demand), items)
+
     store = Store(task.data)
     with store.staging() as place:
         folder = place / "result"
         folder.mkdir()
-        job = replace(task.job, folder=folder, spread=spread)
+        job = replace(task.job, folder=folder, spread=share)
         try:
             for need in job.inputs.values():
                 store.result(need.key).check_forms()
-            batch = body_of(task.body)(job)
+            body = body_of(task.body)
+            task.demand.check_code()
+            batch = body(job)
+            task.demand.check_code()  # the body may have imported more
             about = _write(task, batch, folder, job.provenance)
+        except CodeError:
+            raise
         except Exception as error:  # whatever it is, the other stages go on
             text = (str(error).splitlines() or [""])[0]
             return f"{type(error).__name__}: {text}"

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 from vines import schema
 from vines.errors import SchemaError
+from vines.pipeline._demand import Demand
 from vines.pipeline._jobs import Batch, Job, Point, Points
 from vines.store import Store, commit_part
 
@@ -46,6 +47,8 @@ class Task:
         The folder of the store.
     pool : Path
         The folder of the pool.
+    demand : Demand
+        What a process has to prove before its points are stored.
     """
 
     number: int
@@ -59,6 +62,7 @@ class Task:
     broken: str
     data: Path
     pool: Path
+    demand: Demand
 
 
 @dataclass(frozen=True, slots=True)
@@ -145,8 +149,12 @@ def compute_task(task: Task) -> Done:
         If the body returns rows that don't fit: a mistake in the kind, not in a point.
     ImportError
         If the body needs a package that is not installed here.
+    CodeError
+        If this process has imported other code than that of the key.
     """
     began = time.perf_counter()
+    body_of(task.body)
+    task.demand.check_code()
     gathered = _Gathered({name: [] for name in task.tables})
     with Store(task.data).staging() as place:
         part = place / "part"
@@ -155,11 +163,21 @@ def compute_task(task: Task) -> Done:
             _fail(task, task.points, task.broken, gathered)
         else:
             _attempt(task, task.points, task.start, part, gathered)
+        task.demand.check_code()  # the body may have imported more
         import pyarrow as pa
 
         tables = {name: pa.concat_tables(pieces) for name, pieces in gathered.tables.items()}
         failed = gathered.failed
-        commit_part(task.pool, part, task.number, tables, ids=task.points.key, failed=failed, logs=gathered.logs)
+        commit_part(
+            task.pool,
+            part,
+            task.number,
+            tables,
+            ids=task.points.key,
+            failed=failed,
+            logs=gathered.logs,
+            code=task.demand.code,
+        )
     last = None
     if task.carry is not None and task.points.key.take([-1]).text() not in failed:
         last = _last_row(tables[task.tables[0]])
@@ -167,17 +185,32 @@ def compute_task(task: Task) -> Done:
     return Done(task.number, len(task.points), tuple(failed), time.perf_counter() - began, last, why)
 
 
-def compute_apart(task: Task) -> Done:
-    """Compute a chunk in a process that others started: with one thread, and kernels kept beside the results."""
+def compute_apart(function: Callable[[Any], Any], work: Any) -> Any:
+    """Compute in a process that others started: with one thread, and kernels kept beside the results.
+
+    Parameters
+    ----------
+    function : callable
+        What computes.
+    work : Task, WholeTask, or an item of a whole stage
+        What it computes; the first two say what is demanded of the process.
+
+    Raises
+    ------
+    EngineError
+        If this process does not see the store.
+    """
     import os
     import sys
 
-    os.environ.setdefault("VINES_DATA", str(task.data))
+    if isinstance(demanded := getattr(work, "demand", None), Demand):
+        demanded.check_store()
+        os.environ.setdefault("VINES_DATA", str(work.data))
     if "numba" in sys.modules:
         sys.modules["numba"].set_num_threads(1)
     else:
         one_thread()
-    return compute_task(task)
+    return function(work)
 
 
 def _attempt(

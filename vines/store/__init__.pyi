@@ -15,6 +15,9 @@ from ._pools import commit_part as commit_part
 from ._provenance import revision as revision
 from ._provenance import versions as versions
 from ._results import Result as Result
+from ._results import describe_file as describe_file
 from ._results import describe_table as describe_table
 from ._results import read_result as read_result
+from ._sealed import read_sealed as read_sealed
+from ._sealed import write_sealed as write_sealed
 from ._store import Store as Store

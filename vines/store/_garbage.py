@@ -55,13 +55,14 @@ def find_garbage(store: Store, wanted: Collection[str] = ()) -> list[Garbage]:
     Raises
     ------
     StoreError
-        If a manifest is damaged; then nobody can say what it refers to.
+        If a file of pins is damaged; then nobody can say what it refers to.
     """
-    results = {pin["result"] for pins in store.pinned().values() for pin in pins.values()}
-    pools = set(wanted)
-    for key in results:
-        if store.has(key):
-            pools.add(store.result(key).manifest.get("pool", ""))
+    pinned = [pin for pins in store.pinned().values() for pin in pins.values()]
+    results = {pin["result"] for pin in pinned}
+    pools = {*wanted, *(pin["pool"] for pin in pinned if "pool" in pin)}
+    for pin in pinned:  # a pin of an earlier version did not name its pool
+        if "pool" not in pin and (store.results / pin["result"]).is_dir():
+            pools.add(store.result(pin["result"]).manifest.get("pool", ""))
     found: list[Garbage] = []
     places: tuple[tuple[Literal["result", "points"], Path, set[str]], ...] = (
         ("result", store.results, results),

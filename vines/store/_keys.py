@@ -8,6 +8,8 @@ from typing import Any
 
 __all__ = ["canonical", "key_of"]
 
+_ENCODER = json.JSONEncoder(sort_keys=True, separators=(",", ":"), ensure_ascii=True, allow_nan=False)
+
 
 def canonical(form: Any) -> str:
     """Return the one JSON text of plain data: keys sorted, no spaces, floats in their shortest exact form.
@@ -19,7 +21,7 @@ def canonical(form: Any) -> str:
     >>> canonical({"b": 0.1, "a": [1, None]})
     '{"a":[1,null],"b":0.1}'
     """
-    return json.dumps(form, sort_keys=True, separators=(",", ":"), ensure_ascii=True, allow_nan=False)
+    return _ENCODER.encode(form)
 
 
 def key_of(form: Any) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
@@ -9,11 +10,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from vines import schema
-from vines.errors import StoreError
+from vines.errors import DamageError, StoreError
 from vines.store._atomic import commit_folder, write_text
 from vines.store._keys import canonical, key_of
 from vines.store._parquet import write_parquet
 from vines.store._provenance import versions
+from vines.store._results import describe_file, describe_files, seal
 
 if TYPE_CHECKING:
     import numpy as np
@@ -22,6 +24,8 @@ if TYPE_CHECKING:
     from vines.store._ids import Ids
 
 __all__ = ["Located", "Part", "Pool", "commit_part"]
+
+_REMEDY = "a run that needs its points, or one with --force, computes them again"
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,6 +44,10 @@ class Part:
         Log file of each point that has one.
     versions : dict of str to str
         Versions of the packages that computed it.
+    files : dict of str to dict
+        Size and SHA-256 of its other files; empty for a part of an earlier version, which did not say.
+    code : str
+        Digest of the code that the process ran that computed it; empty as well.
     """
 
     folder: Path
@@ -47,17 +55,52 @@ class Part:
     failed: frozenset[str]
     logs: dict[str, str]
     versions: dict[str, str]
+    files: dict[str, dict[str, Any]]
+    code: str
 
     def table(self, name: str) -> pa.Table:
         """Return the rows of a table; columns that are empty throughout are not stored and come back empty."""
         return schema.cast(name, self.stored(name))
 
     def stored(self, name: str) -> pa.Table:
-        """Return the rows of a table with the columns that are stored."""
+        """Return the rows of a table with the columns that are stored.
+
+        Raises
+        ------
+        DamageError
+            If the file is not what was written.
+        """
+        import pyarrow as pa
         import pyarrow.parquet as pq
 
-        found: Any = pq.read_table(self.folder / f"{name}.parquet")
+        path = self.folder / f"{name}.parquet"
+        self.check(path.name)
+        try:
+            found: Any = pq.read_table(path)
+        except (OSError, pa.ArrowException) as error:
+            raise DamageError(f"{path} cannot be read: {str(error).splitlines()[0]}; {_REMEDY}") from None
         return found.replace_schema_metadata(None)
+
+    def check(self, name: str) -> None:
+        """See that a file is what was written; reads it.
+
+        Raises
+        ------
+        DamageError
+            If it is not.
+        """
+        path = self.folder / name
+        if name in self.files and (not path.is_file() or describe_file(path) != self.files[name]):
+            raise DamageError(f"{path} is damaged: its checksum differs from that of its part; {_REMEDY}")
+
+    def damage(self) -> str:
+        """Return in words what is wrong with its files; empty if every checksum is right."""
+        try:
+            for name in self.files:
+                self.check(name)
+        except DamageError as error:
+            return str(error)
+        return ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -90,6 +133,8 @@ class Pool:
 
     def __init__(self, folder: Path) -> None:
         self.folder = folder
+        self.damaged: dict[str, str] = {}
+        """Names of the parts that are not what was written, and why; nothing is taken from them."""
         self._parts: dict[str, Part] = {}
 
     def names(self) -> list[str]:
@@ -97,12 +142,30 @@ class Pool:
         return sorted(path.name for path in self.folder.iterdir() if path.is_dir()) if self.folder.is_dir() else []
 
     def parts(self) -> list[Part]:
-        """Return the committed parts in the order of their numbers."""
+        """Return the committed parts in the order of their numbers, without those that are damaged at a first look."""
         names = self.names()
         for name in names:
-            if name not in self._parts:
-                self._parts[name] = _read_part(self.folder / name)
-        return [self._parts[name] for name in names]
+            if name not in self._parts and name not in self.damaged:
+                try:
+                    self._parts[name] = _read_part(self.folder / name)
+                except DamageError as error:
+                    self.damaged[name] = str(error)
+        return [self._parts[name] for name in names if name in self._parts]
+
+    def examine(self) -> dict[str, str]:
+        """Read all parts and return the names of those that are damaged, and why."""
+        for part in self.parts():
+            if damage := part.damage():
+                self.damaged[part.folder.name] = damage
+                del self._parts[part.folder.name]
+        return self.damaged
+
+    def discard_damaged(self, trash: Path) -> None:
+        """Move the parts that are known to be damaged into another folder, so that their points are computed again."""
+        for name in self.damaged:
+            with contextlib.suppress(OSError):  # another process was quicker
+                (self.folder / name).rename(trash / name)
+        self.damaged.clear()
 
     def locate(self, wanted: Ids) -> Located:
         """Return where points are: what was computed goes before what failed, then the later part."""
@@ -142,8 +205,9 @@ class Pool:
     def describe(self, ingredients: Mapping[str, Any]) -> None:
         """Write down what the pool is a pool of, if that was not done yet."""
         path = self.folder / "pool.json"
-        if not path.exists():
-            write_text(path, canonical(dict(ingredients)) + "\n")
+        text = canonical(dict(ingredients)) + "\n"
+        if not path.is_file() or path.read_bytes() != text.encode():
+            write_text(path, text)
 
     def row(self, table: str, point: str) -> dict[str, Any]:
         """Return the row of a point in a table.
@@ -170,6 +234,7 @@ def commit_part(
     ids: Ids,
     failed: Iterable[str],
     logs: Mapping[str, str],
+    code: str = "",
 ) -> None:
     """Write tables beside the log files in `source` and make the folder a part of the pool.
 
@@ -192,21 +257,58 @@ def commit_part(
         Those of them that failed.
     logs : mapping of str to str
         Log file of each point that has one.
+    code : str
+        Digest of the code that this process has shown to run.
     """
     for name, table in tables.items():
         write_parquet(source / f"{name}.parquet", name, table, provenance={}, sparse=True)
     text = ids.text()
-    about = {"ids": text, "failed": sorted(failed), "logs": dict(logs), "versions": versions()}
-    (source / "part.json").write_text(canonical(about) + "\n", encoding="utf-8")
+    about = {
+        "ids": text,
+        "failed": sorted(failed),
+        "logs": dict(logs),
+        "versions": versions(),
+        "code": code,
+        "files": describe_files(source),
+    }
+    (source / "part.json").write_text(canonical(seal(about)) + "\n", encoding="utf-8")
     commit_folder(source, pool / f"{number:08d}-{key_of(text)[:12]}")
 
 
 def _read_part(folder: Path) -> Part:
+    """Read what a part says of itself, and see that its files are there in their sizes.
+
+    Raises
+    ------
+    DamageError
+        If something is missing or not what was written.
+    """
     from vines.store._ids import Ids
 
     try:
         about = json.loads((folder / "part.json").read_text("utf-8"))
-        ids = Ids.from_hex(about["ids"] if isinstance(about["ids"], str) else "".join(about["ids"]))
-    except (OSError, ValueError) as error:
-        raise StoreError(f"{folder}: {error}; remove this folder and run again") from None
-    return Part(folder, ids, frozenset(about["failed"]), about["logs"], about.get("versions", {}))
+        check = about.pop("check", None)
+        text = about["ids"] if isinstance(about["ids"], str) else "".join(about["ids"])
+        ids = Ids.from_hex(text)
+        named = folder.name.partition("-")[2]
+        if check not in (None, key_of(about)) or (check is not None and named != key_of(text)[:12]):
+            raise DamageError(f"{folder / 'part.json'} is damaged: it is not what was written; {_REMEDY}")
+        for name, said in about.get("files", {}).items():
+            if (folder / name).stat().st_size != said["bytes"]:
+                raise DamageError(f"{folder / name} is damaged: its size is not what was written; {_REMEDY}")
+    except (
+        FileNotFoundError,
+        ValueError,
+        KeyError,
+        AttributeError,
+    ) as error:  # no other error of the system: it may pass
+        raise DamageError(f"{folder}: {error}; {_REMEDY}") from None
+    return Part(
+        folder=folder,
+        ids=ids,
+        failed=frozenset(about["failed"]),
+        logs=about["logs"],
+        versions=about.get("versions", {}),
+        files=about.get("files", {}),
+        code=about.get("code", ""),
+    )

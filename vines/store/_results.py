@@ -4,17 +4,19 @@ from __future__ import annotations
 
 import hashlib
 import json
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from vines import schema
-from vines.errors import StoreError, UnknownNameError, nearest
+from vines.errors import DamageError, UnknownNameError, nearest
+from vines.store._keys import key_of
 
 if TYPE_CHECKING:
     import pyarrow as pa
 
-__all__ = ["Result", "describe_files", "describe_table", "read_result"]
+__all__ = ["Result", "describe_file", "describe_files", "describe_table", "read_result", "seal"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -84,31 +86,50 @@ class Result:
         for name in self.tables:
             check_form(self.folder / f"{name}.parquet", name)
 
+    def is_intact(self, name: str) -> bool:
+        """Whether a file has the size and the checksum that the manifest says; reads it."""
+        return describe_file(self.folder / name) == self.manifest["files"][name]
+
     def damage(self) -> list[str]:
         """Return what is wrong with the files, one line each; empty if every checksum is right."""
         found = []
-        for name, said in self.manifest["files"].items():
-            path = self.folder / name
-            if not path.is_file():
+        for name in self.manifest["files"]:
+            if not (self.folder / name).is_file():
                 found.append(f"{name} is missing")
-            elif _describe(path) != said:
+            elif not self.is_intact(name):
                 found.append(f"{name} is damaged: its checksum differs from the manifest's")
         return found
 
 
-def read_result(folder: Path) -> Result:
+def seal(manifest: Mapping[str, Any]) -> dict[str, Any]:
+    """Return a manifest with its own digest."""
+    return {**manifest, "check": key_of(manifest)}
+
+
+def read_result(folder: Path, *, strict: bool = True) -> Result:
     """Read the manifest of a result.
+
+    Parameters
+    ----------
+    folder : Path
+        Of the result.
+    strict : bool
+        Whether to refuse a manifest that can be read, but is not what was written.
 
     Raises
     ------
-    StoreError
-        If the manifest is missing or unreadable.
+    DamageError
+        If the manifest is missing or damaged.
     """
     path = folder / "manifest.json"
+    remedy = "the next run of its pipeline makes it again"
     try:
         manifest = json.loads(path.read_text("utf-8"))
-    except (OSError, ValueError) as error:
-        raise StoreError(f"{path} cannot be read: {error}: compute it again with --force") from None
+        check = manifest.pop("check", None)
+    except (OSError, ValueError, AttributeError) as error:
+        raise DamageError(f"{path} cannot be read: {error}; {remedy}") from None
+    if strict and check is not None and (check != key_of(manifest) or manifest.get("key") != folder.name):
+        raise DamageError(f"{path} is damaged: it is not what was written; {remedy}")
     return Result(folder.name, folder, manifest)
 
 
@@ -120,10 +141,11 @@ def describe_table(name: str, rows: int) -> dict[str, Any]:
 def describe_files(folder: Path) -> dict[str, dict[str, Any]]:
     """Return sha256 and size of every file below a folder, by name, in order."""
     paths = sorted(path for path in folder.rglob("*") if path.is_file() and path.name != "manifest.json")
-    return {path.relative_to(folder).as_posix(): _describe(path) for path in paths}
+    return {path.relative_to(folder).as_posix(): describe_file(path) for path in paths}
 
 
-def _describe(path: Path) -> dict[str, Any]:
+def describe_file(path: Path) -> dict[str, Any]:
+    """Return sha256 and size of a file."""
     with path.open("rb") as stream:
         digest = hashlib.file_digest(stream, "sha256").hexdigest()
     return {"sha256": digest, "bytes": path.stat().st_size}

@@ -5,20 +5,24 @@ from __future__ import annotations
 import contextlib
 import json
 import platform
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from vines.errors import StoreError
+from vines.errors import DamageError, StoreError
 from vines.store._atomic import commit_folder, write_text
-from vines.store._results import Result, describe_files, read_result
+from vines.store._keys import key_of
+from vines.store._results import Result, describe_files, read_result, seal
 from vines.store._staging import clear_staging, staging
+from vines.store._wholeness import look, remember
 
 if TYPE_CHECKING:
     from vines.store._pools import Pool
 
 __all__ = ["Store"]
+
+_PINS = ".pins.json"
 
 
 class Store:
@@ -99,20 +103,54 @@ class Store:
             lock.release()
 
     def has(self, key: str) -> bool:
-        """Whether there is a result of that key."""
-        return (self.results / key / "manifest.json").is_file()
+        """Whether there is a result of that key, whole as far as :meth:`problem` sees."""
+        return not self.problem(key)
 
-    def result(self, key: str) -> Result:
+    def problem(self, key: str, files: Collection[str] | None = None, *, thorough: bool = False) -> str:
+        """Return in words why the result of a key cannot be used; empty if it can.
+
+        Looks at the manifest, and that all files are there in their sizes; reads those that were changed since they
+        were last found right.
+
+        Parameters
+        ----------
+        key : str
+            Key of the result.
+        files : collection of str, optional
+            Only these files matter.
+        thorough : bool
+            Whether to read files too of which nobody has noted that they are right.
+        """
+        folder = self.results / key
+        if not folder.is_dir():
+            return "it is not stored"
+        try:
+            result = read_result(folder)
+        except DamageError as error:
+            return str(error)
+        return look(result, self._seen(key), files, thorough=thorough)
+
+    def result(self, key: str, *, strict: bool = True) -> Result:
         """Return a stored result.
+
+        Parameters
+        ----------
+        key : str
+            Its key.
+        strict : bool
+            Whether to refuse a manifest that can be read, but is not what was written.
 
         Raises
         ------
         StoreError
             If there is none of that key, or its manifest is damaged.
         """
-        if not self.has(key):
+        if not (self.results / key).is_dir():
             raise StoreError(f"there is no result {key[:12]} below {self.results}; run its pipeline again")
-        return read_result(self.results / key)
+        return read_result(self.results / key, strict=strict)
+
+    def _seen(self, key: str) -> Path:
+        return self.cache / "whole" / f"{key}.json"
 
     def commit(self, key: str, folder: Path, manifest: Mapping[str, Any], *, replace: bool = False) -> Result:
         """Make a finished folder the result of a key.
@@ -126,7 +164,8 @@ class Store:
         manifest : mapping
             The manifest without ``files``, ``written`` and ``host``, which are added here.
         replace : bool
-            Whether to put it in the place of a result of the same key that differs from it. Else that one is kept.
+            Whether to put it in the place of a result of the same key that differs from it. Else that one is kept,
+            unless it is damaged.
         """
         files = describe_files(folder)
         whole = {
@@ -136,15 +175,18 @@ class Store:
             "written": datetime.now(UTC).isoformat(timespec="seconds"),
             "host": platform.node(),
         }
-        write_text(folder / "manifest.json", json.dumps(whole, indent=1) + "\n")
+        write_text(folder / "manifest.json", json.dumps(seal(whole), indent=1) + "\n")
         target = self.results / key
-        if replace and target.exists() and not (self.has(key) and self._same(key, files)):
+        if target.exists() and (not self.has(key) or (replace and not self._same(key, files))):
             with self.staging() as trash:
                 target.rename(trash / "old")
                 commit_folder(folder, target)
         else:
             commit_folder(folder, target)
-        return self.result(key)
+        result = self.result(key)
+        if result.manifest["files"] == files:
+            remember(result, self._seen(key), files)
+        return result
 
     def _same(self, key: str, files: Mapping[str, Any]) -> bool:
         """Whether the stored result of a key has these files and they are intact."""
@@ -162,33 +204,68 @@ class Store:
 
         Raises
         ------
-        StoreError
+        DamageError
             If the file is damaged.
         """
         path = self._pin_file(pipeline)
         try:
-            return json.loads(path.read_text("utf-8"))
-        except FileNotFoundError:
+            pins = json.loads(path.read_text("utf-8"))
+            checks = {stage: pin.pop("check", None) for stage, pin in pins.items()}
+        except (FileNotFoundError, NotADirectoryError):
             return {}
-        except (OSError, ValueError) as error:
-            raise StoreError(f"{path} cannot be read: {error}; remove it and run the pipeline again") from None
+        except (ValueError, AttributeError) as error:
+            raise DamageError(f"{path} is damaged: {error}; 'vines run {pipeline}' makes it again") from None
+        for stage, pin in pins.items():
+            if checks[stage] not in (None, _check(pipeline, stage, pin)):
+                text = f"{path} is damaged: it is not what was written"
+                raise DamageError(f"{text}; 'vines run {pipeline}' makes it again")
+        return pins
 
     def pin(self, pipeline: str, stage: str, pin: Mapping[str, Any]) -> None:
-        """Set which result a stage has now. A pin holds at least ``result``, the key."""
-        pins = {**self.pins(pipeline), stage: dict(pin)}
-        write_text(self._pin_file(pipeline), json.dumps(pins, indent=1, sort_keys=True) + "\n")
+        """Set which result a stage has now; a damaged file is made anew. A pin holds at least ``result``, the key."""
+        try:
+            pins = self.pins(pipeline)
+        except DamageError:
+            pins = {}
+        self._write_pins(pipeline, {**pins, stage: dict(pin)})
 
     def unpin(self, pipeline: str, stages: Iterable[str]) -> None:
         """Forget the results of stages that a pipeline no longer has."""
         gone = set(stages)
-        pins = {stage: pin for stage, pin in self.pins(pipeline).items() if stage not in gone}
-        write_text(self._pin_file(pipeline), json.dumps(pins, indent=1, sort_keys=True) + "\n")
+        self._write_pins(pipeline, {stage: pin for stage, pin in self.pins(pipeline).items() if stage not in gone})
 
     def pinned(self) -> dict[str, dict[str, dict[str, Any]]]:
-        """Return the pins of all pipelines that were run, by name, in order."""
-        suffix = ".pins.json"
-        names = sorted(path.name.removesuffix(suffix) for path in self.pipelines.glob(f"[!.]*{suffix}"))
-        return {name: self.pins(name) for name in names}
+        """Return the pins of all pipelines that were run, by name, in order.
+
+        Raises
+        ------
+        DamageError
+            If one of the files is damaged.
+        """
+        return {name: self.pins(name) for name in self._pinned_names()}
+
+    def readable_pins(self) -> tuple[dict[str, dict[str, dict[str, Any]]], dict[str, str]]:
+        """Return the pins of the pipelines whose files can be read, and of the others why they cannot."""
+        found: dict[str, dict[str, dict[str, Any]]] = {}
+        damaged: dict[str, str] = {}
+        for name in self._pinned_names():
+            try:
+                found[name] = self.pins(name)
+            except DamageError as error:
+                damaged[name] = str(error)
+        return found, damaged
+
+    def _pinned_names(self) -> list[str]:
+        return sorted(path.name.removesuffix(_PINS) for path in self.pipelines.glob(f"[!.]*{_PINS}"))
+
+    def _write_pins(self, pipeline: str, pins: Mapping[str, dict[str, Any]]) -> None:
+        sealed = {stage: {**pin, "check": _check(pipeline, stage, pin)} for stage, pin in pins.items()}
+        write_text(self._pin_file(pipeline), json.dumps(sealed, indent=1, sort_keys=True) + "\n")
 
     def _pin_file(self, pipeline: str) -> Path:
-        return self.pipelines / f"{pipeline}.pins.json"
+        return self.pipelines / f"{pipeline}{_PINS}"
+
+
+def _check(pipeline: str, stage: str, pin: Mapping[str, Any]) -> str:
+    """Return the digest that tells whether a pin is what was written, and of this stage."""
+    return key_of([pipeline, stage, dict(pin)])

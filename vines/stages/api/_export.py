@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable
 from pathlib import Path
 
-from vines.errors import FileMissingError, UnknownNameError
+from vines.errors import DamageError, FileMissingError, UnknownNameError
 from vines.pipeline import available, with_included
 from vines.places import shipped
 from vines.stages.api._home import Home, current
@@ -55,12 +55,13 @@ def export(
 
     study = study or current()
     store = study.store
-    wanted = stored_pipelines(names, store.pinned(), study.root)
-    results = [
-        (pipeline, stage, result)
-        for pipeline, stage, result in stage_results(store, wanted)
-        if result.manifest["tables"] or result.files
-    ]
+    pinned, damaged = store.readable_pins()
+    wanted = stored_pipelines(names, {*pinned, *damaged}, study.root)
+    stored, absent = stage_results(store, wanted)
+    if absent:
+        where, why = next(iter(absent.items()))
+        raise DamageError(f"{where} cannot be exported: {why}")
+    results = [each for each in stored if each[2].manifest["tables"] or each[2].files]
     if not results:
         raise UnknownNameError("nothing is stored yet that could be exported; run 'vines run quickstart' first")
     declarations, titles = _declared(wanted, names, study.root)

@@ -34,7 +34,7 @@ def _pinned(store: Store) -> dict[str, dict[str, Path]]:
     """Return for each stage that is pinned its logs by their points."""
     return {
         f"{pipeline}.{stage}": store.result(pin["result"]).logs
-        for pipeline, stages in store.pinned().items()
+        for pipeline, stages in store.readable_pins()[0].items()
         for stage, pin in stages.items()
         if store.has(pin["result"]) and store.result(pin["result"]).logs
     }

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import hashlib
 import json
 from collections import Counter
@@ -11,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 from vines.stages.api._home import Home, current
 from vines.stages.api._parts import load_parts
+from vines.store import read_sealed, write_sealed
 
 if TYPE_CHECKING:
     import pyarrow as pa
@@ -77,13 +79,12 @@ def _cached(store: Store, pipeline: str, results: dict[str, Result]) -> list[str
     source = {"results": {stage: r.key for stage, r in results.items()}, "text": Path(__file__).read_text("utf-8")}
     identity = hashlib.sha256(json.dumps(source).encode()).hexdigest()[:20]
     file = store.cache / "found" / f"{pipeline}-{identity}.json"
-    try:
-        return json.loads(file.read_text("utf-8"))
-    except (OSError, ValueError):
-        pass
+    text = read_sealed(file)
+    if text is not None:
+        return json.loads(text)
     lines = list(_findings(results))
-    file.parent.mkdir(parents=True, exist_ok=True)
-    file.write_text(json.dumps(lines), encoding="utf-8")
+    with contextlib.suppress(OSError):  # what may only be read is read again
+        write_sealed(file, json.dumps(lines))
     return lines
 
 

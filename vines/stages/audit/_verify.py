@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -12,6 +12,7 @@ from vines.errors import StoreError, UnknownNameError
 from vines.stages.api._home import Home, current
 from vines.stages.api._stored import stored_pipelines
 from vines.stages.audit._files import check_files, check_provenance, check_schema
+from vines.stages.audit._kept import check_pool, check_rows
 from vines.stages.audit._ledger import Ledger, Line
 from vines.stages.audit._links import check_links
 from vines.stages.audit._physics import check_physics
@@ -114,16 +115,20 @@ def verify(
 def _results(study: Home, names: tuple[str, ...], everything: bool, ledger: Ledger) -> dict[str, Result]:
     """Return the results to verify by ``<pipeline>.<stage>``; one that several stages share comes once."""
     store = study.store
-    pinned = store.pinned()
-    chosen: dict[str, dict[str, Any]] = {name: pinned[name] for name in stored_pipelines(names, pinned, study.root)}
+    pinned, damaged = store.readable_pins()
+    known = {*pinned, *damaged}
+    chosen = {name: pinned.get(name, {}) for name in stored_pipelines(names, known, study.root)}
     keys: dict[str, str] = {}
     says = "a result for each pin"
     for pipeline, pins in chosen.items():
+        if pipeline in damaged:
+            ledger.note("files", "pins", says, "stages", damaged[pipeline])
         for stage, pin in sorted(pins.items()):
             where = f"{pipeline}.{stage}"
-            missing = "" if store.has(pin["result"]) else f"{where}: result {pin['result'][:12]} is not stored any more"
+            there = (store.results / pin["result"]).is_dir()
+            missing = "" if there else f"{where}: result {pin['result'][:12]} is not stored any more"
             ledger.note("files", "pins", says, "stages", missing)
-            if not missing:
+            if there:
                 keys.setdefault(pin["result"], where)
     if everything and store.results.is_dir():
         for path in sorted(store.results.iterdir()):
@@ -132,10 +137,13 @@ def _results(study: Home, names: tuple[str, ...], everything: bool, ledger: Ledg
         raise UnknownNameError("nothing is stored yet; run 'vines run quickstart' first")
     found = {}
     for key, where in keys.items():
-        try:
-            found[where] = store.result(key)
-        except StoreError as error:
-            ledger.note("files", "manifests", "can be read", "results", f"{where}: {error}")
+        for strict in (True, False):  # what is damaged and can be read is looked at all the same
+            try:
+                found[where] = store.result(key, strict=strict)
+                break
+            except StoreError as error:
+                if strict:
+                    ledger.note("files", "manifests", "as they were written", "results", f"{where}: {error}")
     return found
 
 
@@ -144,11 +152,13 @@ def _check_result(ledger: Ledger, where: str, result: Result, store: Store) -> b
     import pyarrow as pa
 
     check_files(ledger, where, result)
+    check_pool(ledger, where, result, store)
     readable = {name: check_schema(ledger, where, result, name) for name in result.tables}
     primary = None
     try:
         if result.tables and readable[result.tables[0]]:
             primary = _primary(result)
+            check_rows(ledger, where, result, primary)
         check_provenance(ledger, where, result, store, primary)
         for name in result.tables:
             if readable[name] and (name != "impacts" or readable.get("points", True)):
