@@ -116,7 +116,10 @@ SENSELESS = {
         'kind = "figure"\nplot = "bifurcation"\nneeds = ["symmetric_run"]\n',
         "varies nothing",
     ),
-    "no width": ('kind = "figure"\nplot = "bifurcation"\nneeds = ["up"]\nwidth = -1\n', "width is -1, allowed is > 0"),
+    "no width": (
+        'kind = "figure"\nplot = "bifurcation"\nneeds = ["up"]\nwidth = -1\n',
+        "width is -1, allowed is width > 0",
+    ),
     "an unknown panel": ('kind = "figure"\nplot = "bifurcation"\nneeds = ["up"]\npanels = ["w_dott"]\n', "'w_dot'"),
     "an unknown claim": ('kind = "check"\nneeds = ["up"]\nclaims = ["fig2_x"]\n', "'fig2_"),
     "a branch of nothing": ('kind = "branch"\nword = "LR"\nparams.A = 0.02\n', "vary.X"),

@@ -109,7 +109,7 @@ def test_where_there_is_none_it_is_said(small):
     [
         ("vary.mu = { from = 0.008, to = 0.012 }\n", "params.mu = 0.01\n", "followed in two parameters"),
         ("lines = 2", "lines = 0", "lines >= 1"),
-        ("step = 0.1", "step = 0.0", "0 < step <= 1"),
+        ("step = 0.1", "step = 0.0", "step > 0"),
         ('needs = ["breaking", "doubling"]', "needs = []", "draws other stages"),
         ('type = "fold"', 'type = "tear"', "tear"),
     ],

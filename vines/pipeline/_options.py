@@ -63,7 +63,7 @@ def read_options(table: Mapping[str, Any], form: type[msgspec.Struct], where: st
     >>> read_options({"settle": -1}, Waiting, "a.toml: stages.up")
     Traceback (most recent call last):
         ...
-    vines.errors.DeclarationError: a.toml: stages.up.settle is -1, allowed is >= 0
+    vines.errors.DeclarationError: a.toml: stages.up.settle is -1, allowed is settle >= 0
     """
     _known_inside(table, form, where)
     try:
@@ -107,7 +107,9 @@ def _said(error: msgspec.ValidationError, table: Mapping[str, Any], form: type[m
     place = place.rstrip("`")
     limit, word = _LIMIT.fullmatch(text), _WORD.fullmatch(text)
     if limit is not None:
-        return f"{where}{place} is {_value(table, place)}, allowed is {limit['limit'].removesuffix('.0')}"
+        allowed = limit["limit"].removesuffix(".0")
+        name = "" if allowed.startswith("length") else f"{place.rpartition('.')[2]} "
+        return f"{where}{place} is {_value(table, place)}, allowed is {name}{allowed}"
     if word is not None:
         words = _words(form, place)
         return f"{where}{place} is {word['word']!r}: {nearest(word['word'], words)}"
