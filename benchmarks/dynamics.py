@@ -19,9 +19,15 @@ from scipy.integrate import solve_ivp
 
 from benchmarks.lanes import MIXED, ORBIT, PUBLISHED_FLOOR, REPEATS, floor, median, ways_to_run
 from benchmarks.rk4 import rk4_run
-from vines.dynamics import ensemble, lyapunov_spectrum, simulate
+from vines.dynamics import Scatter, ensemble, lyapunov_spectrum, simulate
 from vines.model import Params
 from vines.orbits import find_orbit
+
+SCATTERED = {
+    "restitution drawn": Scatter(sigma_r=0.02, seed=1),
+    "second harmonic": Scatter(second=0.1, seed=1),
+    "32 held forces a period": Scatter(noise=0.05, hold=32, seed=1),
+}
 
 MILLION = """
 import json, resource, time
@@ -62,6 +68,10 @@ def ours(p: Params) -> list[tuple[str, float]]:
     rows.append(("scalar, every event kept", median(lambda: simulate(p, periods=5000)) / hits * 1e9))
     rows.append(("scalar, measures of it", median(run.measures) / hits * 1e9))
     rows.append(("scalar, Lyapunov spectrum of it", median(lambda: lyapunov_spectrum(run)) / hits * 1e9))
+    for name, scatter in SCATTERED.items():
+        asked = {"periods": 2000, "record": "measures", "scatter": scatter, "threads": 1}
+        hits = int(ensemble(p, **asked).counts.sum())
+        rows.append((f"scatter, measures, {name}", median(lambda asked=asked: ensemble(p, **asked)) / hits * 1e9))
     return rows
 
 

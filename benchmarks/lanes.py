@@ -13,10 +13,12 @@ import numpy as np
 
 from vines.dynamics import _lane_fields as f
 from vines.dynamics import ensemble
+from vines.dynamics._lane_certificate import certify
+from vines.dynamics._lane_guess import GROUP, predict
 from vines.dynamics._lane_measures import measure, renew
-from vines.dynamics._lane_motion import go_to_root, half_turn, small_expm1, step_on
-from vines.dynamics._lane_strike import look, polish, strike
-from vines.dynamics._lanes import certify, choose
+from vines.dynamics._lane_motion import half_turn, small_expm1
+from vines.dynamics._lane_strike import aim, arrive, go, strike
+from vines.dynamics._lanes import choose
 from vines.kernels import WIDE, loop_njit
 from vines.model import Params
 
@@ -86,30 +88,36 @@ def floor() -> float:
 
 
 @loop_njit
-def _steps(L, n):
+def _moves(L, n):
     for _ in range(n):
-        step_on(L)
-        go_to_root(L)
+        go(L)
 
 
 @loop_njit
-def _looks(L, n):
+def _arrivals(L, n):
     for _ in range(n):
-        look(L)
+        aim(L)
+        arrive(L)
+
+
+@loop_njit
+def _certificates(L, n):
+    for _ in range(n):
+        certify(L)
 
 
 @loop_njit
 def _strikes(L, n):
     for _ in range(n):
-        polish(L)
         strike(L)
+        choose(L, 1e9)
 
 
 @loop_njit
-def _choices(L, n):
+def _predictions(L, n):
     for _ in range(n):
-        certify(L)
-        choose(L, 1e9)
+        for i in range(0, f.LANES, GROUP):
+            predict(L[i:])
 
 
 @loop_njit
@@ -123,10 +131,11 @@ def parts_of_a_tick() -> list[tuple[str, float]]:
     """Return (what, ns a lane) of the loops of which a tick is made, and of those that take measures."""
     n, rows = 5000, []
     for name, work in (
-        ("two moves", _steps),
-        ("look", _looks),
-        ("polish, strike", _strikes),
-        ("certify, choose", _choices),
+        ("move", _moves),
+        ("aim, arrive", _arrivals),
+        ("certify", _certificates),
+        ("strike, choose", _strikes),
+        ("predict, where flights differ", _predictions),
         ("measures", _measures),
     ):
         L = _room()

@@ -67,7 +67,7 @@ def test_restitution_has_the_mean_and_spread_asked_for() -> None:
 def test_standard_errors_with_scatter_are_those_between_runs() -> None:
     chaos = Params(mu=0.01, A=0.03)
     scatter = Scatter(sigma_r=0.05, noise=0.05, seed=3)
-    m = ensemble(chaos, {"v2": np.linspace(0.05, 0.2, 64)}, settle=150, periods=160, record="measures", scatter=scatter)
+    m = ensemble(chaos, {"v2": np.linspace(0.05, 0.2, 64)}, settle=150, periods=480, record="measures", scatter=scatter)
     assert m.measures is not None
     for name in ("kinetic_ratio", "rms_x1"):
         typical = np.sqrt(np.mean(m.measures[f"{name}_error"] ** 2))
@@ -107,9 +107,5 @@ def test_bad_scatter_is_refused() -> None:
     ):
         with pytest.raises(ParameterError, match=message):
             Scatter(**options)
-    still = Params(mu=0.01, A=0.02, Omega=0.5, lam=0.0)
-    ensemble(still, periods=1, scatter=Scatter(sigma_r=0.1))
-    with pytest.raises(ParameterError, match="lam is 0 at the resonance of mass 1 in run 0"):
-        ensemble(still, periods=1, scatter=Scatter(second=0.1))
     with pytest.raises(StateError, match="lyapunov is not defined"):
         ensemble(P, lyapunov=True, scatter=Scatter())

@@ -89,3 +89,34 @@ def test_what_is_called_by_symbol_does_not(tmp_path: Path) -> None:
     changed = HELPER.replace("def called(x):\n    return inner(x)", "def called(x):\n    return inner(x) - 1.0")
     assert changed != HELPER
     assert _digest(tmp_path, changed, KERNEL) == _digest(tmp_path, HELPER, KERNEL)
+
+
+BY_TYPE = """
+from typing import NamedTuple
+from vines.kernels import by_type, njit
+
+class One(NamedTuple):
+    x: float
+
+class Other(NamedTuple):
+    y: float
+
+@by_type(One)
+@njit
+def inner(of):
+    return 2.0 * of.x
+
+@inner.register(Other)
+@njit
+def _inner(of):
+    return 3.0 * of.y
+
+called, SHIFT = inner, 1.0
+"""
+
+
+def test_every_body_by_type_belongs_to_the_digest(tmp_path: Path) -> None:
+    before = _digest(tmp_path, BY_TYPE, KERNEL)
+    assert _digest(tmp_path, BY_TYPE.replace("def _inner", "# said\ndef _inner"), KERNEL) == before
+    assert _digest(tmp_path, BY_TYPE.replace("3.0 * of.y", "4.0 * of.y"), KERNEL) != before
+    assert _digest(tmp_path, BY_TYPE.replace("2.0 * of.x", "4.0 * of.x"), KERNEL) != before

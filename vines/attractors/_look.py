@@ -7,8 +7,8 @@ import math
 from vines.attractors import _verdict as v
 from vines.attractors._follow import follow
 from vines.attractors._judge import clear, judge_window
-from vines.attractors._window import measure_window, open_window, run_window, with_room
-from vines.dynamics.kernels import constants_kernel
+from vines.attractors._window import measure_window
+from vines.dynamics.kernels import constants_kernel, open_window, run_window, with_room
 from vines.dynamics.kernels import rows as col
 from vines.kernels import byte_vector, cold_njit, entry_njit, new_matrix, njit
 

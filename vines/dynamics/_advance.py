@@ -8,11 +8,12 @@ from __future__ import annotations
 
 import numpy as np
 
+from vines.dynamics._constants import Constants
 from vines.dynamics._contact import CONTACT, NO_CONTACT, next_contact
-from vines.dynamics._flight import advance_phase, derivatives, phasors, turn
+from vines.dynamics._flight import advance_phase, derivatives, flight, flown
 from vines.dynamics._impact_law import after_impact_kernel
 from vines.dynamics._sticking import merges, next_release
-from vines.kernels import fused_njit, linked_njit, loop_njit, njit
+from vines.kernels import by_type, fused_njit, linked_njit, loop_njit, njit
 
 __all__ = [
     "A_V1",
@@ -39,6 +40,7 @@ __all__ = [
     "X2",
     "advance",
     "begin",
+    "law_of",
     "new_state",
     "pass_over",
     "set_state",
@@ -73,8 +75,9 @@ ROW = 13
     S_PERIOD_START,
     S_PERIOD_EVENTS,
     S_DECIDE,
-) = range(16)
-STATE = 16
+    S_IMPACTS,
+) = range(17)
+STATE = 17
 
 COMPLETE, BUFFER_FULL, EVENT_CAP, STEP_LIMIT = 0, 1, 2, 3
 
@@ -112,9 +115,8 @@ def state_now(c, state, t):
     tau = (t - state[S_T]) - state[S_T_LOW]
     side = state[S_MODE]
     o = c.stuck if side != 0.0 else c.free
-    ur, ui, gr, gi = phasors(o, c.Omega, state[S_X1], state[S_V1], state[S_PHASE])
-    ur, ui, gr, gi = turn(o, c.Omega, ur, ui, gr, gi, tau)
-    x1, v1, _, _, _ = derivatives(o, c.Omega, ur, ui, gr, gi)
+    motion = flown(c, o, flight(c, o, state[S_X1], state[S_V1], state[S_PHASE], state[S_T]), tau)
+    x1, v1, _, _, _ = derivatives(o, c.Omega, *motion)
     phase = advance_phase(state[S_PHASE], c.Omega * tau)
     if side != 0.0:
         return x1, v1, x1 - side, v1, phase, tau
@@ -162,6 +164,13 @@ def _place(state, mode, wall, released, x1, v1, x2, v2):
     state[S_V2] = v2
 
 
+@by_type(Constants)
+@fused_njit
+def law_of(c, closing, number):
+    """Return the `ImpactLaw` of impact `number` of a run, at v1 - v2 = closing."""
+    return c.law
+
+
 @njit
 def begin(state, rows):
     """Write the row of the start."""
@@ -204,15 +213,15 @@ def advance(c, state, stop, cap, rows, first):
         x2 = state[S_X2]
         v2 = state[S_V2]
         o = c.stuck if side != 0 else c.free
-        ur, ui, gr, gi = phasors(o, c.Omega, x1, v1, state[S_PHASE])
+        motion = flight(c, o, x1, v1, state[S_PHASE], state[S_T])
 
         if side != 0:
-            code, tau, x, v = next_release(c, side, ur, ui, gr, gi, state[S_CLEAR], min(left, AFRESH))
+            code, tau, x, v = next_release(c, side, motion, state[S_CLEAR], min(left, AFRESH))
             if code == CONTACT:
                 _move(c, state, tau)
                 _place(state, 0, side, 1.0, x, v, x - side, v)
-                ur, ui, gr, gi = phasors(c.free, c.Omega, x, v, state[S_PHASE])
-                _, _, _, j, _ = derivatives(c.free, c.Omega, ur, ui, gr, gi)
+                after = flight(c, c.free, x, v, state[S_PHASE], state[S_T])
+                _, _, _, j, _ = derivatives(c.free, c.Omega, *after)
                 if side * j >= 0.0:
                     # Contact was lost at once, with a push away from the wall that is not zero.
                     state[S_RELEASED] = 0.0
@@ -225,7 +234,7 @@ def advance(c, state, stop, cap, rows, first):
             wall = int(state[S_WALL])
             if state[S_DECIDE] != 0.0:
                 state[S_DECIDE] = 0.0
-                if merges(c, wall, max(wall * (v2 - v1), 0.0), ur, ui, gr, gi, x2):
+                if merges(c, wall, max(wall * (v2 - v1), 0.0), motion, x2):
                     common = (v1 + c.mu * v2) / (1.0 + c.mu)
                     run = state[S_RUN]
                     state[S_RUN] = 0.0
@@ -237,11 +246,12 @@ def advance(c, state, stop, cap, rows, first):
                         return count, EVENT_CAP
                     continue
             code, tau, hit, x, v = next_contact(
-                c, ur, ui, gr, gi, x2, v2, wall, state[S_RELEASED] != 0.0, state[S_CLEAR], min(left, AFRESH)
+                c, motion, x2, v2, wall, state[S_RELEASED] != 0.0, state[S_CLEAR], min(left, AFRESH)
             )
             if code == CONTACT:
                 _move(c, state, tau)
-                after1, after2 = after_impact_kernel(c.law, v, v2)
+                after1, after2 = after_impact_kernel(law_of(c, v - v2, state[S_IMPACTS]), v, v2)
+                state[S_IMPACTS] += 1.0
                 if hit != state[S_RUN_SIDE] or state[S_RELEASED] != 0.0:
                     state[S_RUN] = 0.0
                 state[S_RUN] += 1.0
@@ -259,8 +269,7 @@ def advance(c, state, stop, cap, rows, first):
             return count, STEP_LIMIT
         if left <= AFRESH:
             return count, COMPLETE
-        ur, ui, gr, gi = turn(o, c.Omega, ur, ui, gr, gi, tau)
-        x, v, _, _, _ = derivatives(o, c.Omega, ur, ui, gr, gi)
+        x, v, _, _, _ = derivatives(o, c.Omega, *flown(c, o, motion, tau))
         _move(c, state, tau)
         if side != 0:
             _place(state, side, side, 0.0, x, v, x - side, v)

@@ -6,7 +6,6 @@ import math
 
 from vines.dynamics._totals import (
     DURATION,
-    ENERGY_CHANGE,
     MAX_ABS_X1,
     T_MAX_ABS_X1,
     TOTALS,
@@ -25,15 +24,18 @@ BATCHES = 8
 @linked_njit
 def close_batch(mu, part, total, values):
     """Add a part to the totals, keep its kinetic ratio, largest |x1| and rms of x1, and empty it."""
+    larger = part[MAX_ABS_X1] > total[MAX_ABS_X1]
     for k in range(TOTALS):
-        if k not in (MAX_ABS_X1, T_MAX_ABS_X1, ENERGY_CHANGE):
+        if k not in (MAX_ABS_X1, T_MAX_ABS_X1):
             total[k] += part[k]
-    if part[MAX_ABS_X1] > total[MAX_ABS_X1]:
-        total[MAX_ABS_X1], total[T_MAX_ABS_X1] = part[MAX_ABS_X1], part[T_MAX_ABS_X1]
-    values[0] = mu * part[V2_SQUARE] / part[V1_SQUARE]
+        elif larger:
+            total[k] = part[k]
+    # Where the oscillator does not move there is no ratio.
+    values[0] = mu * part[V2_SQUARE] / part[V1_SQUARE] if part[V1_SQUARE] > 0.0 else math.nan
     values[1] = part[MAX_ABS_X1]
     values[2] = math.sqrt(max(part[X1_SQUARE], 0.0) / part[DURATION])
-    part[:] = 0.0
+    for k in range(TOTALS):
+        part[k] = 0.0
 
 
 @linked_njit

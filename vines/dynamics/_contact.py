@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import math
-
-from vines.dynamics._flight import derivatives, fifth, sixth, turn
+from vines.dynamics._constants import Constants
+from vines.dynamics._flight import derivatives, fifth, forced_fifth, modulus, sixth, turn
 from vines.dynamics._steps import leaving_step, only_root, step_ahead, step_back, taylor_root
-from vines.kernels import fused_njit
+from vines.kernels import by_type, fused_njit
 
 __all__ = [
     "BEYOND",
@@ -19,8 +18,8 @@ __all__ = [
     "SPEED",
     "STEP_CAP",
     "close_in",
+    "contact_within",
     "first_step",
-    "modulus",
     "next_contact",
 ]
 
@@ -39,20 +38,14 @@ BEYOND = 1.125
 
 
 @fused_njit
-def modulus(re, im):
-    """Return |re + i im|."""
-    return math.sqrt(re * re + im * im)
-
-
-@fused_njit
-def first_step(c, ur, ui, gr, gi, v2, wall, released):
+def first_step(c, motion, v2, wall, released):
     """Return the certified step from the wall just left, where the gap is 0 exactly.
 
     After a release w' = w'' = 0 exactly, too.
     """
-    _, v, a, j, k = derivatives(c.free, c.Omega, ur, ui, gr, gi)
-    re, im = fifth(c.free, ur, ui, gr, gi)
-    bound = modulus(re, im) + modulus(gr, gi) * c.Omega5 * c.window
+    _, v, a, j, k = derivatives(c.free, c.Omega, *motion)
+    re, im = fifth(c.free, *motion)
+    bound = modulus(re, im) + forced_fifth(c, *motion) * c.window
     speed = 0.0 if released else max(wall * (v2 - v), 0.0)
     second = 0.0 if released else wall * a
     own = step_back(0.0, speed, second, wall * j, wall * k, bound, c.window)
@@ -66,7 +59,7 @@ def first_step(c, ur, ui, gr, gi, v2, wall, released):
 
 
 @fused_njit
-def close_in(o, Omega, near, what, ur, ui, gr, gi, x2, v2, side, tau, step, reach):
+def close_in(o, Omega, near, what, motion, x2, v2, side, tau, step, reach):
     """Return (tau, x1, v1, x1'', x1''', x1'''') at the only root in [tau, tau + reach], estimated at tau + step.
 
     It is that of the gap to the wall `side` (GAP), of the force between it and a ball riding on it (FORCE), or of the
@@ -77,13 +70,13 @@ def close_in(o, Omega, near, what, ur, ui, gr, gi, x2, v2, side, tau, step, reac
     x = v = a = j = k = 0.0
     for _ in range(80):
         tau += step
-        urt, uit, grt, git = turn(o, Omega, ur, ui, gr, gi, tau)
-        x, v, a, j, k = derivatives(o, Omega, urt, uit, grt, git)
-        d5, _ = fifth(o, urt, uit, grt, git)
+        now = turn(o, Omega, *motion, tau)
+        x, v, a, j, k = derivatives(o, Omega, *now)
+        d5, _ = fifth(o, *now)
         if what == GAP:
             gap = 1.0 - side * (x - (x2 + v2 * tau))
             slope = side * (v - v2)
-            d6 = sixth(o, urt, uit, grt, git)
+            d6 = sixth(o, *now)
             step, correction = taylor_root(gap, slope, side * a, side * j, side * k, side * d5, side * d6)
         elif what == FORCE:
             gap = side * a
@@ -110,13 +103,14 @@ def close_in(o, Omega, near, what, ur, ui, gr, gi, x2, v2, side, tau, step, reac
     return tau, x, v, a, j, k
 
 
+@by_type(Constants)
 @fused_njit
-def next_contact(c, ur, ui, gr, gi, x2, v2, wall, released, tau, stop):
+def next_contact(c, motion, x2, v2, wall, released, tau, stop):
     """Search for the first contact after tau, where the flight is known to be clear until tau.
 
     Parameters
     ----------
-    ur, ui, gr, gi : float
+    motion : tuple of float
         u and G of the oscillator at the start of the flight.
     x2, v2 : float
         Ball at the start of the flight.
@@ -132,29 +126,35 @@ def next_contact(c, ur, ui, gr, gi, x2, v2, wall, released, tau, stop):
     (code, tau, side, x1, v1)
         With code NO_CONTACT or STEP_CAP, tau is the last time known to be clear that a later search can start from.
     """
+    return contact_within(c, motion, x2, v2, wall, released, tau, stop)
+
+
+@fused_njit
+def contact_within(c, motion, x2, v2, wall, released, tau, stop):
+    """Return the same where the force does not jump before `stop`."""
     o = c.free
     window = c.window
-    forced = modulus(gr, gi) * c.Omega5 * window
+    forced = forced_fifth(c, *motion) * window
     if tau == 0.0 and wall != 0:
-        h = first_step(c, ur, ui, gr, gi, v2, wall, released)
+        h = first_step(c, motion, v2, wall, released)
         if h > stop:
             return NO_CONTACT, 0.0, 0, 0.0, 0.0
         tau = h
     for _ in range(MAX_STEPS):
-        urt, uit, grt, git = turn(o, c.Omega, ur, ui, gr, gi, tau)
-        x, v, a, j, k = derivatives(o, c.Omega, urt, uit, grt, git)
-        d5, i5 = fifth(o, urt, uit, grt, git)
+        now = turn(o, c.Omega, *motion, tau)
+        x, v, a, j, k = derivatives(o, c.Omega, *now)
+        d5, i5 = fifth(o, *now)
         bound = modulus(d5, i5) + forced
         w = x - (x2 + v2 * tau)
         pace = abs(v - v2)
         side = 1 if v > v2 else -1
         d2, d3, d4 = side * a, side * j, side * k
         gap = max(1.0 - side * w, 0.0)
-        d6 = sixth(o, urt, uit, grt, git)
+        d6 = sixth(o, *now)
         h, _ = taylor_root(gap, pace, d2, d3, d4, side * d5, side * d6)
         reach = BEYOND * h
         if reach <= window and only_root(gap, pace, d2, d3, d4, bound, reach):
-            found, x, v, _, _, _ = close_in(o, c.Omega, c.near, GAP, ur, ui, gr, gi, x2, v2, side, tau, h, reach)
+            found, x, v, _, _, _ = close_in(o, c.Omega, c.near, GAP, motion, x2, v2, side, tau, h, reach)
             if found > stop:
                 return NO_CONTACT, tau, 0, 0.0, 0.0
             return CONTACT, found, side, x, v

@@ -18,7 +18,8 @@ from vines.dynamics import _advance as col
 from vines.dynamics import _lane_run as lanes
 from vines.dynamics import _totals as entry
 from vines.dynamics._lane_record import arrange
-from vines.dynamics._scatter import Scatter, scatter_block
+from vines.dynamics._scatter import Scatter
+from vines.dynamics._scatter_run import scatter_block
 from vines.dynamics._simulate import EVENTS_PER_PERIOD
 from vines.dynamics._start import SLACK
 from vines.dynamics._trajectory import IMPACT
@@ -230,8 +231,6 @@ def ensemble(
         raise StateError(f"record is {record!r}: {nearest(str(record), ('final', 'measures', 'impacts'))}")
     if scatter is not None and lyapunov:
         raise StateError("lyapunov is not defined for runs with scatter; leave one of them out")
-    if scatter is not None:
-        scatter.check(table)
     what = {"final": lanes.FINAL, "measures": lanes.WITH_MEASURES, "impacts": lanes.WITH_IMPACTS}[record]
     what += lanes.WITH_EXPONENTS if lyapunov else 0
     return _Runs(table, begin, periods, settle, max_impacts_per_period, scatter, threads).done(what)
@@ -297,9 +296,8 @@ class _Work:
                 break
             room *= 2
         if self.what & lanes.WITH_IMPACTS:
-            kept = events[:filled]
             self.sizes[block.start] = n
-            self.events[block.start] = kept if scatter is None else kept[kept[:, col.KIND] == col.IMPACT]
+            self.events[block.start] = events[:filled]
 
     def result(self) -> Ensemble:
         """Put the arrays together."""

@@ -8,10 +8,26 @@ from __future__ import annotations
 
 import math
 
+from vines.dynamics._constants import Constants, Oscillator
 from vines.dynamics._sincos import sincos
-from vines.kernels import fused_njit
+from vines.kernels import by_type, fused_njit
 
-__all__ = ["advance_phase", "decay", "derivatives", "fifth", "fourth_bound", "phasors", "sixth", "slow_growth", "turn"]
+__all__ = [
+    "advance_phase",
+    "decay",
+    "derivatives",
+    "fifth",
+    "flight",
+    "flown",
+    "forced_fifth",
+    "fourth_bound",
+    "modulus",
+    "phasors",
+    "sixth",
+    "slow_growth",
+    "terms",
+    "turn",
+]
 
 TWO_PI = 2.0 * math.pi
 
@@ -34,6 +50,7 @@ def decay(x):
     return 1.0 - x * (1.0 - x * (1 / 2 - x * (1 / 6 - x * tail)))
 
 
+@by_type(Oscillator)
 @fused_njit
 def turn(o, Omega, ur, ui, gr, gi, tau):
     """Return u and G at time tau, as four reals.
@@ -112,6 +129,7 @@ def slow_growth(o, tau):
     return re * tau, im * tau
 
 
+@by_type(Oscillator)
 @fused_njit
 def derivatives(o, Omega, ur, ui, gr, gi):
     """Return x and its first four derivatives where the oscillator is at u, G."""
@@ -124,6 +142,7 @@ def derivatives(o, Omega, ur, ui, gr, gi):
     )
 
 
+@by_type(Oscillator)
 @fused_njit
 def fifth(o, ur, ui, gr, gi):
     """Return the fifth derivative of u, as two reals."""
@@ -133,10 +152,45 @@ def fifth(o, ur, ui, gr, gi):
     )
 
 
+@by_type(Oscillator)
 @fused_njit
 def sixth(o, ur, ui, gr, gi):
     """Return the sixth derivative of x."""
     return (o.s6r * ur - o.s6i * ui) + (o.c6r * gr - o.c6i * gi)
+
+
+@by_type(Constants)
+@fused_njit
+def flight(c, o, x, v, phase, t):
+    """Return the motion that begins with x, v and a phase of the forcing at time t: what `turn` carries on, u and G."""
+    return phasors(o, c.Omega, x, v, phase)
+
+
+@by_type(Constants)
+@fused_njit
+def flown(c, o, motion, tau):
+    """Return the motion a time tau after its begin, however long that is."""
+    return turn(o, c.Omega, *motion, tau)
+
+
+@by_type(Constants)
+@fused_njit
+def forced_fifth(c, ur, ui, gr, gi):
+    """Return by how much in a unit of time the fifth derivative of u may come to exceed what it is at u, G."""
+    return modulus(gr, gi) * c.Omega5
+
+
+@by_type(Oscillator)
+@fused_njit
+def terms(o, ur, ui, gr, gi):
+    """Return the size of the terms of which a gap is the sum, the half-width of the cavity among them."""
+    return 1.0 + abs(ur) + abs(ui) + abs(gr) + abs(gi)
+
+
+@fused_njit
+def modulus(re, im):
+    """Return |re + i im|."""
+    return math.sqrt(re * re + im * im)
 
 
 @fused_njit

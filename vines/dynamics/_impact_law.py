@@ -14,7 +14,6 @@ __all__ = [
     "ImpactLaw",
     "after_impact",
     "after_impact_kernel",
-    "exchanged_kernel",
     "impact_law",
     "impact_law_kernel",
     "reversing",
@@ -65,12 +64,6 @@ def after_impact_kernel(law, v1, v2):
     0.19 0.78
     """
     return law.keep1 * v1 + law.pass1 * v2, law.pass2 * v1 + law.keep2 * v2
-
-
-@fused_njit
-def exchanged_kernel(law, closing):
-    """Return the velocity that the oscillator loses and the ball gains where they meet at v1 - v2 = closing."""
-    return law.pass1 * closing, law.pass2 * closing
 
 
 @njit

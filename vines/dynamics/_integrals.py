@@ -10,10 +10,11 @@ import math
 
 import numpy as np
 
-from vines.dynamics._contact import BEYOND, SPEED, close_in, modulus
-from vines.dynamics._flight import derivatives, fifth, phasors, slow_growth, turn
+from vines.dynamics._constants import Oscillator
+from vines.dynamics._contact import BEYOND, SPEED, close_in
+from vines.dynamics._flight import derivatives, fifth, forced_fifth, modulus, phasors, slow_growth, turn
 from vines.dynamics._steps import only_root, step_ahead, step_back, taylor_root
-from vines.kernels import fused_njit, linked_njit, loop_njit
+from vines.kernels import by_type, fused_njit, linked_njit, loop_njit
 
 __all__ = [
     "base_per_force",
@@ -22,6 +23,7 @@ __all__ = [
     "peak_between",
     "quadratic_forms",
     "segment_integrals",
+    "stays_below",
 ]
 
 FORCED_STEP = 1e-7
@@ -143,6 +145,23 @@ def quadratic_forms(half, gamma, stiffness, Omega, lam, sum2, base, u0, g0, u1, 
     return x_square, v_square, work, loss
 
 
+@by_type(Oscillator)
+@fused_njit
+def stays_below(o, Omega, now, end, left, best):
+    """Say whether it is certain that |x1| does not exceed `best` between two motions, a time `left` apart."""
+    ur, ui, gr, gi = now
+    # u exp(-i Omega t) leaves the chord between its ends by less than its second derivative allows.
+    rate = modulus(gr - (o.dr * ur - o.di * ui), gi - (o.dr * ui + o.di * ur))
+    here = modulus(ur, ui)
+    highest = max(here, modulus(end[0], end[1])) + 0.125 * modulus(o.dr, o.di) * rate * left * left
+    if min(highest, here + modulus(gr, gi) * left) <= best:
+        return True
+    if o.reach != 0.0:
+        return False
+    qr, qi = gr * o.er - gi * o.ei, gr * o.ei + gi * o.er
+    return modulus(ur - qr, ui - qi) + modulus(qr, qi) <= best
+
+
 @loop_njit
 def largest_displacement(c, mode, x1, v1, phase, start, length, best):
     """Return (largest |x1| on [start, length], its time), or `best` and a negative time if none exceeds it.
@@ -150,43 +169,31 @@ def largest_displacement(c, mode, x1, v1, phase, start, length, best):
     The times are those since the event at which x1, v1, phase are given. All zeros of v1 are found by certified steps.
     """
     o = c.stuck if mode != 0.0 else c.free
-    ur, ui, gr, gi = phasors(o, c.Omega, x1, v1, phase)
-    last_r, last_i, _, _ = turn(o, c.Omega, ur, ui, gr, gi, length)
-    return peak_between(c, o, ur, ui, gr, gi, last_r, last_i, start, length, best)
+    motion = phasors(o, c.Omega, x1, v1, phase)
+    return peak_between(c, o, motion, turn(o, c.Omega, *motion, length), start, length, best)
 
 
 @fused_njit
-def peak_between(c, o, ur, ui, gr, gi, last_r, last_i, start, length, best):
-    """Return the same from u and G at the start of the segment and u at its end."""
+def peak_between(c, o, motion, end, start, length, best):
+    """Return the same from the motion at the start of the segment and at its end, between which no force jumps."""
     when = -1.0
-    if abs(last_r) > best:
-        best = abs(last_r)
+    last, _, _, _, _ = derivatives(o, c.Omega, *end)
+    if abs(last) > best:
+        best = abs(last)
         when = length
-    last = modulus(last_r, last_i)
-    force = modulus(gr, gi)
-    detuning = modulus(o.dr, o.di)
     tau = start
     window = c.window
     for _ in range(1_000_000):
-        urt, uit, grt, git = ur, ui, gr, gi
+        now = motion
         if tau > 0.0:
-            urt, uit, grt, git = turn(o, c.Omega, ur, ui, gr, gi, tau)
-        x, v, a, j, k = derivatives(o, c.Omega, urt, uit, grt, git)
+            now = turn(o, c.Omega, *motion, tau)
+        x, v, a, j, k = derivatives(o, c.Omega, *now)
         if abs(x) > best:
             best = abs(x)
             when = tau
-        # u exp(-i Omega t) leaves the chord between its ends by less than its second derivative allows.
-        left = length - tau
-        rate = modulus(grt - (o.dr * urt - o.di * uit), git - (o.dr * uit + o.di * urt))
-        here = modulus(urt, uit)
-        highest = max(here, last) + 0.125 * detuning * rate * left * left
-        if min(highest, here + force * left) <= best:
+        if stays_below(o, c.Omega, now, end, length - tau, best):
             return best, when
-        if o.reach == 0.0:
-            qr, qi = grt * o.er - git * o.ei, grt * o.ei + git * o.er
-            if modulus(urt - qr, uit - qi) + modulus(qr, qi) <= best:
-                return best, when
-        bound = modulus(*fifth(o, urt, uit, grt, git)) + force * c.Omega5 * window
+        bound = modulus(*fifth(o, *now)) + forced_fifth(c, *motion) * window
         side = 1.0 if v > 0.0 or (v == 0.0 and a < 0.0) else -1.0
         gap = abs(v)
         slope = -side * a
@@ -194,9 +201,7 @@ def peak_between(c, o, ur, ui, gr, gi, last_r, last_i, start, length, best):
             h, _ = taylor_root(gap, slope, -side * j, -side * k, 0.0, 0.0, 0.0)
             reach = BEYOND * h
             if reach <= window and only_root(gap, slope, -side * j, -side * k, -bound, 0.0, reach):
-                tau, x, _, a, j, k = close_in(
-                    o, c.Omega, c.near, SPEED, ur, ui, gr, gi, 0.0, 0.0, int(side), tau, h, reach
-                )
+                tau, x, _, a, j, k = close_in(o, c.Omega, c.near, SPEED, motion, 0.0, 0.0, int(side), tau, h, reach)
                 if tau > length:
                     return best, when
                 if abs(x) > best:
@@ -204,7 +209,7 @@ def peak_between(c, o, ur, ui, gr, gi, last_r, last_i, start, length, best):
                     when = tau
                 # From here v1 goes to the other sign; the bound held for twice the window, but for the forcing's part.
                 side = 1.0 if a > 0.0 else -1.0
-                bound += force * c.Omega5 * window
+                bound += forced_fifth(c, *motion) * window
                 h = step_back(0.0, abs(a), -side * j, -side * k, bound, 0.0, window)
                 if h < 0.25 * window:
                     h = max(h, step_back(0.0, abs(a), -side * j, -side * k, bound, 0.0, 2.0 * h))

@@ -6,10 +6,11 @@ import math
 
 from vines.dynamics import _advance as col
 from vines.dynamics import _lane_fields as f
-from vines.dynamics._contact import first_step, modulus
-from vines.dynamics._flight import advance_phase, fifth, phasors, turn
-from vines.dynamics._lane_motion import MOST_DECAY, MOST_TURN
-from vines.dynamics._lanes import HEIGHT_OF_BOUND, LOOSER
+from vines.dynamics._contact import first_step
+from vines.dynamics._flight import advance_phase, modulus, phasors, turn
+from vines.dynamics._lane_certificate import MARGIN
+from vines.dynamics._lane_motion import MOST_DECAY, MOST_TURN, NEAR_DECAY, NEAR_TURN, flow
+from vines.dynamics._lanes import LOOSER
 from vines.dynamics._sincos import sincos
 from vines.dynamics._sticking import UNRESOLVED, merges
 from vines.kernels import linked_njit, njit
@@ -32,12 +33,12 @@ def fill_lane(c, state, L, i, length):
     ur, ui, gr, gi = phasors(c.free, c.Omega, x, v, phase)
     step = 0.0
     if wall != 0.0:
-        step = first_step(c, ur, ui, gr, gi, state[col.S_V2], int(wall), released)
+        # On the wall itself the gap vanishes with its derivatives after a release: so far the scalar kernel answers.
+        step = first_step(c, (ur, ui, gr, gi), state[col.S_V2], int(wall), released)
         if step < 1e-8:
             return False
-    limit = MOST_TURN / max(1.0, c.Omega)
-    if c.free.half * limit > MOST_DECAY:
-        limit = MOST_DECAY / c.free.half
+    fastest = max(1.0, c.Omega)
+    limit = min(MOST_TURN / fastest, MOST_DECAY / max(c.free.half, 1e-3))
     elapsed = state[col.S_T] + state[col.S_T_LOW]
     left = length - elapsed
     step = min(step, limit)
@@ -53,31 +54,30 @@ def fill_lane(c, state, L, i, length):
     L[f.Q_RE + i] = c.free.qr
     L[f.Q_IM + i] = c.free.qi
     force = modulus(gr, gi)
-    L[f.GROW5 + i] = force * c.Omega5
-    L[f.FORCED5 + i] = forced * c.Omega5
-    L[f.WINDOW + i] = c.window
+    L[f.FORCED8 + i] = 1.000000001 * forced * c.Omega4 * c.Omega4
+    L[f.MARGIN + i] = 1.0 - MARGIN * (1.0 + forced)
     L[f.LIMIT + i] = limit
-    L[f.NEAR + i] = c.near
+    L[f.NEAR + i] = min(NEAR_TURN / fastest, NEAR_DECAY / max(c.free.half, 1e-3))
     L[f.CORRECTION + i] = c.correction
-    # `merges` takes sizes of u, G, x2, at most 2.42 (|z| + |q|) + 1.42 |G| + 1; and |z| <= MOST5 - FORCED5.
-    L[f.HEIGHT + i] = LOOSER * UNRESOLVED * (2.0 + 2.42 * forced + 1.42 * force) - HEIGHT_OF_BOUND * forced * c.Omega5
+    # `merges` takes sizes of u, G, x2, at most 2.42 (|z| + |q|) + 1.42 |G| + 1.
+    L[f.HEIGHT + i] = LOOSER * UNRESOLVED * (2.0 + 2.42 * forced + 1.42 * force)
     L[f.PERIOD + i] = c.period
     sine, cosine = sincos(phase)
     xh = x - (c.free.qr * cosine - c.free.qi * sine)
     vh = v + c.Omega * (c.free.qr * sine + c.free.qi * cosine)
-    rest = (vh + c.free.half * xh) * c.free.inverse
-    L[f.X_FREE + i] = xh
-    L[f.V_FREE + i] = vh
-    L[f.COS + i] = cosine
-    L[f.SIN + i] = sine
-    L[f.BALL + i] = state[col.S_X2]
+    L[f.AMPLITUDE + i] = 1.000000001 * modulus(xh, (vh + c.free.half * xh) * c.free.inverse)
+    L[f.X_FREE + i], L[f.V_FREE + i], L[f.COS + i], L[f.SIN + i] = flow(
+        c.free.half, c.free.gamma, c.free.inverse, c.Omega, xh, vh, cosine, sine, step
+    )
+    L[f.BALL + i] = state[col.S_X2] + state[col.S_V2] * step
     L[f.SPEED + i] = state[col.S_V2]
-    L[f.LEFT + i] = left
-    L[f.MOVE + i] = step
-    L[f.FREE5 + i] = modulus(*fifth(c.free, ur, ui, gr, gi))
-    L[f.MOST5 + i] = modulus(xh, rest) + forced * c.Omega5
-    L[f.POLISH + i] = 0.0
-    L[f.TAU + i] = 0.0
+    L[f.LEFT + i] = left - step
+    L[f.MOVE + i] = 0.0
+    L[f.TRIES + i] = 0.0
+    L[f.LAST + i] = 0.5 * c.period
+    L[f.ONE_BEFORE + i] = 0.5 * c.period
+    L[f.USUAL + i] = 0.5 * c.period
+    L[f.TAU + i] = step
     L[f.WALL + i] = wall
     L[f.RELEASED + i] = 1.0 if released else 0.0
     L[f.CHAIN + i] = 0.0 if released or state[col.S_RUN_SIDE] != wall else state[col.S_RUN]
@@ -137,7 +137,7 @@ def may_fly(c, state):
         wall = state[col.S_WALL]
         ur, ui, gr, gi = phasors(c.free, c.Omega, state[col.S_X1], state[col.S_V1], state[col.S_PHASE])
         speed = max(wall * (state[col.S_V2] - state[col.S_V1]), 0.0)
-        return not merges(c, int(wall), speed, ur, ui, gr, gi, state[col.S_X2])
+        return not merges(c, int(wall), speed, (ur, ui, gr, gi), state[col.S_X2])
     return True
 
 

@@ -1,4 +1,4 @@
-"""The middle of a tick: is the next contact certain, how far is it, and the impact itself.
+"""The way to a contact in a tick: the move, the last bit of the way, and the impact itself.
 
 They are loops of their own because short loops let the processor work at several vectors at once.
 """
@@ -6,136 +6,166 @@ They are loops of their own because short loops let the processor work at severa
 from __future__ import annotations
 
 from vines.dynamics import _lane_fields as f
-from vines.dynamics._contact import BEYOND
-from vines.dynamics._lane_motion import forced_motion, free_derivatives, kept
-from vines.dynamics._steps import only_root, taylor_root
+from vines.dynamics._lane_motion import flow, forced_motion, free_derivatives, kept, short_flow
+from vines.dynamics._steps import taylor_root
 from vines.kernels import loop_njit
 
-__all__ = ["look", "polish", "strike"]
+__all__ = ["aim", "arrive", "go", "strike"]
 
 LANES = f.LANES
 
+FRESH = 0.25
+"""Share of the last flight in the running mean of their lengths."""
+
+EXACT = 1.5e-5
+"""Largest last correction, in units of NEAR: its cube, as the next would be, is below rounding."""
+
+ALIKE = 0.2
+"""Two flights differ by no more than this share of NEAR if the one after them is expected to be like an earlier one."""
+
 
 @loop_njit
-def look(L):
-    """Find the way to the contact of every lane in which it is certain that there is one, and that it is the first.
+def go(L):
+    """Find where every lane comes to by its next move."""
+    for i in range(LANES):
+        xh, vh, cosine, sine = flow(
+            L[f.HALF + i],
+            L[f.GAMMA + i],
+            L[f.INVERSE + i],
+            L[f.OMEGA + i],
+            L[f.X_FREE + i],
+            L[f.V_FREE + i],
+            L[f.COS + i],
+            L[f.SIN + i],
+            L[f.MOVE + i],
+        )
+        L[f.END_X + i] = xh
+        L[f.END_V + i] = vh
+        L[f.END_COS + i] = cosine
+        L[f.END_SIN + i] = sine
 
-    While polishing it is known to lie in an older bracket. Elsewhere the way is 0.
-    """
+
+@loop_njit
+def aim(L):
+    """Find the way from there to the nearest contact with the wall ahead of the ball, and whether it is short."""
     for i in range(LANES):
         omega = L[f.OMEGA + i]
-        window = L[f.WINDOW + i]
-        v2 = L[f.SPEED + i]
-        xh = L[f.X_FREE + i]
-        vh = L[f.V_FREE + i]
-        xq, _, vq = forced_motion(L[f.Q_RE + i], L[f.Q_IM + i], omega, L[f.COS + i], L[f.SIN + i])
+        xh = L[f.END_X + i]
+        vh = L[f.END_V + i]
+        move = L[f.MOVE + i]
+        speed = L[f.SPEED + i]
+        xq, _, vq = forced_motion(L[f.Q_RE + i], L[f.Q_IM + i], omega, L[f.END_COS + i], L[f.END_SIN + i])
         ah, jh, kh, lh, mh = free_derivatives(L[f.LAM + i], xh, vh)
         omega2 = omega * omega
         aq = -omega2 * xq
         jq = -omega2 * vq
         kq = -omega2 * aq
-        closing = (vh + vq) - v2
-        polishing = L[f.POLISH + i] > 0.0
+        closing = (vh + vq) - speed
         side = 1.0 if closing > 0.0 else -1.0
-        aim = kept(L[f.SIDE + i], L[f.UNIT + i])
-        side = aim if polishing else side
-        gap = 1.0 - side * ((xh + xq) - L[f.BALL + i])
-        d1 = side * closing
-        d2 = side * (ah + aq)
-        d3 = side * (jh + jq)
-        d4 = side * (kh + kq)
-        h, _ = taylor_root(gap, d1, d2, d3, d4, side * (lh - omega2 * jq), side * (mh - omega2 * kq))
-        fifth = min(L[f.FREE5 + i] + L[f.GROW5 + i] * (L[f.TAU + i] + window), L[f.MOST5 + i])
-        reach = BEYOND * h
-        unique = only_root(gap, d1, d2, d3, d4, fifth, reach) & (reach <= window)
-        bracket = kept(L[f.REACH + i], L[f.UNIT + i])
-        reach = bracket if polishing else reach
-        begun = L[f.GONE + i] + L[f.MOVE + i]
-        gone = (begun if polishing else 0.0) + h
-        inside = (gone >= 0.0) & (gone <= reach) & (abs(h) <= L[f.LIMIT + i])
-        aimed = (polishing | unique) & inside & (L[f.WAITS + i] == 0.0)
-        L[f.SIDE + i] = side
-        L[f.REACH + i] = reach
-        L[f.GONE + i] = gone
-        L[f.AIMED + i] = 1.0 if aimed else 0.0
-        L[f.ROOT + i] = h if aimed else 0.0
-
-
-@loop_njit
-def polish(L):
-    """Find the way to the contact from where the lane now is, and whether it is struck in this tick."""
-    for i in range(LANES):
-        omega = L[f.OMEGA + i]
-        xh = L[f.X_FREE + i]
-        vh = L[f.V_FREE + i]
-        side = L[f.SIDE + i]
-        xq, _, vq = forced_motion(L[f.Q_RE + i], L[f.Q_IM + i], omega, L[f.COS + i], L[f.SIN + i])
-        ah, jh, kh, lh, mh = free_derivatives(L[f.LAM + i], xh, vh)
-        omega2 = omega * omega
-        aq = -omega2 * xq
-        jq = -omega2 * vq
-        kq = -omega2 * aq
-        h, correction = taylor_root(
-            1.0 - side * ((xh + xq) - L[f.BALL + i]),
-            side * ((vh + vq) - L[f.SPEED + i]),
+        h, _ = taylor_root(
+            1.0 - side * ((xh + xq) - (L[f.BALL + i] + speed * move)),
+            side * closing,
             side * (ah + aq),
             side * (jh + jq),
             side * (kh + kq),
             side * (lh - omega2 * jq),
             side * (mh - omega2 * kq),
         )
-        # Halley's steps triple the digits, but only from near by: where the last was not small, look again from there.
-        near = (abs(h) <= L[f.NEAR + i]) & (abs(correction) <= 1e-4 * abs(h) + 1e-12)
-        close = near & (L[f.AIMED + i] > 0.0)
-        hit = close & (L[f.LEFT + i] > h) & (L[f.TAU + i] + h > 0.0)
-        L[f.ROOT + i] = h
+        close = (abs(h) <= L[f.NEAR + i]) & (move + h > 0.0)
+        L[f.SIDE + i] = side
+        L[f.AHEAD + i] = h
+        L[f.ROOT + i] = h if close else 0.0
         L[f.CLOSE + i] = 1.0 if close else 0.0
-        L[f.HIT + i] = 1.0 if hit else 0.0
+
+
+@loop_njit
+def arrive(L):
+    """Go that way where it is short, and correct it by Halley's step."""
+    for i in range(LANES):
+        omega = L[f.OMEGA + i]
+        speed = L[f.SPEED + i]
+        side = L[f.SIDE + i]
+        h = L[f.ROOT + i]
+        ahead = L[f.AHEAD + i]
+        near = L[f.CLOSE + i] > 0.0
+        xh, vh, cosine, sine = short_flow(
+            L[f.HALF + i],
+            L[f.GAMMA + i],
+            L[f.INVERSE + i],
+            omega,
+            L[f.END_X + i],
+            L[f.END_V + i],
+            L[f.END_COS + i],
+            L[f.END_SIN + i],
+            h,
+        )
+        step = L[f.MOVE + i] + h
+        xq, _, vq = forced_motion(L[f.Q_RE + i], L[f.Q_IM + i], omega, cosine, sine)
+        ah = -L[f.LAM + i] * vh - xh
+        gap = side - ((xh + xq) - (L[f.BALL + i] + speed * step))
+        closing = (vh + vq) - speed
+        rest = 2.0 * gap * closing / (2.0 * closing * closing + (ah - omega * omega * xq) * gap)
+        close = near & (abs(rest) <= EXACT * L[f.NEAR + i])
+        last = rest if close else 0.0
+        L[f.AHEAD + i] = rest if near else ahead
+        L[f.CLOSE + i] = 1.0 if close else 0.0
+        L[f.STEP + i] = step + last
+        L[f.END_X + i] = xh + last * (vh + 0.5 * last * ah)
+        L[f.END_V + i] = vh + last * (ah - 0.5 * last * (L[f.LAM + i] * ah + vh))
+        angle = omega * last
+        turned = cosine - angle * sine
+        sine = sine + angle * cosine
+        # The phasor must not shrink or grow by rounding over millions of ticks.
+        length = 1.5 - 0.5 * (turned * turned + sine * sine)
+        L[f.END_COS + i] = turned * length
+        L[f.END_SIN + i] = sine * length
 
 
 @loop_njit
 def strike(L):
-    """Where a lane strikes, go the last bit of the way by Taylor's polynomial, and apply the impact law."""
+    """Go on to the end of every certified move, and apply the impact law where it is an impact."""
     for i in range(LANES):
-        omega = L[f.OMEGA + i]
-        q_re = L[f.Q_RE + i]
-        q_im = L[f.Q_IM + i]
-        v2 = L[f.SPEED + i]
-        xh = L[f.X_FREE + i]
-        vh = L[f.V_FREE + i]
-        cosine = L[f.COS + i]
-        sine = L[f.SIN + i]
-        ball = L[f.BALL + i]
+        unit = L[f.UNIT + i]
+        step = L[f.STEP + i]
+        side = L[f.SIDE + i]
         hit = L[f.HIT + i] > 0.0
-        root = L[f.ROOT + i]
-        h = root if hit else 0.0
-        ah, jh, kh, lh, mh = free_derivatives(L[f.LAM + i], xh, vh)
-        xh += h * (vh + h * (0.5 * ah + h * (jh * (1 / 6) + h * (kh * (1 / 24) + h * lh * (1 / 120)))))
-        vh += h * (ah + h * (0.5 * jh + h * (kh * (1 / 6) + h * (lh * (1 / 24) + h * mh * (1 / 120)))))
-        angle = omega * h
-        square = angle * angle
-        s = angle * (1.0 - square * (1 / 6 - square * (1 / 120)))
-        c = 1.0 - square * (0.5 - square * (1 / 24 - square * (1 / 720)))
-        turned = cosine * c - sine * s
-        sine = cosine * s + sine * c
-        # The phasor must not shrink or grow by rounding over millions of ticks.
-        length = 1.5 - 0.5 * (turned * turned + sine * sine)
-        cosine = turned * length
-        sine *= length
-        xq, _, vq = forced_motion(q_re, q_im, omega, cosine, sine)
+        goes = hit | (L[f.CLEAR + i] > 0.0)
+        v2 = L[f.SPEED + i]
+        ball = L[f.BALL + i]
+        tau = L[f.TAU + i]
+        xh = L[f.END_X + i]
+        vh = L[f.END_V + i]
+        cosine = L[f.END_COS + i]
+        sine = L[f.END_SIN + i]
+        old_x = kept(L[f.X_FREE + i], unit)
+        old_v = kept(L[f.V_FREE + i], unit)
+        old_cosine = kept(L[f.COS + i], unit)
+        old_sine = kept(L[f.SIN + i], unit)
+        xq, _, vq = forced_motion(L[f.Q_RE + i], L[f.Q_IM + i], L[f.OMEGA + i], cosine, sine)
         v1 = vh + vq
         closing = v1 - v2
-        tau = L[f.TAU + i] + h
-        L[f.FLIGHT + i] = tau
         L[f.BEFORE1 + i] = v1
         L[f.BEFORE2 + i] = v2
         given = L[f.PASS1 + i] * closing
         taken = L[f.PASS2 + i] * closing
-        L[f.X_FREE + i] = xh
-        L[f.V_FREE + i] = vh - (given if hit else 0.0)
-        L[f.COS + i] = cosine
-        L[f.SIN + i] = sine
-        L[f.BALL + i] = (xh + xq) - L[f.SIDE + i] if hit else kept(ball, L[f.UNIT + i])
+        vh -= given if hit else 0.0
+        L[f.X_FREE + i] = xh if goes else old_x
+        L[f.V_FREE + i] = vh if goes else old_v
+        L[f.COS + i] = cosine if goes else old_cosine
+        L[f.SIN + i] = sine if goes else old_sine
+        gone = step if goes else 0.0
+        L[f.BALL + i] = (xh + xq) - side if hit else ball + v2 * gone
         L[f.SPEED + i] = v2 + (taken if hit else 0.0)
-        L[f.LEFT + i] -= h
+        L[f.LEFT + i] -= gone
+        tau += gone
+        L[f.FLIGHT + i] = tau
         L[f.TAU + i] = 0.0 if hit else tau
+        # The last flight was like that two before it: then the next will be like the one before it.
+        last = kept(L[f.LAST + i], unit)
+        before = kept(L[f.ONE_BEFORE + i], unit)
+        rough = hit & (not (abs(tau - before) <= ALIKE * L[f.NEAR + i]))
+        L[f.ROUGH + i] = 1.0 if rough else 0.0
+        L[f.ONE_BEFORE + i] = last if hit else before
+        L[f.LAST + i] = tau if hit else last
+        usual = kept(L[f.USUAL + i], unit)
+        L[f.USUAL + i] = usual + FRESH * (tau - usual) if hit else usual

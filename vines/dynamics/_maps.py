@@ -100,7 +100,7 @@ def impact_map(
     phase = (p.Omega * t + phi) % (2 * math.pi)
     after1, after2 = after_impact(c.law, v1, v2)
     flight = phasors(c.free, c.Omega, x1, after1, phase)
-    code, tau, found, _, _ = next_contact(c, *flight, x2, after2, side, False, 0.0, _PERIODS * p.period)
+    code, tau, found, _, _ = next_contact(c, flight, x2, after2, side, False, 0.0, _PERIODS * p.period)
     if code != CONTACT:
         raise StateError(f"no contact within {_PERIODS} forcing periods after t = {t:.9g}; there is no map from here")
     if found != side_next:

@@ -8,10 +8,11 @@ import numpy as np
 import numpy.typing as npt
 
 from vines.dynamics import _advance as col
-from vines.dynamics._advance import advance, begin, new_state, set_state, state_now
+from vines.dynamics._advance import begin, new_state, set_state
 from vines.dynamics._constants import Constants, constants
 from vines.dynamics._start import check_start
 from vines.dynamics._trajectory import Trajectory
+from vines.dynamics._window import run_window
 from vines.errors import StateError
 from vines.model import Params
 
@@ -35,16 +36,8 @@ def record(
     """
     rows = np.empty((max(expected, 16), col.ROW))
     begin(state, rows)
-    count, code = advance(c, state, stop, cap, rows, 1)
-    while code == col.BUFFER_FULL:
-        rows = np.concatenate([rows, np.empty_like(rows)])
-        count, code = advance(c, state, stop, cap, rows, count)
-    end = stop if code == col.COMPLETE else state[col.S_T] + state[col.S_CLEAR]
-    x1, v1, x2, v2, phase, tau = state_now(c, state, end)
-    last = np.zeros((1, col.ROW))
-    last[0, [col.KIND, col.TIME, col.TAU, col.PHASE, col.MODE]] = col.END, end, tau, phase, state[col.S_MODE]
-    last[0, [col.X1, col.V1, col.X2, col.V2, col.A_V1, col.A_V2]] = x1, v1, x2, v2, v1, v2
-    return np.concatenate([rows[:count], last]), STATUS[code]
+    rows, count, code = run_window(c, state, stop, cap, rows, 1)
+    return rows[: count + 1].copy(), STATUS[code]
 
 
 def simulate(

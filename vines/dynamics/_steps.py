@@ -11,7 +11,7 @@ import math
 
 from vines.kernels import fused_njit, njit
 
-__all__ = ["leaving_step", "only_root", "quartic_root", "safe_step", "step_ahead", "step_back", "taylor_root"]
+__all__ = ["leaving_step", "only_root", "safe_step", "step_ahead", "step_back", "taylor_root"]
 
 HALVINGS = 60
 """How often a first step from a level may be halved: 2**-60 of a window is below what double precision resolves."""
@@ -115,19 +115,4 @@ def _unresolved_step(second, third, bound):
         h = min(h, (6.0 * UNRESOLVED / third) ** (1.0 / 3.0))
     if bound > 0.0:
         h = min(h, (24.0 * UNRESOLVED / bound) ** 0.25)
-    return h
-
-
-@njit
-def quartic_root(gap, d1, d2, d3, d4):
-    """Return the root near gap/d1 of d1 h + d2 h^2/2 + d3 h^3/6 + d4 h^4/24 = gap, by Halley's iteration."""
-    h = gap / d1
-    for _ in range(8):
-        value = h * (d1 + h * (0.5 * d2 + h * (d3 / 6.0 + h * (d4 / 24.0)))) - gap
-        first = d1 + h * (d2 + h * (0.5 * d3 + h * (d4 / 6.0)))
-        second = d2 + h * (d3 + h * 0.5 * d4)
-        step = 2.0 * value * first / (2.0 * first * first - value * second)
-        h -= step
-        if abs(step) <= 1e-16 * abs(h):
-            break
     return h

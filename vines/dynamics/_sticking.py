@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
-from vines.dynamics._contact import BEYOND, CONTACT, FEW_ULP, FORCE, MAX_STEPS, NO_CONTACT, STEP_CAP, close_in, modulus
-from vines.dynamics._flight import derivatives, fifth, turn
-from vines.dynamics._steps import leaving_step, only_root, safe_step, taylor_root
-from vines.kernels import fused_njit, loop_njit
+import math
 
-__all__ = ["merges", "next_release"]
+from vines.dynamics._constants import Constants
+from vines.dynamics._contact import BEYOND, CONTACT, FEW_ULP, FORCE, MAX_STEPS, NO_CONTACT, STEP_CAP, close_in
+from vines.dynamics._flight import derivatives, fifth, forced_fifth, modulus, terms, turn
+from vines.dynamics._steps import leaving_step, only_root, safe_step, taylor_root
+from vines.kernels import by_type, fused_njit, loop_njit
+
+__all__ = ["holds_for", "merges", "next_release", "release_within"]
 
 OMITTED = 1e-16
 """Largest change of the common velocity that a merge may leave out."""
@@ -17,20 +20,20 @@ UNRESOLVED = 8.0 * 2.220446049250313e-16
 
 
 @fused_njit
-def merges(c, side, speed, ur, ui, gr, gi, x2):
+def merges(c, side, speed, motion, x2):
     """Say whether a ball leaving `side` at `speed` >= 0 is to be taken as stuck from now on.
 
     It is, if the rest of its chatter changes the common velocity by less than OMITTED while the push keeps its sign,
     or if its flight is too low for double precision; with no speed at all the sign of the push decides.
     """
-    _, _, a, j, k = derivatives(c.free, c.Omega, ur, ui, gr, gi)
+    _, _, a, j, k = derivatives(c.free, c.Omega, *motion)
     push = side * a
     jerk = side * j
     if speed == 0.0:
         return push > 0.0 or (push == 0.0 and jerk >= 0.0)
     if push <= 0.0:
         return False
-    height = UNRESOLVED * (1.0 + abs(ur) + abs(ui) + abs(gr) + abs(gi) + abs(x2))
+    height = UNRESOLVED * (terms(c.free, *motion) + abs(x2))
     cube = speed * speed * speed
     # The hop comes back after speed/push or, where the push grows, after sqrt(2 speed/jerk) at the latest.
     unresolved = speed * speed < height * push or (jerk > 0.0 and 2.0 * cube < height * height * jerk)
@@ -39,24 +42,38 @@ def merges(c, side, speed, ur, ui, gr, gi, x2):
     if unresolved and (jerk >= 0.0 or c.r >= 1.0):
         return True
     rest = 2.0 * speed / (push * (1.0 - c.r))
-    return jerk * rest > -0.25 * push and abs(k) * rest * rest < 0.25 * push
+    return rest <= holds_for(c, *motion) and jerk * rest > -0.25 * push and abs(k) * rest * rest < 0.25 * push
 
 
+@by_type(Constants)
+@fused_njit
+def holds_for(c, ur, ui, gr, gi):
+    """Return for how long the force does not jump."""
+    return math.inf
+
+
+@by_type(Constants)
 @loop_njit
-def next_release(c, side, ur, ui, gr, gi, tau, stop):
+def next_release(c, side, motion, tau, stop):
     """Search for the first release after tau; arguments and result as for `next_contact`, with the loaded oscillator.
 
     Returns
     -------
     (code, tau, x1, v1)
     """
+    return release_within(c, side, motion, tau, stop)
+
+
+@fused_njit
+def release_within(c, side, motion, tau, stop):
+    """Return the same where the force does not jump before `stop`."""
     o = c.stuck
     window = c.window
-    forced = modulus(gr, gi) * c.Omega5 * window
+    forced = forced_fifth(c, *motion) * window
     for _ in range(MAX_STEPS):
-        urt, uit, grt, git = turn(o, c.Omega, ur, ui, gr, gi, tau)
-        x, v, a, j, k = derivatives(o, c.Omega, urt, uit, grt, git)
-        bound = modulus(*fifth(o, urt, uit, grt, git)) + forced
+        now = turn(o, c.Omega, *motion, tau)
+        x, v, a, j, k = derivatives(o, c.Omega, *now)
+        bound = modulus(*fifth(o, *now)) + forced
         # The contact force is (1 + mu) side x1''; its sign is all that matters here.
         force = side * a
         slope = -side * j
@@ -68,9 +85,7 @@ def next_release(c, side, ur, ui, gr, gi, tau, stop):
             reach = BEYOND * h
             # One order lower than in flight: the third derivative of the force is only bounded.
             if reach <= window and only_root(force, slope, bend, -bound, 0.0, 0.0, reach):
-                found, x, v, _, _, _ = close_in(
-                    o, c.Omega, c.near, FORCE, ur, ui, gr, gi, 0.0, 0.0, side, tau, h, reach
-                )
+                found, x, v, _, _, _ = close_in(o, c.Omega, c.near, FORCE, motion, 0.0, 0.0, side, tau, h, reach)
                 return (CONTACT, found, x, v) if found <= stop else (NO_CONTACT, tau, 0.0, 0.0)
         if force == 0.0:
             h = leaving_step(-slope, bend, bound, 0.0, window)

@@ -20,11 +20,20 @@ from vines.dynamics._advance import (
     X1,
     X2,
 )
-from vines.dynamics._flight import advance_phase, derivatives, phasors, turn
+from vines.dynamics._constants import Constants
+from vines.dynamics._flight import advance_phase, derivatives, flight, flown, phasors, turn
 from vines.dynamics._integrals import energies_between, peak_between, segment_integrals
-from vines.kernels import entry_njit, linked_njit, njit, zero_matrix, zero_vector
+from vines.kernels import by_type, entry_njit, linked_njit, njit, zero_matrix, zero_vector
 
-__all__ = ["accumulate", "add_segment", "count_event", "segment_state", "state_energy", "window_totals"]
+__all__ = [
+    "accumulate",
+    "add_segment",
+    "base_at",
+    "count_event",
+    "segment_state",
+    "state_energy",
+    "window_totals",
+]
 
 # Entries of the totals of a window.
 (
@@ -52,19 +61,25 @@ def segment_state(c, row, tau):
     """Return (x1, v1, x2, v2, phase) at time tau after a row, before the next one."""
     mode = row[MODE]
     o = c.stuck if mode != 0.0 else c.free
-    ur, ui, gr, gi = phasors(o, c.Omega, row[X1], row[A_V1], row[PHASE])
-    ur, ui, gr, gi = turn(o, c.Omega, ur, ui, gr, gi, tau)
-    x1, v1, _, _, _ = derivatives(o, c.Omega, ur, ui, gr, gi)
+    motion = flown(c, o, flight(c, o, row[X1], row[A_V1], row[PHASE], row[TIME]), tau)
+    x1, v1, _, _, _ = derivatives(o, c.Omega, *motion)
     phase = advance_phase(row[PHASE], c.Omega * tau)
     if mode != 0.0:
         return x1, v1, x1 - mode, v1, phase
     return x1, v1, row[X2] + row[A_V2] * tau, row[A_V2], phase
 
 
+@by_type(Constants)
+@njit
+def base_at(c, phase):
+    """Return the displacement of the base at a phase of the forcing."""
+    return c.A * np.sin(phase)
+
+
 @njit
 def state_energy(c, x1, v1, v2, phase):
     """Return the energy of mass, ball and spring, in units of M b^2 omega0^2."""
-    stretch = x1 - c.A * np.sin(phase)
+    stretch = x1 - base_at(c, phase)
     return 0.5 * (v1 * v1 + c.mu * v2 * v2 + stretch * stretch)
 
 
@@ -87,6 +102,7 @@ def count_event(c, out, row):
         out[STICKS_LEFT if left else STICKS_RIGHT] += 1.0
 
 
+@by_type(Constants)
 @linked_njit
 def add_segment(c, out, mode, begins, x1, v1, v2, phase, length):
     """Add the motion of a segment, given by the state at its start, to the totals."""
@@ -100,7 +116,7 @@ def add_segment(c, out, mode, begins, x1, v1, v2, phase, length):
     out[V2_SQUARE] += ball
     out[BASE_WORK] += work
     out[DAMPER_LOSS] += loss
-    best, when = peak_between(c, o, *start, end[0], end[1], 0.0, length, out[MAX_ABS_X1])
+    best, when = peak_between(c, o, start, end, 0.0, length, out[MAX_ABS_X1])
     if when >= 0.0:
         out[MAX_ABS_X1] = best
         out[T_MAX_ABS_X1] = begins + when

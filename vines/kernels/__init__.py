@@ -21,6 +21,7 @@ from vines.kernels._arrays import (
     zero_matrix,
     zero_vector,
 )
+from vines.kernels._by_type import by_type
 from vines.kernels._cache import CACHE
 from vines.kernels._decorators import cold_njit, entry_njit, fused_njit, linked_njit, loop_njit, njit
 from vines.kernels._tasks import Task, compile_here, compile_tasks, is_warm
@@ -29,6 +30,7 @@ __all__ = [
     "CACHE",
     "WIDE",
     "Task",
+    "by_type",
     "byte_vector",
     "cold_njit",
     "compile_here",

@@ -82,8 +82,12 @@ def _code(code: types.CodeType, doc: str | None) -> Iterator[str]:
 def _value(name: str, value: Any, code: types.CodeType, seen: dict[int, int]) -> Iterator[str]:
     """Yield what a global stands for: numba freezes it into the machine code."""
     compiled = getattr(value, "py_func", None)
+    bodies = getattr(value, "bodies", None)
     if getattr(value, "by_symbol", False):
         yield f"{name} by symbol {value.symbol_base}"
+    elif isinstance(bodies, dict):
+        for kind in sorted(bodies, key=str):
+            yield from _value(f"{name} of {kind.__module__}.{kind.__qualname__}", bodies[kind], code, seen)
     elif compiled is not None:
         yield f"{name} with {_stable(value.targetoptions)}"
         yield from _once(compiled, seen)

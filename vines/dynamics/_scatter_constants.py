@@ -1,0 +1,186 @@
+"""The numbers that the kernels need for a run with scatter: also a second harmonic, held forces and draws."""
+
+from __future__ import annotations
+
+import cmath
+import math
+from typing import NamedTuple
+
+from vines.dynamics._constants import Oscillator, constants_kernel, oscillator
+from vines.dynamics._integrals import base_per_force
+from vines.kernels import linked_njit, njit
+
+__all__ = ["Harmonic", "Piece", "ScatterConstants", "ScatterOscillator", "added", "scatter_constants"]
+
+
+class Harmonic(NamedTuple):
+    """What `Oscillator` holds of a forcing, for another one: G = g exp(i Omega t) with its own frequency.
+
+    ``gr + i gi`` is g where the phase of the first harmonic is 0; ``er + i ei`` is 1/(i Omega - s); ``c2r … c6i`` the
+    sums in the derivatives of u; ``br + i bi`` gives the velocity of the base, Re[b G]. 0 where there is none.
+    """
+
+    Omega: float
+    gr: float
+    gi: float
+    er: float
+    ei: float
+    c2r: float
+    c2i: float
+    c3r: float
+    c3i: float
+    c4r: float
+    c4i: float
+    c5r: float
+    c5i: float
+    c6r: float
+    c6i: float
+    br: float
+    bi: float
+
+
+class Piece(NamedTuple):
+    """What a whole piece between two draws does: the factors of u and of each G, and what each G adds to u."""
+
+    ur: float
+    ui: float
+    f1r: float
+    f1i: float
+    b1r: float
+    b1i: float
+    f2r: float
+    f2i: float
+    b2r: float
+    b2i: float
+
+
+class ScatterOscillator(NamedTuple):
+    """One oscillator under both harmonics and a held force: x = held + Re u, u' = s u + G1 + G2.
+
+    ``reach`` is 0 away from the resonances of both harmonics.
+    """
+
+    first: Oscillator
+    second: Harmonic
+    piece: Piece
+    br: float
+    bi: float
+    reach: float
+
+
+class ScatterConstants(NamedTuple):
+    """As `Constants`, and what is drawn.
+
+    ``r`` is the restitution of a slow impact without its deviation; the held forces have the standard deviation
+    ``noise``, one for each ``grid`` of time from ``origin`` on; draws are those of `stream` at the seed `key`.
+    """
+
+    mu: float
+    A: float
+    Omega: float
+    r: float
+    lam: float
+    Omega5: float
+    period: float
+    window: float
+    near: float
+    correction: float
+    free: ScatterOscillator
+    stuck: ScatterOscillator
+    sigma_r: float
+    r_speed: float
+    noise: float
+    grid: float
+    origin: float
+    second: float
+    second_phase: float
+    key: int
+    stream: int
+
+
+@njit
+def _harmonic(o, A, Omega, lam, phase):
+    """Return what another forcing of the oscillator is, at frequency Omega, and its own reach."""
+    p = oscillator(1.0 / o.stiffness, A, Omega, lam)
+    g = complex(p.gr, p.gi) * complex(math.cos(phase), math.sin(phase))
+    b = base_per_force(p, Omega, lam)
+    h = Harmonic(
+        Omega, g.real, g.imag, p.er, p.ei, p.c2r, p.c2i, p.c3r, p.c3i, p.c4r, p.c4i, p.c5r, p.c5i, p.c6r, p.c6i,
+        b.real, b.imag,
+    )  # fmt: skip
+    return h, (p.reach if A > 0.0 else 0.0)
+
+
+@linked_njit
+def added(s, omega, length):
+    """Return the integral of exp(s (length - t)) exp(i omega t) over a short time, also at resonance."""
+    y = 0.5 * (complex(0.0, omega) - s) * length
+    mean = cmath.exp(0.5 * (complex(0.0, omega) + s) * length)
+    if abs(y) > 0.5:
+        return mean * length * cmath.sinh(y) / y
+    p = y * y
+    return (
+        mean
+        * length
+        * (
+            1.0
+            + p / 6.0 * (1.0 + p / 20.0 * (1.0 + p / 42.0 * (1.0 + p / 72.0 * (1.0 + p / 110.0 * (1.0 + p / 156.0)))))
+        )
+    )
+
+
+@linked_njit
+def _scattering(o, A, Omega, lam, phase, grid):
+    second, reach = _harmonic(o, A, 2.0 * Omega, lam, phase)
+    s = complex(-o.half, o.gamma)
+    u = cmath.exp(s * grid)
+    f1, f2 = cmath.exp(complex(0.0, Omega * grid)), cmath.exp(complex(0.0, 2.0 * Omega * grid))
+    b1, b2 = added(s, Omega, grid), added(s, 2.0 * Omega, grid)
+    piece = Piece(u.real, u.imag, f1.real, f1.imag, b1.real, b1.imag, f2.real, f2.imag, b2.real, b2.imag)
+    base = base_per_force(o, Omega, lam)
+    return ScatterOscillator(o, second, piece, base.real, base.imag, max(o.reach, reach))
+
+
+@linked_njit
+def scatter_constants(parameters, numbers, stream, origin):
+    """Return the `ScatterConstants` of a run.
+
+    Parameters
+    ----------
+    parameters : ndarray, shape (5,)
+        mu, A, Omega, r, lam.
+    numbers : ndarray, shape (7,)
+        As `Scatter.numbers` gives them.
+    stream : int
+        Number of the run.
+    origin : float
+        Time at which it begins.
+    """
+    mu, A, Omega, r, lam = parameters[0], parameters[1], parameters[2], parameters[3], parameters[4]
+    c = constants_kernel(mu, A, Omega, r, lam)
+    grid = c.period / numbers[3]
+    second = numbers[4] * A
+    fastest = max(1.0, 2.0 * Omega if second > 0.0 else Omega)
+    return ScatterConstants(
+        mu,
+        A,
+        Omega,
+        r,
+        lam,
+        c.Omega5,
+        c.period,
+        2.0 / fastest,
+        4e-3 / (fastest * math.sqrt(math.sqrt(fastest))),
+        c.correction,
+        _scattering(c.free, second, Omega, lam, numbers[5], grid),
+        _scattering(c.stuck, second, Omega, lam, numbers[5], grid),
+        numbers[0],
+        numbers[1],
+        numbers[2] * A,
+        grid,
+        origin,
+        second,
+        numbers[5],
+        int(numbers[6]),
+        stream,
+    )

@@ -1,0 +1,245 @@
+"""Motion with scatter: two harmonics and a force that is held for a while, drawn again, and held.
+
+A motion is (u, G1, G2, held, left, index): x = held + Re u, and draw `index` holds for a time `left` yet. What a single
+motion does, `turn`, and what is certain of it, is as without scatter; a flight goes over draws, piece by piece.
+"""
+
+from __future__ import annotations
+
+import cmath
+import math
+
+from vines.dynamics._advance import law_of
+from vines.dynamics._contact import NO_CONTACT, contact_within, next_contact
+from vines.dynamics._flight import (
+    decay,
+    derivatives,
+    fifth,
+    flight,
+    flown,
+    forced_fifth,
+    modulus,
+    sixth,
+    terms,
+    turn,
+)
+from vines.dynamics._impact_law import impact_law_kernel
+from vines.dynamics._random import normal
+from vines.dynamics._scatter_constants import ScatterConstants, ScatterOscillator, added
+from vines.dynamics._sincos import sincos
+from vines.dynamics._sticking import UNRESOLVED, holds_for, next_release, release_within
+from vines.kernels import fused_njit, linked_njit, loop_njit, njit
+
+__all__ = ["LEFT", "end_of", "redraw"]
+
+HELD, LEFT, INDEX = 6, 7, 8
+
+SHORT = 0.5
+"""Part of the window of certified steps up to which a piece is first tried as a whole."""
+
+
+@njit
+def _draw(c, index):
+    return c.noise * normal(c.key, c.stream, 2 * int(index) + 1)
+
+
+@flight.register(ScatterConstants)
+@fused_njit
+def _flight(c, o, x, v, phase, t):
+    sine, cosine = sincos(phase)
+    twice, along = 2.0 * sine * cosine, 1.0 - 2.0 * sine * sine
+    pr = o.first.gr * cosine - o.first.gi * sine
+    pi = o.first.gr * sine + o.first.gi * cosine
+    qr = o.second.gr * along - o.second.gi * twice
+    qi = o.second.gr * twice + o.second.gi * along
+    held, left, index = 0.0, math.inf, 0.0
+    if c.noise > 0.0:
+        since = t - c.origin
+        index = max(math.floor(since / c.grid), 0.0)
+        left = (index + 1.0) * c.grid - since
+        held = _draw(c, index)
+    ur = x - held
+    return ur, (pr + qr - o.first.half * ur - v) * o.first.inverse, pr, pi, qr, qi, held, left, index
+
+
+@linked_njit
+def _factors(half, gamma, Omega, tau):
+    """Return the factor of u and what both harmonics add to it, also at resonance, as six reals."""
+    s = complex(-half, gamma)
+    e, b1, b2 = cmath.exp(s * tau), added(s, Omega, tau), added(s, 2.0 * Omega, tau)
+    return e.real, e.imag, b1.real, b1.imag, b2.real, b2.imag
+
+
+@turn.register(ScatterOscillator)
+@fused_njit
+def _turn(o, Omega, ur, ui, pr, pi, qr, qi, held, left, index, tau):
+    fi, fr = sincos(Omega * tau)
+    ti, tr = 2.0 * fi * fr, 1.0 - 2.0 * fi * fi
+    if o.reach == 0.0:
+        size = decay(o.first.half * tau)
+        ei, er = sincos(o.first.gamma * tau)
+        er *= size
+        ei *= size
+        br, bi = (fr - er) * o.first.er - (fi - ei) * o.first.ei, (fr - er) * o.first.ei + (fi - ei) * o.first.er
+        dr, di = (tr - er) * o.second.er - (ti - ei) * o.second.ei, (tr - er) * o.second.ei + (ti - ei) * o.second.er
+    else:
+        er, ei, br, bi, dr, di = _factors(o.first.half, o.first.gamma, Omega, tau)
+    return _by_factors((er, ei, fr, fi, br, bi, tr, ti, dr, di), ur, ui, pr, pi, qr, qi, held, left - tau, index)
+
+
+@fused_njit
+def _by_factors(piece, ur, ui, pr, pi, qr, qi, held, left, index):
+    er, ei, fr, fi, br, bi, tr, ti, dr, di = piece
+    return (
+        (er * ur - ei * ui) + (br * pr - bi * pi) + (dr * qr - di * qi),
+        (er * ui + ei * ur) + (br * pi + bi * pr) + (dr * qi + di * qr),
+        fr * pr - fi * pi,
+        fr * pi + fi * pr,
+        tr * qr - ti * qi,
+        tr * qi + ti * qr,
+        held,
+        left,
+        index,
+    )
+
+
+@fused_njit
+def end_of(c, o, motion, lasts):
+    """Return the motion a time later that is not longer than its piece; over a whole piece the factors are known."""
+    if lasts == c.grid:
+        return _by_factors(o.piece, *motion)
+    return turn(o, c.Omega, *motion, lasts)
+
+
+@fused_njit
+def redraw(c, o, motion):
+    """Return the motion after the next draw: position and velocity go on."""
+    ur, ui, pr, pi, qr, qi, held, _, index = motion
+    drawn = _draw(c, index + 1.0)
+    ur += held - drawn
+    ui -= o.first.half * o.first.inverse * (held - drawn)
+    return ur, ui, pr, pi, qr, qi, drawn, c.grid, index + 1.0
+
+
+@flown.register(ScatterConstants)
+@linked_njit
+def _flown(c, o, motion, tau):
+    while tau > motion[LEFT]:
+        lasts = motion[LEFT]
+        motion = redraw(c, o, end_of(c, o, motion, lasts))
+        tau -= lasts
+    return turn(o, c.Omega, *motion, tau)
+
+
+@derivatives.register(ScatterOscillator)
+@fused_njit
+def _derivatives(o, Omega, ur, ui, pr, pi, qr, qi, held, left, index):
+    x, v, a, j, k = derivatives(o.first, Omega, ur, ui, pr, pi)
+    h = o.second
+    return (
+        held + x,
+        v + qr,
+        a + (h.c2r * qr - h.c2i * qi),
+        j + (h.c3r * qr - h.c3i * qi),
+        k + (h.c4r * qr - h.c4i * qi),
+    )
+
+
+@fifth.register(ScatterOscillator)
+@fused_njit
+def _fifth(o, ur, ui, pr, pi, qr, qi, held, left, index):
+    re, im = fifth(o.first, ur, ui, pr, pi)
+    return re + (o.second.c5r * qr - o.second.c5i * qi), im + (o.second.c5r * qi + o.second.c5i * qr)
+
+
+@sixth.register(ScatterOscillator)
+@fused_njit
+def _sixth(o, ur, ui, pr, pi, qr, qi, held, left, index):
+    return sixth(o.first, ur, ui, pr, pi) + (o.second.c6r * qr - o.second.c6i * qi)
+
+
+@forced_fifth.register(ScatterConstants)
+@fused_njit
+def _forced_fifth(c, ur, ui, pr, pi, qr, qi, held, left, index):
+    return (modulus(pr, pi) + 32.0 * modulus(qr, qi)) * c.Omega5
+
+
+@terms.register(ScatterOscillator)
+@fused_njit
+def _terms(o, ur, ui, pr, pi, qr, qi, held, left, index):
+    return terms(o.first, ur, ui, pr, pi) + abs(qr) + abs(qi) + abs(held)
+
+
+@holds_for.register(ScatterConstants)
+@fused_njit
+def _holds_for(c, ur, ui, pr, pi, qr, qi, held, left, index):
+    return left
+
+
+@fused_njit
+def _is_clear(c, motion, x2, v2, span):
+    """Say whether the ball is certain to reach no wall for a while, all terms of its way taken by their size."""
+    x, v, a, j, k = derivatives(c.free, c.Omega, *motion)
+    re, im = fifth(c.free, *motion)
+    bound = abs(re) + abs(im) + span * forced_fifth(c, *motion)
+    bend = 0.5 * abs(a) + span * ((1 / 6) * abs(j) + span * ((1 / 24) * abs(k) + span * ((1 / 120) * bound)))
+    w = x - x2
+    return max(abs(w), abs(w + span * (v - v2))) + span * span * bend < 1.0
+
+
+@fused_njit
+def _wall_left(c, motion, x2, v2):
+    """Return the wall that the ball has just left, so little ago that no gap can be told yet, or 0."""
+    x, v, _, _, _ = derivatives(c.free, c.Omega, *motion)
+    side = 1 if x > x2 else -1
+    near = 1.0 - side * (x - x2) < UNRESOLVED * (terms(c.free, *motion) + abs(x2))
+    return side if near and side * (v - v2) <= 0.0 else 0
+
+
+@next_contact.register(ScatterConstants)
+@fused_njit
+def _next_contact(c, motion, x2, v2, wall, released, tau, stop):
+    begins = 0.0
+    while True:
+        left = motion[LEFT]
+        clear = max(tau - begins, 0.0)
+        ball = x2 + v2 * begins
+        until = min(stop - begins, left)
+        if clear < until and not (wall == 0 and until < SHORT * c.window and _is_clear(c, motion, ball, v2, until)):
+            code, at, side, x, v = contact_within(c, motion, ball, v2, wall, released, clear, until)
+            if code != NO_CONTACT:
+                return code, begins + at, side, x, v
+            clear = at
+        if stop - begins <= left:
+            return NO_CONTACT, begins + clear, 0, 0.0, 0.0
+        motion = redraw(c, c.free, end_of(c, c.free, motion, left))
+        begins += left
+        wall, released = _wall_left(c, motion, x2 + v2 * begins, v2), False
+
+
+@next_release.register(ScatterConstants)
+@loop_njit
+def _next_release(c, side, motion, tau, stop):
+    begins = 0.0
+    while True:
+        left = motion[LEFT]
+        clear = max(tau - begins, 0.0)
+        until = min(stop - begins, left)
+        if clear < until:
+            code, at, x, v = release_within(c, side, motion, clear, until)
+            if code != NO_CONTACT:
+                return code, begins + at, x, v
+            clear = at
+        if stop - begins <= left:
+            return NO_CONTACT, begins + clear, 0.0, 0.0
+        motion = redraw(c, c.stuck, end_of(c, c.stuck, motion, left))
+        begins += left
+
+
+@law_of.register(ScatterConstants)
+@fused_njit
+def _law_of(c, closing, number):
+    r = c.r - c.r_speed * abs(closing)
+    if c.sigma_r > 0.0:
+        r += c.sigma_r * normal(c.key, c.stream, 2 * int(number))
+    return impact_law_kernel(c.mu, min(max(r, 0.0), 1.0))
