@@ -145,6 +145,11 @@ def _add(found: list[Candidate], more: Iterable[Candidate]) -> None:
 
 
 def _same(one: Candidate, other: Candidate) -> bool:
+    """Say whether two candidates are one orbit.
+
+    Not `vines.attractors.apart`: mirror images are two candidates, told apart by the states at their first impacts, and
+    so are the orbits of one word.
+    """
     if one.word != other.word or one.regime != other.regime:
         return False
     if not one.word:
