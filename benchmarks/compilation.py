@@ -32,7 +32,7 @@ if sys.argv[1] == "peer":
     fused = numba.njit(error_model="numpy", nogil=True, fastmath={"contract", "nsz"})
     inline = numba.njit(error_model="numpy", nogil=True, fastmath={"contract", "nsz"}, forceinline=True)
     arrays = ("new_vector new_matrix new_cube zero_vector zero_matrix zero_cube integer_vector zero_integers "
-              "byte_vector complex_vector complex_matrix identity max_abs sum_of").split()
+              "byte_vector complex_vector complex_matrix identity max_abs copy_values").split()
     for name in arrays:
         setattr(vines.kernels, name, plain(getattr(vines.kernels, name).py_func))
     for name in ("njit", "linked_njit", "cold_njit", "entry_njit"):

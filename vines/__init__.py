@@ -39,7 +39,9 @@ _HOME = {
     "OrbitNotFound": "vines.errors",
     "VinesError": "vines.errors",
     "query": "vines.stages",
+    "Study": "vines.stages",
     "run": "vines.stages",
+    "study": "vines.stages",
     "table": "vines.stages",
 }
 
@@ -52,6 +54,7 @@ __all__ = [
     "Params",
     "PhysicalParams",
     "Scatter",
+    "Study",
     "Trajectory",
     "VinesError",
     "Word",
@@ -67,6 +70,7 @@ __all__ = [
     "run",
     "settle",
     "simulate",
+    "study",
     "table",
 ]
 
@@ -91,8 +95,10 @@ if TYPE_CHECKING:
     from vines.orbits import all_orbits as all_orbits
     from vines.orbits import continue_orbit as continue_orbit
     from vines.orbits import find_orbit as find_orbit
+    from vines.stages import Study as Study
     from vines.stages import query as query
     from vines.stages import run as run
+    from vines.stages import study as study
     from vines.stages import table as table
 
 

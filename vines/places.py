@@ -10,7 +10,7 @@ from pathlib import Path
 
 from vines.errors import FileMissingError
 
-__all__ = ["cache_folder", "data_folder", "find_root", "shipped"]
+__all__ = ["cache_folder", "data_folder", "find_root", "named_root", "shipped"]
 
 
 def find_root(start: Path | None = None) -> Path:
@@ -31,15 +31,33 @@ def find_root(start: Path | None = None) -> Path:
     """
     named = os.environ.get("VINES_ROOT")
     if named:
-        root = Path(named).expanduser()
-        if not root.is_dir():
-            raise FileMissingError(f"VINES_ROOT is {named!r}, which is not a folder; unset it or name an existing one")
-        return root.resolve()
+        return named_root(named, "VINES_ROOT")
     here = (start or Path.cwd()).resolve()
     for folder in (here, *here.parents):
         if _declares(folder):
             return folder
     return here
+
+
+def named_root(named: str, by: str) -> Path:
+    """Return the root that somebody has named.
+
+    Parameters
+    ----------
+    named : str
+        A folder.
+    by : str
+        What names it, for the message.
+
+    Raises
+    ------
+    FileMissingError
+        If there is no such folder.
+    """
+    root = Path(named).expanduser()
+    if not root.is_dir():
+        raise FileMissingError(f"{by} is {named!r}, which is not a folder; name an existing one or leave it out")
+    return root.resolve()
 
 
 def _declares(folder: Path) -> bool:

@@ -65,6 +65,13 @@ def test_the_reference_of_tables_is_current(quickstart):
     assert said == committed, "run: vines schema --markdown > docs/reference_tables.md"
 
 
+@pytest.mark.parametrize("what", ["kinds", "plots"])
+def test_the_references_of_kinds_and_plots_are_current(quickstart, what):
+    said = quickstart.vines(what, "--markdown").stdout
+    committed = (Path(__file__).resolve().parents[2] / "docs" / f"reference_{what}.md").read_text("utf-8")
+    assert said == committed, f"run: vines {what} --markdown > docs/reference_{what}.md"
+
+
 @pytest.mark.parametrize("sql", ["create table x as select 1", "copy (select 1) to 'evil.csv'", "select 1; select 2"])
 def test_the_catalogue_is_read_only(quickstart, sql):
     done = quickstart.vines("query", sql, check=False)
@@ -109,7 +116,7 @@ SENSELESS = {
         'kind = "figure"\nplot = "bifurcation"\nneeds = ["symmetric_run"]\n',
         "varies nothing",
     ),
-    "no width": ('kind = "figure"\nplot = "bifurcation"\nneeds = ["up"]\nwidth = -1\n', "width: expected float > 0"),
+    "no width": ('kind = "figure"\nplot = "bifurcation"\nneeds = ["up"]\nwidth = -1\n', "width is -1, allowed is > 0"),
     "an unknown panel": ('kind = "figure"\nplot = "bifurcation"\nneeds = ["up"]\npanels = ["w_dott"]\n', "'w_dot'"),
     "an unknown claim": ('kind = "check"\nneeds = ["up"]\nclaims = ["fig2_x"]\n', "'fig2_"),
     "a branch of nothing": ('kind = "branch"\nword = "LR"\nparams.A = 0.02\n', "vary.X"),

@@ -2,6 +2,7 @@
 
 import subprocess
 import sys
+import tomllib
 
 import numpy as np
 import pyarrow as pa
@@ -9,6 +10,8 @@ import pytest
 
 from vines import schema
 from vines.errors import SchemaError, UnknownNameError
+from vines.model import VI_NES
+from vines.schema._declared import expand
 
 
 @pytest.mark.parametrize("name", list(schema.tables()))
@@ -76,3 +79,29 @@ def test_tables_load_no_arrow():
     code = "import sys; from vines import schema; schema.digest('points'); print('pyarrow' in sys.modules)"
     out = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert out.stdout.strip() == "False"
+
+
+def test_parameters_and_states_are_those_of_the_system():
+    spec = {column.name: column for column in schema.table("points").columns}
+    for parameter in VI_NES.parameters:
+        column = spec[parameter.name]
+        assert (column.description, column.source, column.minimum) == (parameter.text, parameter.source, 0)
+    assert [name for name in spec if name.startswith("end_")] == [f"end_{each.name}" for each in VI_NES.start]
+    assert schema.table("orbits").columns[list(schema.table("orbits").names).index("x1")].dtype == "list<float64>"
+
+
+@pytest.mark.parametrize(
+    ("entry", "words"),
+    [({"of": "parameter"}, "did you mean 'parameters'"), ({"of": "state", "unit": "m"}, "unknown key 'unit'")],
+)
+def test_an_unknown_group_is_refused_in_one_line(entry, words):
+    with pytest.raises(SchemaError, match=words):
+        expand(entry)
+
+
+@pytest.mark.parametrize("name", list(schema.tables()))
+def test_a_written_out_file_declares_the_same_table(name):
+    spec = schema.table(name)
+    form = tomllib.loads(schema.toml(name))
+    columns = [schema.Column(**column | {"values": tuple(column.get("values", ()))}) for column in form["columns"]]
+    assert schema.Table(**form | {"columns": tuple(columns)}) == spec

@@ -222,7 +222,7 @@ of = ["run"]
         ('show = "ends"', 'show = "w_dot"', "vary one and the same parameter"),
         ('show = "ends"\nof = ["run"]', 'show = "multipliers"\nof = ["branch"]', "name it in families"),
         ('show = "ends"', 'show = "end"', "end"),
-        ('plot = "sheet"', 'plot = "sheet"\ncolumns = 0', "columns: expected int >= 1"),
+        ('plot = "sheet"', 'plot = "sheet"\ncolumns = 0', "columns is 0, allowed is >= 1"),
         ('plot = "sheet"', 'plot = "bifurcation"', "unknown key 'cells'"),
     ],
 )

@@ -8,13 +8,12 @@ import numpy as np
 import numpy.typing as npt
 
 from vines.dynamics import ensemble
-from vines.model import Params
+from vines.model import STATE_NAMES, Params
 
 __all__ = ["WINDOW", "Group", "averages", "match", "observe", "sort_into", "steady"]
 
 Floats = npt.NDArray[np.float64]
 
-STATE = ("x1", "v1", "x2", "v2")
 
 WINDOW = 64
 """Forcing periods of one window of averages."""
@@ -132,9 +131,11 @@ def observe(p: Params, states: Floats, phase: float, windows: int) -> tuple[Floa
     values = np.empty((len(states), windows, len(SIGNS)))
     now = states
     for k in range(windows):
-        run = ensemble(p, dict(zip(STATE, now.T, strict=True)) | {"phase": phase}, periods=WINDOW, record="measures")
+        run = ensemble(
+            p, dict(zip(STATE_NAMES, now.T, strict=True)) | {"phase": phase}, periods=WINDOW, record="measures"
+        )
         values[:, k] = averages(run.measures) if run.measures is not None else np.nan
-        now = np.stack([run.final[name] for name in STATE], axis=1)
+        now = np.stack([run.final[name] for name in STATE_NAMES], axis=1)
     return values, now
 
 

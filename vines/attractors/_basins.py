@@ -11,17 +11,15 @@ import numpy as np
 import numpy.typing as npt
 
 from vines.attractors._attractor import Attractor
-from vines.attractors._search import STATE, Lifetime, Search
+from vines.attractors._search import Lifetime, Search
 from vines.attractors._shares import share_error
 from vines.dynamics import ensemble
 from vines.errors import StateError, nearest
-from vines.model import Params
+from vines.model import START_NAMES, STATE_NAMES, Params
 
-__all__ = ["COORDINATES", "Basins", "basins"]
+__all__ = ["Basins", "basins"]
 
 Floats = npt.NDArray[Any]
-
-COORDINATES = ("x1", "v1", "x2", "v2", "phase")
 
 
 @dataclass(frozen=True)
@@ -119,8 +117,8 @@ def basins(
     """
     names = (x[0], y[0])
     for name in (*names, *(others or {})):
-        if name not in COORDINATES:
-            raise StateError(f"unknown coordinate {name!r}: {nearest(name, COORDINATES)}")
+        if name not in START_NAMES:
+            raise StateError(f"unknown coordinate {name!r}: {nearest(name, START_NAMES)}")
     if names[0] == names[1] or set(names) & set(others or {}):
         raise StateError(f"the coordinates {names[0]}, {names[1]} must be two, and not among the others")
     xs, ys = np.asarray(x[1], dtype=np.float64), np.asarray(y[1], dtype=np.float64)
@@ -184,7 +182,7 @@ class _Grid:
 
     def starts(self, x: Floats, y: Floats) -> dict[str, Floats]:
         """Return all coordinates of the starts."""
-        full = {name: np.full(len(x), self.others.get(name, 0.0)) for name in COORDINATES}
+        full = {name: np.full(len(x), self.others.get(name, 0.0)) for name in START_NAMES}
         full[self.names[0]], full[self.names[1]] = x, y
         return full
 
@@ -201,6 +199,6 @@ class _Grid:
             for share in np.unique(lag[lag > 0]).tolist():
                 some = lag == share
                 final = ensemble(self.p, {name: values[some] for name, values in full.items()}, periods=share).final
-                for name in STATE:
+                for name in STATE_NAMES:
                     full[name][some] = final[name]
-        return np.stack([full[name] for name in STATE], axis=1)
+        return np.stack([full[name] for name in STATE_NAMES], axis=1)

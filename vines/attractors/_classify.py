@@ -28,13 +28,12 @@ from vines.dynamics._ensemble import (
 )
 from vines.dynamics._simulate import EVENTS_PER_PERIOD
 from vines.dynamics._trajectory import impacts_of
-from vines.model import PARAMETER_NAMES, Params
+from vines.model import FREQUENCY, MASS, PARAMETER_NAMES, START_NAMES, Params
 
 __all__ = ["Classified", "classify_many"]
 
 Floats = npt.NDArray[np.float64]
 
-START_NAMES = ("x1", "v1", "x2", "v2", "phase")
 
 STAGES = (4.0, 16.0)
 """Forcing periods after which a recording is looked at before its end: most runs repeat soon."""
@@ -122,14 +121,14 @@ class Classified:
     @cached_property
     def measures(self) -> npt.NDArray[np.void]:
         """Energy measures as `Ensemble.measures`: over one repetition if periodic, else over the recorded window."""
-        return _measures(self.parameters[:, 0], self.totals)
+        return _measures(self.parameters[:, MASS], self.totals)
 
     @property
     def sticks(self) -> Floats:
         """Spells of sticking per forcing period."""
         sticks = self.totals[:, entry.STICKS_LEFT] + self.totals[:, entry.STICKS_RIGHT]
         with np.errstate(invalid="ignore", divide="ignore"):
-            return sticks * (2.0 * np.pi / self.parameters[:, 2]) / self.totals[:, entry.DURATION]
+            return sticks * (2.0 * np.pi / self.parameters[:, FREQUENCY]) / self.totals[:, entry.DURATION]
 
     @property
     def sticking_share(self) -> Floats:

@@ -11,7 +11,7 @@ from vines.attractors import _verdict as v
 from vines.attractors._attractor import Attractor
 from vines.dynamics._measures import measures_from
 from vines.dynamics._simulate import STATUS
-from vines.model import Params, Word
+from vines.model import START_NAMES, VI_NES, Params, Word
 
 __all__ = ["attractor_from", "word_of"]
 
@@ -23,7 +23,7 @@ def word_of(sides: npt.NDArray[np.int8], p: int) -> Word:
     key = (sides.tobytes(), p)
     word = _WORDS.get(key)
     if word is None:
-        letters = "".join("L" if side > 0 else "R" for side in sides)
+        letters = VI_NES.letters(sides)
         word = _WORDS[key] = Word(letters if p == 1 else f"{letters}/{p}T")
     return word
 
@@ -64,7 +64,7 @@ def attractor_from(
     multipliers = None
     if not math.isnan(value[v.MULTIPLIERS_RE]):
         multipliers = verdict[v.MULTIPLIERS_RE : v.MULTIPLIERS_RE + 4] + 1j * verdict[v.MULTIPLIERS_IM :][:4]
-    final = dict(zip(("x1", "v1", "x2", "v2", "phase"), value[v.FINAL : v.FINAL + 5], strict=True))
+    final = dict(zip(START_NAMES, value[v.FINAL :][: len(START_NAMES)], strict=True))
     return Attractor(
         params=p,
         regime=v.REGIMES[regime],

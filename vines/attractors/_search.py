@@ -14,14 +14,13 @@ from vines.attractors._classify import Classified, classify_many
 from vines.attractors._sections import NEAR, ON, Section, sections_of
 from vines.attractors._settle import settle_from
 from vines.dynamics import ensemble
-from vines.model import Params
+from vines.model import STATE_NAMES, V2, Params
 
-__all__ = ["STATE", "Lifetime", "Search"]
+__all__ = ["Lifetime", "Search"]
 
 Floats = npt.NDArray[np.float64]
 Numbers = npt.NDArray[np.int64]
 
-STATE = ("x1", "v1", "x2", "v2")
 
 ROUND = 32
 """Forcing periods between two looks at the states."""
@@ -136,7 +135,7 @@ class Search:
         runs.reach(which, owners[sections], mirrored[sections])
 
     def _classify(self, states: Floats, patience: float) -> Classified:
-        starts = dict(zip(STATE, states.T, strict=True)) | {"phase": self.phase}
+        starts = dict(zip(STATE_NAMES, states.T, strict=True)) | {"phase": self.phase}
         return classify_many(self.p, starts, settle=0, record=WINDOW, patience=patience, watch=self.watch)
 
     def _learn(self, runs: _Runs, still: Numbers) -> None:
@@ -254,7 +253,7 @@ class Search:
         group = self.groups[k]
         count = min(max(SAMPLE, len(group.states)), WATCHED)
         states = np.array(group.states)[np.arange(count) % len(group.states)]
-        states[:, 3] += np.linspace(-BESIDE, BESIDE, count)
+        states[:, V2] += np.linspace(-BESIDE, BESIDE, count)
         values, end = observe(self.p, states, self.phase, self.windows)
         late = max(self.windows // 4, 1)
         which, _ = match(values[:, -late:].mean(axis=1), late, self.groups)
@@ -267,7 +266,7 @@ class Search:
         """Return one run of a group as an attractor."""
         shown = None
         for state in group.states:
-            at = dict(zip(STATE, state.tolist(), strict=True)) | {"phase": self.phase}
+            at = dict(zip(STATE_NAMES, state.tolist(), strict=True)) | {"phase": self.phase}
             shown = settle_from(self.p, at, settle=0, record=SHOWN, patience=0, watch=self.watch)
             if shown.regime == group.regime:
                 break
@@ -313,9 +312,9 @@ class _Runs:
 
     def go_on(self, p: Params, phase: float, which: Numbers) -> None:
         """Let some of them go on for a round; after whole periods the phase is the same."""
-        starts = dict(zip(STATE, self.states[which].T, strict=True)) | {"phase": phase}
+        starts = dict(zip(STATE_NAMES, self.states[which].T, strict=True)) | {"phase": phase}
         final = ensemble(p, starts, periods=ROUND).final
-        for k, name in enumerate(STATE):
+        for k, name in enumerate(STATE_NAMES):
             self.states[which, k] = final[name]
         self.elapsed += ROUND
         self.periods[which] = self.elapsed

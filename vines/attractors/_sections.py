@@ -9,13 +9,12 @@ import numpy.typing as npt
 
 from vines.attractors._attractor import Attractor
 from vines.dynamics import simulate, tangent_map
-from vines.model import Params
+from vines.model import STATE_NAMES, V1, V2, VI_NES, Params
 
 __all__ = ["NEAR", "ON", "Section", "sections_of"]
 
 Floats = npt.NDArray[np.float64]
 
-STATE = ("x1", "v1", "x2", "v2")
 
 NEAR = 0.02
 """Distance from a periodic orbit, in units of its largest speed, below which a state that comes nearer is captured."""
@@ -76,13 +75,15 @@ def sections_of(p: Params, attractor: Attractor, owner: int) -> list[Section]:
     """
     at = attractor.final
     periods = int(attractor.p or 1)
-    run = simulate(p, x1=at["x1"], v1=at["v1"], x2=at["x2"], v2=at["v2"], phi=at["phase"], periods=periods + 0.5)
+    run = simulate(
+        p, x1=at["x1"], v1=at["v1"], x2=at["x2"], v2=at["v2"], phi=at["phase"], periods=periods + VI_NES.mirror.shift
+    )
     times = np.arange(periods) * p.period
     found = []
     for mirrored in (False, True) if not attractor.symmetric else (False,):
-        samples = run.sample(times=np.minimum(times + (0.5 * p.period if mirrored else 0.0), run.t_end))
-        points = np.stack([samples[name] for name in STATE], axis=1) * (-1.0 if mirrored else 1.0)
-        scale = max(1e-3, float(np.max(np.abs(points[:, [1, 3]]))))
+        samples = run.sample(times=np.minimum(times + (VI_NES.mirror.shift * p.period if mirrored else 0.0), run.t_end))
+        points = np.stack([samples[name] for name in STATE_NAMES], axis=1) * (VI_NES.mirror.sign if mirrored else 1.0)
+        scale = max(1e-3, float(np.max(np.abs(points[:, [V1, V2]]))))
         frames = np.stack([_frame(p, point, at["phase"], periods) for point in points])
         found.append(Section(owner, mirrored, points, frames, scale))
     return found

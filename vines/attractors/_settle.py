@@ -20,7 +20,7 @@ from vines.dynamics._simulate import EVENTS_PER_PERIOD
 from vines.dynamics._start import check_start
 from vines.dynamics._trajectory import impacts_of
 from vines.errors import StateError
-from vines.model import Params
+from vines.model import START_NAMES, Params
 
 __all__ = ["NUDGE", "ROUNDS", "Patience", "settle", "settle_from"]
 
@@ -168,7 +168,7 @@ def settle_from(
     >>> settle_from(Params(mu=0.01, A=0.0201), first.final, settle=100).name
     '1:1'
     """
-    x1, v1, x2, v2, phase = (float(start[name]) for name in ("x1", "v1", "x2", "v2", "phase"))
+    x1, v1, x2, v2, phase = (float(start[name]) for name in START_NAMES)
     t = float(start.get("t", 0.0))
     check_start(x1=x1, v1=v1, x2=x2, v2=v2, phase=phase, t=t)
     begin = (x1, v1, x2, v2, phase)

@@ -18,7 +18,6 @@ from vines import schema
 from vines.catalogue._readme import readme
 from vines.catalogue._views import list_views
 from vines.errors import StoreError
-from vines.places import shipped
 from vines.store import Result
 
 __all__ = ["Collected", "export_results"]
@@ -96,7 +95,7 @@ def export_results(collected: Collected, target: Path) -> list[str]:
         for name, text in collected.declarations.items():
             _write(folder / "declarations" / name, text)
         for name in _tables(collected):
-            _write(folder / "schemas" / f"{name}.toml", (shipped("schemas") / f"{name}.toml").read_text("utf-8"))
+            _write(folder / "schemas" / f"{name}.toml", schema.toml(name))
         _write(folder / "LICENSE", collected.licence)
         _write(folder / "CITATION.cff", collected.citation)
         _write(folder / "load.sql", _load(collected))

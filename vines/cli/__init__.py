@@ -9,6 +9,7 @@ import gc
 import importlib
 import os
 import sys
+from pathlib import Path
 from typing import Any
 
 import click
@@ -93,17 +94,17 @@ class LazyGroup(click.Group):
 @click.option(
     "--root",
     metavar="DIR",
+    type=click.Path(path_type=Path),
     help="Root of the project; else VINES_ROOT, or the nearest parent with pipelines/.",
 )
-def app(root: str | None) -> None:
+def app(root: Path | None) -> None:
     """Reproducible studies of the vibro-impact nonlinear energy sink.
 
     \b
     vines run quickstart        compute a first study
     vines list                  see what else there is
     """  # noqa: D301 - click reads \b as "keep these lines"
-    if root is not None:
-        os.environ["VINES_ROOT"] = root
+    del root  # commands ask for it: vines.cli._study
 
 
 def main() -> None:

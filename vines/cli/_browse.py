@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import click
 
+from vines.cli._study import the_study
+
 
 @click.command("browse")
 @click.argument("logs", nargs=-1, metavar="[LOG...]")
@@ -21,5 +23,6 @@ def command(logs: tuple[str, ...], web: bool) -> None:
     from vines import viewer
     from vines.stages import all_logs, find_logs, recordings_folder
 
-    paths = [path for name in logs for path in find_logs(name)] if logs else all_logs()
-    viewer.browse(paths, recordings_folder(), web=web, tell=click.echo)
+    study = the_study()
+    paths = [path for name in logs for path in find_logs(name, study=study)] if logs else all_logs(study=study)
+    viewer.browse(paths, recordings_folder(study=study), web=web, tell=click.echo)

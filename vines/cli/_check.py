@@ -10,6 +10,8 @@ from typing import Any
 
 import click
 
+from vines.cli._study import the_study
+
 Row = Mapping[str, Any]
 
 
@@ -28,7 +30,7 @@ def command(name: str | None, as_json: bool, as_markdown: bool) -> None:
 
     if as_json and as_markdown:
         raise click.UsageError("--json and --markdown exclude each other; give one")
-    rows = checks(name)
+    rows = checks(name, study=the_study())
     if as_json:
         click.echo(json.dumps(rows, indent=2))
     elif as_markdown:

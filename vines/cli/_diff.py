@@ -7,6 +7,8 @@ from dataclasses import asdict
 
 import click
 
+from vines.cli._study import the_study
+
 
 @click.command("diff")
 @click.argument("a", metavar="A")
@@ -23,7 +25,7 @@ def command(a: str, b: str, rtol: float, atol: float, as_json: bool) -> None:
     """
     from vines.stages import diff
 
-    found = diff(a, b, rtol=rtol, atol=atol)
+    found = diff(a, b, rtol=rtol, atol=atol, study=the_study())
     if as_json:
         click.echo(json.dumps({**asdict(found), "same": found.same}, indent=2))
     else:

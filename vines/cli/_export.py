@@ -7,6 +7,8 @@ from pathlib import Path
 
 import click
 
+from vines.cli._study import the_study
+
 
 @click.command("export")
 @click.argument("folder", metavar="DIR", type=click.Path(path_type=Path))
@@ -29,7 +31,7 @@ def command(
     """  # noqa: D301
     from vines.stages import export
 
-    files = export(folder, *names, logs=logs, licence=licence, citation=citation)
+    files = export(folder, *names, logs=logs, licence=licence, citation=citation, study=the_study())
     size = sum((folder / name).stat().st_size for name in files)
     if as_json:
         click.echo(json.dumps({"folder": str(folder), "files": files, "bytes": size}, indent=2))

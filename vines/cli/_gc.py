@@ -6,6 +6,8 @@ import json
 
 import click
 
+from vines.cli._study import the_study
+
 
 @click.command("gc")
 @click.option("--yes", is_flag=True, help="Remove it; without this, only say what would go.")
@@ -18,7 +20,7 @@ def command(yes: bool, as_json: bool) -> None:
     """
     from vines.stages import clean
 
-    garbage = clean(remove=yes)
+    garbage = clean(remove=yes, study=the_study())
     if as_json:
         rows = [{"what": each.what, "key": each.key, "bytes": each.bytes} for each in garbage]
         click.echo(json.dumps({"removed": yes, "found": rows}, indent=2))

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import click
 
+from vines.cli._study import the_study
 from vines.errors import StoreError
 
 
@@ -19,7 +20,7 @@ def command(name: str, out: Path | None) -> None:
     """
     from vines.stages import graph
 
-    text = graph(name)
+    text = graph(name, study=the_study())
     if out is None:
         click.echo(text)
     elif not out.parent.is_dir():

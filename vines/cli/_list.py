@@ -7,6 +7,8 @@ from typing import Any
 
 import click
 
+from vines.cli._study import the_study
+
 
 @click.command("list")
 @click.option("--json", "as_json", is_flag=True, help="For machines.")
@@ -15,7 +17,7 @@ def command(as_json: bool) -> None:
     from vines.cli._layout import print_rows
     from vines.stages import list_pipelines
 
-    rows = list_pipelines()
+    rows = list_pipelines(study=the_study())
     if as_json:
         click.echo(json.dumps(rows, indent=2))
         return

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import click
 
+from vines.cli._study import the_study
+
 
 @click.command("merge")
 @click.argument("name", metavar="NAME|FILE")
@@ -22,4 +24,4 @@ def command(name: str, settings: tuple[str, ...], quiet: bool) -> None:
 
     overrides = dict(read_setting(text) for text in settings)
     with stoppable(f"'vines merge {name}' goes on"), progress(quiet) as report:
-        run(name, overrides=overrides, merge=True, report=report)
+        run(name, overrides=overrides, merge=True, report=report, study=the_study())

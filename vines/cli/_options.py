@@ -13,6 +13,7 @@ __all__ = ["show_things"]
 def show_things(what: str, found: list[dict[str, Any]] | dict[str, Any], as_json: bool) -> None:
     """Print all things with their summaries, or one with its options."""
     from vines.cli._layout import print_rows
+    from vines.stages import default_shown
 
     if as_json:
         click.echo(json.dumps(found, indent=2))
@@ -25,14 +26,8 @@ def show_things(what: str, found: list[dict[str, Any]] | dict[str, Any], as_json
         click.echo(f"\nvines {what}s {what.upper()} lists the options of one")
         return
     click.echo(f"{found['name']}: {found['summary']}\n\n{found['description']}\n")
-    options = [[row["option"], row["type"], _default(row), row["meaning"]] for row in found["options"]]
+    options = [[row["option"], row["type"], default_shown(row), row["meaning"]] for row in found["options"]]
     if options:
         print_rows(["option", "type", "default", "meaning"], options, wrap=3)
     else:
         click.echo("no options")
-
-
-def _default(row: dict[str, Any]) -> str:
-    if row["required"]:
-        return "required"
-    return "" if row["default"] is None else json.dumps(row["default"], ensure_ascii=False)

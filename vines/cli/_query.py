@@ -11,6 +11,7 @@ from typing import Any
 
 import click
 
+from vines.cli._study import the_study
 from vines.errors import QueryError
 
 SUFFIXES = {".csv": "csv", ".json": "json", ".parquet": "parquet"}
@@ -39,23 +40,24 @@ def command(sql: str, form: str | None, out: Path | None) -> None:
         raise QueryError(
             f"--out {out}: the suffix {out.suffix!r} names no format; allowed: {allowed}; or give --format"
         )
+    study = the_study()
     form = form or (SUFFIXES.get(out.suffix, "table") if out is not None else "table")
     match form:
         case "csv" | "parquet" if out is not None:
-            save_query(sql, out, form)
+            save_query(sql, out, form, study=study)
         case "parquet":
             raise QueryError("--format parquet needs --out FILE: a terminal cannot show it")
         case "csv":
             with tempfile.TemporaryDirectory() as folder:
-                save_query(sql, Path(folder) / "answer.csv", "csv")
+                save_query(sql, Path(folder) / "answer.csv", "csv", study=study)
                 click.echo((Path(folder) / "answer.csv").read_text("utf-8"), nl=False)
         case "json":
-            names, rows = rows_of(sql)
+            names, rows = rows_of(sql, study=study)
             _put(json.dumps([dict(zip(names, map(_plain, row), strict=True)) for row in rows], indent=1), out)
         case _:
             from vines.cli._layout import lines
 
-            _put("\n".join(lines(*rows_of(sql), wrap=None)), out)
+            _put("\n".join(lines(*rows_of(sql, study=study), wrap=None)), out)
 
 
 def _put(text: str, out: Path | None) -> None:

@@ -6,6 +6,8 @@ from pathlib import Path
 
 import click
 
+from vines.cli._study import the_study
+
 
 @click.command("report")
 @click.argument("name")
@@ -17,5 +19,5 @@ def command(name: str, out: Path | None) -> None:
     """
     from vines.stages import report
 
-    path = report(name, out)
+    path = report(name, out, study=the_study())
     click.echo(f"{path}  ({path.stat().st_size / 1e6:.1f} MB)")

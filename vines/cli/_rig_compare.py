@@ -7,6 +7,9 @@ from typing import Any
 
 import click
 
+from vines.cli._study import the_study
+from vines.model import PARAMETER_NAMES
+
 _FOLDER = click.Path(path_type=Path)
 _COLOURS = {"agree": "green", "pattern_only": "yellow", "disagree": "red", "undecidable": "yellow"}
 
@@ -28,7 +31,7 @@ def command(run: Path, ring_downs: tuple[Path, ...], as_json: bool) -> None:
     from vines.stages import compare_run, compile_cold
 
     compile_cold(lambda line: click.echo(line, err=True))
-    made = compare_run(run, ring_downs)
+    made = compare_run(run, ring_downs, study=the_study())
     if as_json:
         click.echo(made.file.read_text("utf-8"), nl=False)
     else:
@@ -44,7 +47,7 @@ def _show(rows: list[dict[str, Any]]) -> None:
     first = rows[0]
     click.secho(f"{first['run_id']}: {first['verdict']}", fg=_COLOURS[first["verdict"]], bold=True)
     click.echo(first["reason"])
-    click.echo("at " + ", ".join(f"{name} = {first[name]:.6g}" for name in ("mu", "A", "Omega", "r", "lam")) + "\n")
+    click.echo("at " + ", ".join(f"{name} = {first[name]:.6g}" for name in PARAMETER_NAMES) + "\n")
     shown: list[list[object]] = []
     for row in rows:
         if row.get("branch") is None:

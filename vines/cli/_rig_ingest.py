@@ -6,6 +6,8 @@ from pathlib import Path
 
 import click
 
+from vines.cli._study import the_study
+
 
 @click.command("ingest")
 @click.argument("folder", type=click.Path(path_type=Path))
@@ -29,7 +31,7 @@ def command(folder: Path, log_rate: float) -> None:
     """  # noqa: D301
     from vines.stages import ingest_folder
 
-    name, runs, summary = ingest_folder(folder, log_rate=log_rate)
+    name, runs, summary = ingest_folder(folder, log_rate=log_rate, study=the_study())
     count = f"{len(runs)} run{'s' if len(runs) > 1 else ''}"
     if summary is None:
         click.echo(f"{folder}: nothing to do, its {count} are ingested already and unchanged (pipeline {name})")

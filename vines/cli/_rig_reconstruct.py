@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING
 
 import click
 
+from vines.cli._study import the_study
+
 if TYPE_CHECKING:
     from vines.stages import Derived
 
@@ -32,7 +34,7 @@ def command(run: Path, ring_downs: tuple[Path, ...], as_json: bool) -> None:
     """  # noqa: D301
     from vines.stages import reconstruct_run
 
-    made = reconstruct_run(run, ring_downs)
+    made = reconstruct_run(run, ring_downs, study=the_study())
     if as_json:
         click.echo(made.files[0].read_text("utf-8"), nl=False)
     else:

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Literal
 
 import click
 
+from vines.cli._study import the_study
 from vines.errors import DeclarationError, RunFailed
 
 if TYPE_CHECKING:
@@ -61,7 +62,8 @@ def command(
 
     overrides = dict(read_setting(text) for text in settings)
     chosen = stages or None
-    plans = status(name, stages=chosen, overrides=overrides)
+    study = the_study()
+    plans = status(name, stages=chosen, overrides=overrides, study=study)
     if dry_run:
         _print_plans(plans, force=force, retry_failed=retry_failed)
         return
@@ -91,6 +93,7 @@ def command(
                 force=force,
                 retry_failed=retry_failed,
                 report=report,
+                study=study,
             )
         except RunFailed as error:
             failure = error
@@ -123,6 +126,6 @@ def _print_plans(plans: list[StagePlan], *, force: bool, retry_failed: bool) -> 
 def _say_what_was_found(name: str) -> None:
     from vines.stages import found
 
-    lines = found(name)
+    lines = found(name, study=the_study())
     if lines:
         click.echo("\n" + "\n".join(lines))

@@ -9,17 +9,16 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from vines.cli._parameters import parameter_options
+from vines.model import STATE_NAMES, VI_NES, Params
+
 if TYPE_CHECKING:
     from vines.orbits import Orbit
 
 
 @click.command("solve")
 @click.argument("word")
-@click.option("--mu", type=float, required=True, help="Mass ratio m/M.")
-@click.option("--A", "amplitude", type=float, required=True, help="Forcing amplitude E/b.")
-@click.option("--Omega", "frequency", type=float, default=1.0, show_default=True, help="Frequency ratio.")
-@click.option("--r", type=float, default=0.65, show_default=True, help="Coefficient of restitution.")
-@click.option("--lam", type=float, help="Damping c/(M omega0); the default is that of Table 1.")
+@parameter_options
 @click.option("--all", "every", is_flag=True, help="All orbits of the word that are found, not only one.")
 @click.option(
     "--log",
@@ -29,14 +28,10 @@ if TYPE_CHECKING:
 @click.option("--json", "as_json", is_flag=True, help="For machines.")
 def command(
     word: str,
-    mu: float,
-    amplitude: float,
-    frequency: float,
-    r: float,
-    lam: float | None,
     every: bool,
     log: Path | None,
     as_json: bool,
+    **parameters: float,
 ) -> None:
     """Print the periodic orbit of a WORD of impacts, such as LR, LLR or LRLR/2T.
 
@@ -48,13 +43,11 @@ def command(
     vines solve LLR --mu 0.01 --A 0.023 --all
     vines solve LR --mu 0.01 --A 0.02 --log orbit.mcap && vines view orbit.mcap
     """  # noqa: D301
-    from vines.model import Params
     from vines.orbits import all_orbits, find_orbit, orbit_row
 
     if every and log is not None:
         raise click.UsageError("--log writes one orbit; leave out --all")
-    given = {} if lam is None else {"lam": lam}
-    p = Params(mu=mu, A=amplitude, Omega=frequency, r=r, **given)
+    p = Params(**parameters)
     if every:
         found = all_orbits(word, p)
         # With no orbit the search for one says why and how near it came.
@@ -99,7 +92,7 @@ def describe(orbit: Orbit) -> str:
     ]
     text = [f"{label} ({orbit.word}): {', '.join(kinds)}", f"at {p}, period {orbit.period:.10g}"]
     if not orbit.admissible:
-        side = "L" if orbit.violation_side > 0 else "R"
+        side = VI_NES.letters([orbit.violation_side])
         text.append(
             f"between its impacts it would meet {side} at t = {orbit.violation_time:.10g}: no orbit of the model"
         )
@@ -107,12 +100,12 @@ def describe(orbit: Orbit) -> str:
         text.append(orbit.remark)
     states = orbit.states.tolist()
     rows = [
-        ["L" if side > 0 else "R", *(f"{value:.10f}" for value in (t, phase, wait, *state, w_dot))]
+        [VI_NES.letters([side]), *(f"{value:.10f}" for value in (t, phase, wait, *state, w_dot))]
         for side, t, phase, wait, state, w_dot in zip(
             orbit.side, orbit.t, orbit.phase, orbit.flight_times, states, orbit.w_dot, strict=True
         )
     ]
-    head = ["", "t", "phase", "to the next", "x1", "v1", "x2", "v2", "w'"]
+    head = ["", "t", "phase", "to the next", *STATE_NAMES, "w'"]
     text += ["", "impacts (just before each)", *lines(head, rows, wrap=None)]
     text += ["", "Floquet multipliers over the period"]
     text += lines(["", "modulus"], [[_complex(z), f"{abs(z):.10f}"] for z in orbit.multipliers.tolist()], wrap=None)

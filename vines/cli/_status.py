@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING
 
 import click
 
+from vines.cli._study import the_study
+
 if TYPE_CHECKING:
     from vines.pipeline import StagePlan
 
@@ -20,7 +22,7 @@ def command(name: str | None, as_json: bool) -> None:
     from vines.cli._layout import print_rows
     from vines.stages import status_of_each
 
-    plans, unreadable = status_of_each(name)
+    plans, unreadable = status_of_each(name, study=the_study())
     if as_json:
         told: dict[str, object] = {each: [asdict(p) for p in found] for each, found in plans.items()}
         click.echo(json.dumps({**told, **{each: {"error": why} for each, why in unreadable.items()}}, indent=2))

@@ -6,6 +6,8 @@ import json
 
 import click
 
+from vines.cli._study import the_study
+
 
 @click.command("tables")
 @click.option("--json", "as_json", is_flag=True, help="For machines.")
@@ -14,7 +16,7 @@ def command(as_json: bool) -> None:
     from vines.cli._layout import print_rows
     from vines.stages import list_tables
 
-    rows = list_tables()
+    rows = list_tables(study=the_study())
     if as_json:
         click.echo(json.dumps(rows, indent=2))
         return

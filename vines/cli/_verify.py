@@ -7,6 +7,8 @@ from dataclasses import asdict
 
 import click
 
+from vines.cli._study import the_study
+
 
 @click.command("verify")
 @click.argument("names", nargs=-1, metavar="[NAME]...")
@@ -34,7 +36,7 @@ def command(names: tuple[str, ...], recompute: int, seed: int, everything: bool,
     from vines.cli._layout import lines
     from vines.stages import verify
 
-    found = verify(*names, everything=everything, recompute=recompute, seed=seed)
+    found = verify(*names, everything=everything, recompute=recompute, seed=seed, study=the_study())
     if as_json:
         rows = [{**asdict(line), "good": line.good} for line in found.lines]
         told = {"good": found.good, "results": found.results, "rows": found.rows, "checks": rows}

@@ -6,6 +6,8 @@ from pathlib import Path
 
 import click
 
+from vines.cli._study import the_study
+
 _FILE = click.Path(dir_okay=False, path_type=Path)
 
 
@@ -35,7 +37,8 @@ def command(
         raise click.UsageError("--web serves until Ctrl-C and goes with neither --png nor --save; give one of them")
     if at is not None and png is None:
         raise click.UsageError("--at is the time of a picture; give --png FILE too")
-    paths = [path for name in logs for path in find_logs(name)]
+    study = the_study()
+    paths = [path for name in logs for path in find_logs(name, study=study)]
     if save is not None:
         viewer.save_rrd(paths, save, overlay=overlay)
         click.echo(f"wrote {save}")
@@ -43,6 +46,6 @@ def command(
         viewer.screenshot(paths, png, at=at, overlay=overlay)
         click.echo(f"wrote {png}")
     if web:
-        viewer.web(paths, cache=recordings_folder(), tell=click.echo, overlay=overlay)
+        viewer.web(paths, cache=recordings_folder(study=study), tell=click.echo, overlay=overlay)
     elif png is None and save is None:
-        viewer.view(paths, cache=recordings_folder(), overlay=overlay)
+        viewer.view(paths, cache=recordings_folder(study=study), overlay=overlay)

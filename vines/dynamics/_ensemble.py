@@ -23,15 +23,16 @@ from vines.dynamics._simulate import EVENTS_PER_PERIOD
 from vines.dynamics._start import SLACK
 from vines.dynamics._trajectory import IMPACT
 from vines.errors import ParameterError, StateError, nearest
-from vines.model import PARAMETER_NAMES, Params
+from vines.model import FREQUENCY, MASS, PARAMETER_NAMES, START_NAMES, VI_NES, X1, X2, Params
 
 __all__ = ["FINAL", "MEASURES", "STATUS_NAMES", "Ensemble", "ensemble", "threads_allowed"]
 
 Floats = npt.NDArray[np.float64]
 
 STATUS_NAMES = ("complete", "impact_cap", "step_limit")
-START_NAMES = ("x1", "v1", "x2", "v2", "phase")
-START_DEFAULTS = (0.0, 0.0, 0.0, 0.1, 0.0)
+
+_PARAMETER_DEFAULTS = {parameter.name: parameter.default for parameter in VI_NES.parameters}
+_START_DEFAULTS = {coordinate.name: coordinate.start for coordinate in VI_NES.start}
 
 FINAL = np.dtype([(name, "f8") for name in START_NAMES] + [("stuck", "i1")])
 """State at the end; `stuck` is 0 in flight, else the wall that the ball rides on."""
@@ -207,8 +208,8 @@ def ensemble(
     begin = _starts(starts)
     n = np.broadcast_shapes(table.shape[:1], begin.shape[:1])[0]
     # Copies: a kernel would be compiled once more for arrays that are read-only, as those of broadcast_to are.
-    table = np.array(np.broadcast_to(table, (n, 5)), order="C")
-    begin = np.array(np.broadcast_to(begin, (n, 5)), order="C")
+    table = np.array(np.broadcast_to(table, (n, len(PARAMETER_NAMES))), order="C")
+    begin = np.array(np.broadcast_to(begin, (n, len(START_NAMES))), order="C")
     for name, value, positive in (("periods", periods, True), ("settle", settle, False)):
         if not (math.isfinite(value) and (value > 0 if positive else value >= 0)):
             raise StateError(f"{name} is {value!r}; give a finite number {'> 0' if positive else '>= 0'}")
@@ -252,7 +253,7 @@ class _Work:
     def __init__(self, runs: _Runs, what: int) -> None:
         n = len(runs.table)
         self.runs, self.what = runs, what
-        span = 2.0 * math.pi / runs.table[:, 2]
+        span = 2.0 * math.pi / runs.table[:, FREQUENCY]
         self.first, self.lengths = runs.settle * span, runs.periods * span
         self.finals = np.zeros((n, 6))
         self.totals = np.zeros((n, entry.TOTALS)) if what & lanes.WITH_MEASURES else None
@@ -316,7 +317,7 @@ class _Work:
     def _measured(self) -> npt.NDArray[np.void] | _Runs | None:
         """Return the measures if they were taken; for impacts alone what is to be run again if they are asked for."""
         if self.totals is not None:
-            return _measures(self.runs.table[:, 0], self.totals, self.errors)
+            return _measures(self.runs.table[:, MASS], self.totals, self.errors)
         return self.runs if self.what & lanes.WITH_IMPACTS else None
 
     def _impacts(self) -> npt.NDArray[np.void]:
@@ -362,30 +363,24 @@ def _parameters(params: Params | Sequence[Params] | Mapping[str, npt.ArrayLike])
     if isinstance(params, Params):
         return np.array([[getattr(params, name) for name in PARAMETER_NAMES]])
     if isinstance(params, Mapping):
-        return _check_parameters(_columns(params, PARAMETER_NAMES, _defaults(), ParameterError, "parameter"))
+        return _check_parameters(_columns(params, _PARAMETER_DEFAULTS, ParameterError, "parameter"))
     table = np.array([[getattr(p, name) for name in PARAMETER_NAMES] for p in params])
     if not len(table):
         raise ParameterError("params is empty; give at least one point")
     return table
 
 
-def _defaults() -> tuple[float | None, ...]:
-    p = Params(mu=1.0, A=0.0)
-    return (None, None, p.Omega, p.r, p.lam)
-
-
 def _columns(
     given: Mapping[str, npt.ArrayLike],
-    names: tuple[str, ...],
-    defaults: tuple[float | None, ...],
+    defaults: Mapping[str, float | None],
     error: type[Exception],
     kind: str,
 ) -> Floats:
     for name in given:
-        if name not in names:
-            raise error(f"unknown {kind} {name!r}: {nearest(name, names)}")
+        if name not in defaults:
+            raise error(f"unknown {kind} {name!r}: {nearest(name, defaults)}")
     arrays = []
-    for name, default in zip(names, defaults, strict=True):
+    for name, default in defaults.items():
         value = given.get(name, default)
         if value is None:
             raise error(f"{kind} {name!r} is missing; give a number or an array")
@@ -396,14 +391,14 @@ def _columns(
     try:
         return np.stack(np.broadcast_arrays(*arrays), axis=1)
     except ValueError:
-        sizes = ", ".join(f"{name} {len(a)}" for name, a in zip(names, arrays, strict=True) if len(a) > 1)
+        sizes = ", ".join(f"{name} {len(a)}" for name, a in zip(defaults, arrays, strict=True) if len(a) > 1)
         raise error(f"arrays of different lengths ({sizes}); give one length, or single numbers") from None
 
 
 def _check_parameters(table: Floats) -> Floats:
-    mu, A, Omega, r, lam = table.T
-    good = np.isfinite(table).all(axis=1) & (mu > 0) & (A >= 0) & (Omega > 0) & (r >= 0) & (r <= 1)
-    good &= (lam >= 0) & (lam < 2)
+    good = np.isfinite(table).all(axis=1)
+    for parameter, column in zip(VI_NES.parameters, table.T, strict=True):
+        good &= parameter.allowed.holds(column)
     if not good.all():
         # The first bad point says in the words of Params what is wrong.
         k = int(np.flatnonzero(~good)[0])
@@ -412,11 +407,11 @@ def _check_parameters(table: Floats) -> Floats:
 
 
 def _starts(starts: Mapping[str, npt.ArrayLike] | None) -> Floats:
-    table = _columns(starts or {}, START_NAMES, START_DEFAULTS, StateError, "start")
+    table = _columns(starts or {}, _START_DEFAULTS, StateError, "start")
     bad = ~np.isfinite(table).all(axis=1)
     if bad.any():
         raise StateError(f"start {int(np.flatnonzero(bad)[0])} is not finite; give finite numbers")
-    w = table[:, 0] - table[:, 2]
+    w = table[:, X1] - table[:, X2]
     outside = np.abs(w) > 1.0 + SLACK
     if outside.any():
         k = int(np.flatnonzero(outside)[0])

@@ -8,8 +8,6 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
-
 from vines.dynamics import _advance as col
 from vines.dynamics import _lane_fields as f
 from vines.dynamics._batches import BATCHES, standard_errors
@@ -18,9 +16,9 @@ from vines.dynamics._lane_segments import begin_segment, close_part, part_of
 from vines.dynamics._tangent import DEAD, flow_basis, jump_basis, log_growth, orthonormalise
 from vines.dynamics._totals import DURATION, ENERGY_CHANGE, TOTALS, state_energy
 from vines.kernels import (
+    copy_values,
     entry_njit,
     fused_njit,
-    identity,
     linked_njit,
     new_matrix,
     new_vector,
@@ -78,7 +76,9 @@ def open_record(c, L, record, i, length, since, mode, x1, v1, x2, v2, phase):
         open_measures(c, L, i, length, x1)
         begin_segment(L, segment, i, 0, length, since, mode, x1, v1, v2, phase)
     if basis.shape[0]:
-        basis[i, :, :] = identity(4)
+        basis[i, :, :] = 0.0
+        for k in range(4):
+            basis[i, k, k] = 1.0
         growth[i, :, :] = 0.0
 
 
@@ -97,7 +97,8 @@ def keep_row(rows, count, i):
 def _digest_growth(c, rows, n, Y, growth, width):
     """Carry disturbances over n rows; their growth goes to the batch in which a row lies."""
     gains = new_vector(4)
-    product = np.ones(4)
+    product = new_vector(4)
+    product[:] = 1.0
     running = min(int(rows[1, col.TIME] / width), BATCHES - 1)
     for j in range(1, n):
         batch = min(int(rows[j, col.TIME] / width), BATCHES - 1)
@@ -129,10 +130,10 @@ def digest(c, record, i, length, what_growth, what_impacts, events, filled, who)
                     continue
                 if filled >= events.shape[0]:
                     return -1
-                events[filled, : col.ROW] = rows[i, j]
+                copy_values(events[filled], rows[i, j])
                 events[filled, col.ROW] = who
                 filled += 1
-        rows[i, 0] = rows[i, n - 1]
+        copy_values(rows[i, 0], rows[i, n - 1])
         count[i] = 1
     return filled
 
@@ -147,7 +148,7 @@ def close_record(c, L, record, i, energy, who, totals, errors, growths, growth_e
         whole = batch[i] == BATCHES - 1 and part[DURATION] > 0.0
         close_part(c.mu, L, record, i, part)
         total[i, ENERGY_CHANGE] += energy
-        totals[who] = total[i]
+        copy_values(totals[who], total[i])
         errors[who, :] = math.nan
         if whole:
             standard_errors(values[i], errors[who])
@@ -155,8 +156,10 @@ def close_record(c, L, record, i, energy, who, totals, errors, growths, growth_e
         rates = new_matrix(BATCHES, 4)
         growths[who, :] = 0.0
         for b in range(BATCHES):
-            growths[who] += growth[i, b]
-            rates[b] = growth[i, b, :4] / growth[i, b, 4]
+            for k in range(5):
+                growths[who, k] += growth[i, b, k]
+            for k in range(4):
+                rates[b, k] = growth[i, b, k] / growth[i, b, 4]
         standard_errors(rates, growth_errors[who])
         for k in range(4):
             if growths[who, k] == -math.inf:

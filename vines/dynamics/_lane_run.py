@@ -6,8 +6,6 @@ not know of each other, so a result does not depend on which trajectories run be
 
 from __future__ import annotations
 
-import numpy as np
-
 from vines.dynamics import _advance as col
 from vines.dynamics import _lane_fields as f
 from vines.dynamics._advance import advance, set_state, state_now
@@ -18,7 +16,7 @@ from vines.dynamics._lane_segments import end_segment, mend
 from vines.dynamics._lane_state import fill_lane, may_fly, row_of, take_lane
 from vines.dynamics._lanes import tick
 from vines.dynamics._totals import state_energy
-from vines.kernels import entry_njit, linked_njit, njit, zero_matrix, zero_vector
+from vines.kernels import copy_values, entry_njit, linked_njit, njit, zero_matrix, zero_vector
 
 __all__ = ["CAP", "DONE", "FINAL", "LIMIT", "OVERFLOW", "WITH_EXPONENTS", "WITH_IMPACTS", "WITH_MEASURES", "run_block"]
 
@@ -110,7 +108,8 @@ def run_block(
     keeps = impacts or rates
     record = new_record(LANES, keeps, energies, rates)
     rows, waiting, segment = record[0], record[1], record[5]
-    run = np.full((LANES, 3), -1.0)
+    run = zero_matrix(LANES, 3)
+    run[:, :] = -1.0
     # The constants of the trajectory in each lane.
     held = [_constants_of(parameters[0]) for _ in range(LANES)]
     x1 = v1 = x2 = v2 = phase = since = 0.0
@@ -188,7 +187,7 @@ def run_block(
                             end_segment(c, L, record, i, length, row[0])
                         full = False
                         if happened and keeps:
-                            rows[i, waiting[i]] = row[0]
+                            copy_values(rows[i, waiting[i]], row[0])
                             full = keep_row(rows, waiting, i)
                         if code == col.COMPLETE:
                             last[:] = 0.0
@@ -201,7 +200,7 @@ def run_block(
                         if keeps and (full or ended):
                             filled = digest(c, record, i, length, rates, impacts, events, filled, who)
                         if filled >= 0 and code == col.COMPLETE and rates:
-                            rows[i, waiting[i]] = last
+                            copy_values(rows[i, waiting[i]], last)
                             keep_row(rows, waiting, i)
                             filled = digest(c, record, i, length, rates, impacts, events, filled, who)
                         if filled >= 0 and ended:

@@ -20,11 +20,10 @@ from vines.dynamics._flight import phasors
 from vines.dynamics._impact_law import after_impact
 from vines.dynamics._saltation import GAP_TOLERANCE, jacobian_kernel
 from vines.errors import StateError
-from vines.model import Params
+from vines.model import VI_NES, Params
 
 __all__ = ["P1", "P2", "P3", "P4", "Mapped", "impact_map"]
 
-_LETTER = {1: "L", -1: "R"}
 _PERIODS = 1000
 """Forcing periods within which the next contact has to come; a ball that has left a wall drifts to one long before."""
 
@@ -75,7 +74,7 @@ def impact_map(
 
     Examples
     --------
-    >>> from vines.model import Params
+    >>> from vines.model import VI_NES, Params
     >>> p = Params(mu=0.1, A=0.3, Omega=1.2)
     >>> right = P1(p, (0.3, 0.3, -0.7, -0.8, 0.0), phi=0.4)
     >>> print(right.state)
@@ -94,7 +93,9 @@ def impact_map(
     if abs(x1 - x2 - side) > GAP_TOLERANCE:
         raise StateError(f"the gap x1 - x2 is {x1 - x2:.9g}, not side = {side}; give a state on the wall")
     if side * (v1 - v2) <= 0:
-        raise StateError(f"w' = {v1 - v2:.9g} does not approach {_LETTER[side]}; give the state just before an impact")
+        raise StateError(
+            f"w' = {v1 - v2:.9g} does not approach {VI_NES.letters([side])}; give the state just before an impact"
+        )
     c = constants(p)
     phase = (p.Omega * t + phi) % (2 * math.pi)
     after1, after2 = after_impact(c.law, v1, v2)
@@ -104,7 +105,7 @@ def impact_map(
         raise StateError(f"no contact within {_PERIODS} forcing periods after t = {t:.9g}; there is no map from here")
     if found != side_next:
         raise StateError(
-            f"the next contact is on {_LETTER[found]} after {tau:.9g}, not on {_LETTER[side_next]}: "
+            f"the next contact is on {VI_NES.letters([found])} after {tau:.9g}, not on {VI_NES.letters([side_next])}: "
             f"{_NAME[side, side_next]} is not defined here; use {_NAME[side, found]}"
         )
     J, x1n, v1n, v2n = jacobian_kernel(p.mu, p.A, p.Omega, p.r, p.lam, x1, v1, v2, phase, tau)

@@ -89,7 +89,7 @@ class Scatter:
         ParameterError
             If damping vanishes at the resonance of a harmonic with the oscillator, alone or with the ball on a wall.
         """
-        mu, Omega, lam = table[:, 0], table[:, 2], table[:, 4]
+        mu, _, Omega, _, lam = table.T
         for w in (Omega, 2.0 * Omega) if self.second > 0 else (Omega,):
             for mass in (np.ones_like(mu), 1.0 + mu):
                 bad = np.hypot(1.0 - mass * w * w, lam * w) < 1e-9

@@ -13,19 +13,20 @@ from vines.dynamics._constants import constants
 from vines.dynamics._measures import Measures, measures_from
 from vines.dynamics._totals import accumulate, sample_rows, window_totals
 from vines.errors import StateError
-from vines.model import Params
+from vines.model import START_NAMES, STATE_NAMES, VI_NES, Params
 
 __all__ = ["EVENT", "IMPACT", "SAMPLE", "STICK", "Trajectory", "impacts_of"]
 
+_ENERGIES = VI_NES.energies
+
 EVENT = np.dtype(
-    [("kind", "i1"), ("side", "i1")]
-    + [(name, "f8") for name in ("t", "phase", "x1", "v1", "x2", "v2", "v1_after", "v2_after")]
+    [("kind", "i1"), ("side", "i1")] + [(name, "f8") for name in ("t", "phase", *STATE_NAMES, "v1_after", "v2_after")]
 )
 """Kind 0 start (also a fresh start inside a very long flight), 1 impact, 2 stick, 3 release, 4 end."""
 
 IMPACT = np.dtype(
     [("t", "f8"), ("side", "i1")]
-    + [(name, "f8") for name in ("x1", "v1", "x2", "v2", "w_dot", "v1_after", "v2_after", "phase")]
+    + [(name, "f8") for name in (*STATE_NAMES, "w_dot", "v1_after", "v2_after", "phase")]
     + [("index", "i8")]
 )
 STICK = np.dtype(
@@ -34,10 +35,9 @@ STICK = np.dtype(
     + [("impacts", "i8")]
 )
 SAMPLE = np.dtype(
-    [(name, "f8") for name in ("t", "x1", "v1", "x2", "v2", "w", "w_dot", "phase")]
+    [(name, "f8") for name in ("t", *STATE_NAMES, "w", "w_dot", "phase")]
     + [("stuck", "i1")]
-    + [(name, "f8") for name in ("base", "kinetic_1", "kinetic_2", "potential")]
-    + [(name, "f8") for name in ("base_work", "damper_loss", "impact_loss")]
+    + [(name, "f8") for name in ("base", *_ENERGIES.stored, *_ENERGIES.gained, *_ENERGIES.lost)]
 )
 
 _COLUMN = {
@@ -262,7 +262,7 @@ class Trajectory:
         sample_rows(c, self.rows, self._totals, segment, tau, before, raw)
         out = np.empty(len(t), dtype=SAMPLE)
         out["t"] = t
-        for k, name in enumerate(("x1", "v1", "x2", "v2", "phase", "stuck", "base_work", "damper_loss", "impact_loss")):
+        for k, name in enumerate((*START_NAMES, "stuck", *_ENERGIES.gained, *_ENERGIES.lost)):
             out[name] = raw[:, k]
         out["w"] = out["x1"] - out["x2"]
         out["w_dot"] = out["v1"] - out["v2"]

@@ -10,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from vines.figures._style import RC, new_figure
+from vines.model import VI_NES
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -18,7 +19,7 @@ __all__ = ["BasinMap", "basins_figure"]
 
 Floats = npt.NDArray[np.float64]
 
-SYMBOLS = {"x1": "$x_1$", "v1": "$x_1'$", "x2": "$x_2$", "v2": "$x_2'$", "phase": r"phase $\phi$"}
+SYMBOLS = {each.name: f"${each.symbol}$" for each in VI_NES.state} | {"phase": rf"phase ${VI_NES.phase.symbol}$"}
 HUES = ("#33658a", "#e07a1f", "#117733", "#aa4499", "#ddcc77", "#86bbd8")
 CHAOS = ("#d2d2d2", "#a9a9a9", "#808080")
 UNSETTLED = "#000000"

@@ -1,4 +1,6 @@
-"""What the figures call quantities and parameters. No import: declarations are checked against these names."""
+"""What the figures call quantities and parameters. Declarations are checked against these names: no heavy import."""
+
+from vines.model import VI_NES
 
 __all__ = ["ERRORS", "MEASURES", "NAMES", "PANELS", "RIG_PANELS", "RUN_PANELS", "SYMBOLS"]
 
@@ -21,14 +23,8 @@ RIG_PANELS = ("max_abs_x1", "kinetic_ratio", "w_dot", "phase")
 RUN_PANELS = ("ends", "gap", "phase_plane")
 """Panels that show runs: displacements of the cavity's ends and the ball, gap and relative velocity, their plane."""
 
-SYMBOLS = {"A": "A", "mu": r"\mu", "Omega": r"\Omega", "r": "r", "lam": r"\lambda"}
-NAMES = {
-    "A": "forcing amplitude",
-    "mu": "mass ratio",
-    "Omega": "frequency ratio",
-    "r": "restitution",
-    "lam": "damping",
-}
+SYMBOLS = {each.name: each.symbol for each in VI_NES.parameters}
+NAMES = {each.name: each.label for each in VI_NES.parameters}
 
 ERRORS = {
     "max_abs_x1": r"error of $\max|x_1|$",

@@ -9,13 +9,13 @@ from vines.kernels._arrays import (
     byte_vector,
     complex_matrix,
     complex_vector,
+    copy_values,
     identity,
     integer_vector,
     max_abs,
     new_cube,
     new_matrix,
     new_vector,
-    sum_of,
     zero_cube,
     zero_integers,
     zero_matrix,
@@ -23,7 +23,7 @@ from vines.kernels._arrays import (
 )
 from vines.kernels._cache import CACHE
 from vines.kernels._decorators import cold_njit, entry_njit, fused_njit, linked_njit, loop_njit, njit
-from vines.kernels._tasks import Task, compile_tasks, do_task, is_warm
+from vines.kernels._tasks import Task, compile_here, compile_tasks, is_warm
 
 __all__ = [
     "CACHE",
@@ -31,10 +31,11 @@ __all__ = [
     "Task",
     "byte_vector",
     "cold_njit",
+    "compile_here",
     "compile_tasks",
     "complex_matrix",
     "complex_vector",
-    "do_task",
+    "copy_values",
     "entry_njit",
     "expected",
     "fused_njit",
@@ -48,7 +49,6 @@ __all__ = [
     "new_matrix",
     "new_vector",
     "njit",
-    "sum_of",
     "zero_cube",
     "zero_integers",
     "zero_matrix",

@@ -1,7 +1,7 @@
 """Arrays inside kernels, each way to make one compiled once.
 
 numba writes into every function that calls numpy.empty what would format the message of a failure: some 5,000
-instructions, more than most kernels have of their own. It is alike with reductions.
+instructions, more than most kernels have of their own. It is alike with reductions and with assignments of arrays.
 """
 
 from __future__ import annotations
@@ -16,13 +16,13 @@ __all__ = [
     "byte_vector",
     "complex_matrix",
     "complex_vector",
+    "copy_values",
     "identity",
     "integer_vector",
     "max_abs",
     "new_cube",
     "new_matrix",
     "new_vector",
-    "sum_of",
     "zero_cube",
     "zero_integers",
     "zero_matrix",
@@ -99,7 +99,20 @@ def complex_matrix(n, m):
 @linked_njit
 def identity(n):
     """Return the identity of n by n doubles."""
-    return np.eye(n)
+    out = np.zeros((n, n))
+    for k in range(n):
+        out[k, k] = 1.0
+    return out
+
+
+@linked_njit
+def copy_values(out, values):
+    """Write a vector over the first places of another one.
+
+    An assignment of arrays would bring the text of its error message into the kernel, which takes seconds to compile.
+    """
+    for k in range(values.shape[0]):
+        out[k] = values[k]
 
 
 @linked_njit
@@ -111,9 +124,3 @@ def max_abs(values):
         if size > largest or math.isnan(size):
             largest = size
     return largest
-
-
-@linked_njit
-def sum_of(values):
-    """Return the sum of all values."""
-    return np.sum(values)

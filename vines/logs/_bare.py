@@ -16,6 +16,7 @@ import numpy as np
 
 from vines.logs._channels import Channel, Rows, log_times
 from vines.logs._form import Form, stamps
+from vines.model import VI_NES
 from vines.schema import WireFormat, foxglove_schema
 
 __all__ = ["bare_rows"]
@@ -168,7 +169,7 @@ def _curves(states: np.ndarray) -> Rows:
     form.align(4).put(struct.pack("<I", len(series)))
     for name in series:
         form.cdr_text(name)
-    groups = (["x1", "x2", "w"], ["v1", "v2", "w_dot"], ["kinetic_1", "kinetic_2", "potential"])
+    groups = (["x1", "x2", "w"], ["v1", "v2", "w_dot"], list(VI_NES.energies.stored))
     for names in groups:
         form.cdr_doubles(names)
     channel = Channel(
@@ -183,11 +184,16 @@ def _words(impacts: np.ndarray, sticks: np.ndarray) -> list[Rows]:
     with np.errstate(invalid="ignore"):  # infinite velocities are kept, and shown as nan here
         after = impacts["v1_after"] - impacts["v2_after"]
     lines = [
-        (float(row["t"]), f"{_end(row)} impact {row['index']}   w' {row['w_dot']:+.4f} -> {left:+.4f}")
+        (
+            float(row["t"]),
+            f"{VI_NES.letters([row['side']])} impact {row['index']}   w' {row['w_dot']:+.4f} -> {left:+.4f}",
+        )
         for row, left in zip(impacts, after, strict=True)
     ]
     for row in sticks:
-        text = f"{_end(row)} sticks after {row['impacts']} impacts, released at {row['t_release']:.4f}"
+        text = (
+            f"{VI_NES.letters([row['side']])} sticks after {row['impacts']} impacts, released at {row['t_release']:.4f}"
+        )
         lines.append((float(row["t_start"]), text))
     if not lines:
         return []
@@ -198,10 +204,6 @@ def _words(impacts: np.ndarray, sticks: np.ndarray) -> list[Rows]:
     times = log_times(np.array([time for time, _ in lines]))
     padded = np.char.ljust(texts, size)
     return [_filled(_foxglove(24, "/impact_log", "Log"), form.layout(), times, {"text": padded})]
-
-
-def _end(row: np.void) -> str:
-    return "L" if row["side"] == 1 else "R"
 
 
 def _filled(channel: Channel, layout: WireFormat, times: np.ndarray, values: Mapping[str, np.ndarray]) -> Rows:

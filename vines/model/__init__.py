@@ -1,7 +1,47 @@
-"""The model: parameters and words of impacts. Pure Python, no numba."""
+"""The model: its declaration, parameters and words of impacts. Pure Python, no numba."""
 
-from vines.model._params import LAM_TABLE_1, PARAMETER_NAMES, Params
+from vines.model._params import Params
 from vines.model._physical import PhysicalParams
+from vines.model._system import Contact, Coordinate, Parameter, Range, System
+from vines.model._vi_nes import (
+    AMPLITUDE,
+    DAMPING,
+    FREQUENCY,
+    LAM_TABLE_1,
+    MASS,
+    PARAMETER_NAMES,
+    RESTITUTION,
+    START_NAMES,
+    STATE_NAMES,
+    V1,
+    V2,
+    VI_NES,
+    X1,
+    X2,
+)
 from vines.model._words import Word
 
-__all__ = ["LAM_TABLE_1", "PARAMETER_NAMES", "Params", "PhysicalParams", "Word"]
+__all__ = [
+    "AMPLITUDE",
+    "DAMPING",
+    "FREQUENCY",
+    "LAM_TABLE_1",
+    "MASS",
+    "PARAMETER_NAMES",
+    "RESTITUTION",
+    "START_NAMES",
+    "STATE_NAMES",
+    "V1",
+    "V2",
+    "VI_NES",
+    "X1",
+    "X2",
+    "Contact",
+    "Coordinate",
+    "Parameter",
+    "Params",
+    "PhysicalParams",
+    "Range",
+    "System",
+    "Word",
+]

@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 import math
-from dataclasses import asdict, dataclass, fields, replace
+from dataclasses import asdict, dataclass, field, fields, replace
+from typing import Any
 
-from vines.errors import ParameterError, nearest
+from vines.model._vi_nes import VI_NES
 
-__all__ = ["LAM_TABLE_1", "PARAMETER_NAMES", "Params"]
+__all__ = ["Params"]
 
-LAM_TABLE_1 = 2.53 / math.sqrt(11680.0 * 3.807)
-"""c/(M omega0) from Table 1 of the paper, .0119979670…; the paper prints the truncated .01199."""
 
-PARAMETER_NAMES = ("mu", "A", "Omega", "r", "lam")
+def _default(name: str) -> Any:
+    return field(default=VI_NES.parameter(name).default)
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,18 +49,13 @@ class Params:
 
     mu: float
     A: float
-    Omega: float = 1.0
-    r: float = 0.65
-    lam: float = LAM_TABLE_1
+    Omega: float = _default("Omega")
+    r: float = _default("r")
+    lam: float = _default("lam")
 
     def __post_init__(self) -> None:
-        for name in PARAMETER_NAMES:
-            object.__setattr__(self, name, finite(name, getattr(self, name)))
-        _require("mu", self.mu, self.mu > 0, "mu > 0", "mu is the mass ratio m/M")
-        _require("A", self.A, self.A >= 0, "A >= 0", "a negative amplitude is a phase shift of half a period")
-        _require("Omega", self.Omega, self.Omega > 0, "Omega > 0", "Omega is the frequency ratio omega/omega0")
-        _require("r", self.r, 0 <= self.r <= 1, "0 <= r <= 1", "r is the coefficient of restitution")
-        _require("lam", self.lam, 0 <= self.lam < 2, "0 <= lam < 2", "the oscillator must be underdamped")
+        for parameter in VI_NES.parameters:
+            object.__setattr__(self, parameter.name, parameter.check(getattr(self, parameter.name)))
 
     @property
     def period(self) -> float:
@@ -81,8 +76,7 @@ class Params:
         0.03
         """
         for name in changes:
-            if name not in PARAMETER_NAMES:
-                raise ParameterError(f"unknown parameter {name!r}: {nearest(name, PARAMETER_NAMES)}")
+            VI_NES.parameter(name)
         return replace(self, **changes)
 
     def as_dict(self) -> dict[str, float]:
@@ -91,20 +85,3 @@ class Params:
 
     def __str__(self) -> str:
         return ", ".join(f"{f.name} = {getattr(self, f.name):.6g}" for f in fields(self)) + " (dimensionless)"
-
-
-def finite(name: str, value: object, unit: str = "") -> float:
-    """Return a value as a float, or raise `ParameterError` if it is not a finite number."""
-    try:
-        number = math.nan if isinstance(value, bool | str) else float(value)  # pyright: ignore[reportArgumentType]
-    except (TypeError, ValueError):
-        number = math.nan
-    if not math.isfinite(number):
-        shown = " ".join(repr(value).split())
-        raise ParameterError(f"{name} is {shown}; give a finite number{unit and f' in {unit}'}")
-    return number
-
-
-def _require(name: str, value: float, holds: bool, allowed: str, why: str) -> None:
-    if not holds:
-        raise ParameterError(f"{name} is {value:g}, allowed is {allowed}: {why}")

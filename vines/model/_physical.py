@@ -3,14 +3,18 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, field
+from typing import Any
 
 from vines.errors import ParameterError
-from vines.model._params import Params, finite
+from vines.model._params import Params
+from vines.model._vi_nes import VI_NES
 
 __all__ = ["PhysicalParams"]
 
-UNITS = {"M": "kg", "c": "N s/m", "k": "N/m", "b": "m", "r": ""}
+
+def _default(name: str) -> Any:
+    return field(default=next(each.default for each in VI_NES.rig if each.name == name))
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,22 +51,15 @@ class PhysicalParams:
     M = 3.807 kg, c = 2.53 N s/m, k = 11680 N/m, b = 0.015 m, r = 0.65; omega0 = 55.3898 rad/s
     """
 
-    M: float = 3.807
-    c: float = 2.53
-    k: float = 11680.0
-    b: float = 0.015
-    r: float = 0.65
+    M: float = _default("M")
+    c: float = _default("c")
+    k: float = _default("k")
+    b: float = _default("b")
+    r: float = _default("r")
 
     def __post_init__(self) -> None:
-        for field in fields(self):
-            object.__setattr__(self, field.name, finite(field.name, getattr(self, field.name), UNITS[field.name]))
-        for name in ("M", "k", "b"):
-            if getattr(self, name) <= 0:
-                raise ParameterError(f"{name} is {getattr(self, name):g} {UNITS[name]}, allowed is {name} > 0")
-        if self.c < 0:
-            raise ParameterError(f"c is {self.c:g} N s/m, allowed is c >= 0")
-        if not 0 <= self.r <= 1:
-            raise ParameterError(f"r is {self.r:g}, allowed is 0 <= r <= 1: r is the coefficient of restitution")
+        for each in VI_NES.rig:
+            object.__setattr__(self, each.name, each.check(getattr(self, each.name)))
         if self.lam >= 2:
             most = 2 * math.sqrt(self.k * self.M)
             raise ParameterError(
@@ -96,12 +93,7 @@ class PhysicalParams:
         ParameterError
             If a dimensionless parameter comes out of its range.
         """
-        E, omega, m = finite("E", E, "m"), finite("omega", omega, "rad/s"), finite("m", m, "kg")
-        for name, value, unit in (("omega", omega, "rad/s"), ("m", m, "kg")):
-            if value <= 0:
-                raise ParameterError(f"{name} is {value:g} {unit}, allowed is {name} > 0")
-        if E < 0:
-            raise ParameterError(f"E is {E:g} m, allowed is E >= 0")
+        E, omega, m = (each.check(value) for each, value in zip(VI_NES.run, (E, omega, m), strict=True))
         return Params(mu=m / self.M, A=E / self.b, Omega=omega / self.omega0, r=self.r, lam=self.lam)
 
     def physical(self, p: Params) -> dict[str, float]:
@@ -137,7 +129,7 @@ class PhysicalParams:
 
     def __str__(self) -> str:
         listed = ", ".join(
-            f"{f.name} = {getattr(self, f.name):g}" + (f" {UNITS[f.name]}" if UNITS[f.name] else "")
-            for f in fields(self)
+            f"{each.name} = {getattr(self, each.name):g}" + ("" if each.unit == "1" else f" {each.unit}")
+            for each in VI_NES.rig
         )
         return f"{listed}; omega0 = {self.omega0:.4f} rad/s"

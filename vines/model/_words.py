@@ -6,12 +6,15 @@ import re
 from dataclasses import dataclass
 
 from vines.errors import ParameterError
+from vines.model._vi_nes import VI_NES
 
 __all__ = ["Word"]
 
-_SHAPE = re.compile(r"([LR]+)(?:/([1-9][0-9]*)?T)?")
-_SWAP = str.maketrans("LR", "RL")
-_HOW = "write the impacts as letters L and R, then /pT if p > 1, such as LR, LLR or LRLR/2T"
+_LEFT, _RIGHT = (contact.letter for contact in VI_NES.contacts)
+_SIGNS = {contact.letter: contact.sign for contact in VI_NES.contacts}
+_SHAPE = re.compile(rf"([{VI_NES.alphabet}]+)(?:/([1-9][0-9]*)?T)?")
+_SWAP = str.maketrans(dict(VI_NES.mirror.letters))
+_HOW = f"write the impacts as letters {' and '.join(VI_NES.alphabet)}, then /pT if p > 1, such as LR, LLR or LRLR/2T"
 
 
 @dataclass(frozen=True, slots=True, init=False)
@@ -70,12 +73,12 @@ class Word:
     @property
     def n(self) -> int:
         """Impacts on the left end over pT."""
-        return self.letters.count("L")
+        return self.letters.count(_LEFT)
 
     @property
     def m(self) -> int:
         """Impacts on the right end over pT."""
-        return self.letters.count("R")
+        return self.letters.count(_RIGHT)
 
     @property
     def name(self) -> str:
@@ -108,7 +111,7 @@ class Word:
         >>> Word("LLR").sides
         (1, 1, -1)
         """
-        return tuple(1 if letter == "L" else -1 for letter in self.letters)
+        return tuple(_SIGNS[letter] for letter in self.letters)
 
     @property
     def mirror(self) -> Word:

@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from vines.dynamics._constants import constants
-from vines.model import Params, Word
+from vines.model import VI_NES, X1, X2, Params, Word
 from vines.orbits._budget import orbit_measures
 from vines.orbits._floquet import half_map, monodromy, sorted_multipliers, squared
 from vines.orbits._orbit import Orbit
@@ -67,7 +67,7 @@ def assemble(word: Word, p: Params, t: Floats, states: Floats, remark: str = "")
 
 def _canonical(word: Word, p: Params, t: Floats, states: Floats) -> tuple[Floats, Floats]:
     """Rotate to the canonical first impact, the one of least phase if there are several, and shift it into [0, T)."""
-    letters = "".join("L" if gap > 0 else "R" for gap in states[:, 0] - states[:, 2])
+    letters = VI_NES.letters(states[:, X1] - states[:, X2])
     starts = [k for k in range(len(t)) if letters[k:] + letters[:k] == word.letters]
     k = min(starts, key=lambda k: (float(t[k] % p.period), k))
     times = np.concatenate([t[k:], t[:k] + word.p * p.period])

@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from vines.errors import OrbitNotFound
-from vines.model import Params, Word
+from vines.model import V2, Params, Word
 from vines.orbits._all import all_orbits
 from vines.orbits._box import Box
 from vines.orbits._branch import Branch
@@ -237,5 +237,5 @@ def _neighbour(orbit: Orbit, p: Params) -> Orbit:
         found = symmetric_orbits(p, orbit.word.p)
         if not found:
             raise OrbitNotFound(f"the symmetric {orbit.name} orbit is gone at {p}; look nearer to {orbit.params}")
-        return min(found, key=lambda other: abs(other.states[0, 3] - orbit.states[0, 3]))
+        return min(found, key=lambda other: abs(other.states[0, 3] - orbit.states[0, V2]))
     return refine(orbit.word, p, orbit)

@@ -13,7 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 from vines.errors import OrbitNotFound, ParameterError
-from vines.model import Params
+from vines.model import V2, Params
 from vines.orbits._assemble import assemble
 from vines.orbits._closed_form import family_of, impact_states
 from vines.orbits._family import closing_at
@@ -46,7 +46,7 @@ class Chart:
         self._closed_form = orbit.symmetric and len(orbit.word) == 2
         n = len(orbit.word) // 2 if orbit.symmetric else len(orbit.word)
         self._side = np.array(orbit.word.sides, dtype=np.int64)
-        unknowns = np.array([-orbit.states[0, 3]]) if self._closed_form else orbit.t[:n] * orbit.params.Omega
+        unknowns = np.array([-orbit.states[0, V2]]) if self._closed_form else orbit.t[:n] * orbit.params.Omega
         self._n = len(unknowns)
         self._centre = np.append(unknowns, box.place(orbit.params))
         self._plane = np.linalg.svd(self._linearised(self._centre)[1])[2][self._n :]

@@ -8,8 +8,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from vines.errors import OrbitNotFound, ParameterError, nearest
-from vines.model import PARAMETER_NAMES
+from vines.errors import OrbitNotFound, ParameterError
+from vines.model import VI_NES
 from vines.orbits._branch import Bifurcation, Branch
 from vines.orbits._conditions import (
     GRAZING,
@@ -92,8 +92,7 @@ def continue_orbit(
     >>> [(b.type, round(b.value, 4)) for b in branch.bifurcations]
     [('symmetry_breaking', 0.018)]
     """
-    if parameter not in PARAMETER_NAMES:
-        raise ParameterError(f"unknown parameter {parameter!r}: {nearest(str(parameter), PARAMETER_NAMES)}")
+    VI_NES.parameter(parameter)
     start = getattr(orbit.params, parameter)
     stop = getattr(orbit.params.replace(**{parameter: stop}), parameter)
     if start == stop:

@@ -7,7 +7,7 @@ import numpy.typing as npt
 
 from vines.dynamics._constants import constants
 from vines.kernels import entry_njit, linked_njit, new_vector
-from vines.model import PARAMETER_NAMES, Params
+from vines.model import PARAMETER_NAMES, V2, Params
 from vines.orbits._assemble import assemble
 from vines.orbits._closed_form import family_of, impact_states
 from vines.orbits._defining import FLIP, FOLD, GRAZE, STOP, TORUS, condition_kernel, gap_kernel, turnings_kernel
@@ -84,7 +84,7 @@ class CurveProblem:
         self._explicit = orbit.symmetric and len(orbit.word) == 2
         self.place, self._wall = 0, 0
         if self._explicit:
-            unknowns = np.array([-orbit.states[0, 3]])
+            unknowns = np.array([-orbit.states[0, V2]])
         else:
             n = len(orbit.word) // 2 if orbit.symmetric else len(orbit.word)
             unknowns = orbit.t[:n] * orbit.params.Omega

@@ -8,13 +8,13 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
-
 from vines.dynamics._constants import oscillator
 from vines.dynamics._flight import derivatives, phasors, turn
 from vines.dynamics._impact_law import after_impact_kernel, impact_law_kernel
 from vines.dynamics._saltation import jacobian_kernel
-from vines.kernels import identity, linked_njit, new_matrix, sum_of
+from vines.kernels import identity, linked_njit, new_matrix, zero_matrix
+from vines.model import AMPLITUDE, DAMPING, FREQUENCY, MASS, RESTITUTION, V1, V2, X1, X2
+from vines.orbits._elimination import eliminate
 from vines.orbits._turning import turning_points_kernel
 
 __all__ = ["FLIP", "FOLD", "GRAZE", "STOP", "TORUS", "condition_kernel", "gap_kernel", "turnings_kernel"]
@@ -24,18 +24,43 @@ FOLD, FLIP, TORUS, GRAZE, STOP = range(5)
 
 
 @linked_njit
+def _product(left, right):
+    """Return the product of two matrices of 4 by 4: BLAS takes a second to compile into a kernel."""
+    out = zero_matrix(4, 4)
+    for i in range(4):
+        for j in range(4):
+            for k in range(4):
+                out[i, j] += left[i, k] * right[k, j]
+    return out
+
+
+@linked_njit
 def _period_map(values, duration, side, t, states, half):
     """Return M, or H where `half`, of an orbit with these impacts."""
-    mu, A, Omega, r, lam = values[0], values[1], values[2], values[3], values[4]
+    mu, A, Omega = values[MASS], values[AMPLITUDE], values[FREQUENCY]
+    r, lam = values[RESTITUTION], values[DAMPING]
     product = identity(4)
     for j in range(t.size // 2 if half else t.size):
         tau = t[j + 1] - t[j] if j + 1 < t.size else t[0] + duration - t[j]
-        x1, v1, v2 = states[j, 0], states[j, 1], states[j, 3]
+        x1, v1, v2 = states[j, X1], states[j, V1], states[j, V2]
         J = jacobian_kernel(mu, A, Omega, r, lam, x1, v1, v2, Omega * t[j], tau)[0]
-        product = J @ product
+        product = _product(J, product)
     if half:
-        product[:3] *= -1.0
+        for i in range(3):
+            for k in range(4):
+                product[i, k] = -product[i, k]
     return product
+
+
+@linked_njit
+def _determinant_of_one_and(M, sign):
+    """Return det(I + sign M)."""
+    n = M.shape[0]
+    matrix = new_matrix(n, n)
+    for i in range(n):
+        for k in range(n):
+            matrix[i, k] = sign * M[i, k] + (1.0 if i == k else 0.0)
+    return eliminate(matrix, new_matrix(n, 0))[1]
 
 
 @linked_njit
@@ -48,15 +73,16 @@ def _without_pair(M):
         for b in range(6):
             k, m = rows[b]
             C[a, b] = M[i, k] * M[j, m] - M[i, m] * M[j, k]
-    return np.linalg.det(identity(6) - C)
+    return _determinant_of_one_and(C, -1.0)
 
 
 @linked_njit
 def gap_kernel(values, t, states, flight, tau):
     """Return w, w' and w'' at time tau of a flight."""
-    free, Omega = oscillator(1.0, values[1], values[2], values[4]), values[2]
-    x1, v1, x2, v2 = states[flight, 0], states[flight, 1], states[flight, 2], states[flight, 3]
-    after, ball = after_impact_kernel(impact_law_kernel(values[0], values[3]), v1, v2)
+    Omega = values[FREQUENCY]
+    free = oscillator(1.0, values[AMPLITUDE], Omega, values[DAMPING])
+    x1, v1, x2, v2 = states[flight, X1], states[flight, V1], states[flight, X2], states[flight, V2]
+    after, ball = after_impact_kernel(impact_law_kernel(values[MASS], values[RESTITUTION]), v1, v2)
     zr, zi, qr, qi = phasors(free, Omega, x1, after, (Omega * t[flight]) % (2.0 * math.pi))
     zr, zi, qr, qi = turn(free, Omega, zr, zi, qr, qi, tau)
     x, v, a, _, _ = derivatives(free, Omega, zr, zi, qr, qi)
@@ -88,12 +114,16 @@ def condition_kernel(kind, values, p, side, t, states, half, place, wall, tau):
         w, speed, _ = gap_kernel(values, t, states, place, tau)
         return w - wall, speed
     if kind == STOP:
-        return states[place, 1] - states[place, 3], 0.0
-    M = _period_map(values, 2.0 * math.pi * p / values[2], side, t, states, half)
-    size = 1.0 + math.sqrt(sum_of(M * M))
+        return states[place, V1] - states[place, V2], 0.0
+    M = _period_map(values, 2.0 * math.pi * p / values[FREQUENCY], side, t, states, half)
+    squares = 0.0
+    for i in range(4):
+        for k in range(4):
+            squares += M[i, k] * M[i, k]
+    size = 1.0 + math.sqrt(squares)
     if kind == TORUS:
         return _without_pair(M) / (size * size), 0.0
-    return np.linalg.det(identity(4) - M if kind == FOLD else identity(4) + M) / size, 0.0
+    return _determinant_of_one_and(M, -1.0 if kind == FOLD else 1.0) / size, 0.0
 
 
 @linked_njit
@@ -110,7 +140,7 @@ def turnings_kernel(c, duration, t, states):
     rows = []
     for j in range(t.size):
         tau = t[j + 1] - t[j] if j + 1 < t.size else t[0] + duration - t[j]
-        x1, v1, x2, v2 = states[j, 0], states[j, 1], states[j, 2], states[j, 3]
+        x1, v1, x2, v2 = states[j, X1], states[j, V1], states[j, X2], states[j, V2]
         after, ball = after_impact_kernel(c.law, v1, v2)
         phase = (c.Omega * t[j]) % (2.0 * math.pi)
         zr, zi, qr, qi = phasors(c.free, c.Omega, x1, after, phase)

@@ -11,42 +11,12 @@ import cmath
 import math
 
 from vines.kernels import linked_njit, max_abs, new_cube, new_matrix, new_vector, zero_matrix
+from vines.orbits._elimination import eliminate
 from vines.orbits._values import essentials_of
 
-__all__ = ["closing_kernel", "eliminate", "newton_kernel"]
+__all__ = ["closing_kernel", "newton_kernel"]
 
 _EPS = 2.220446049250313e-16
-
-
-@linked_njit
-def eliminate(matrix, right):
-    """Solve matrix x = right in place, right of shape (N, M), by Gaussian elimination; say whether it was regular."""
-    N = matrix.shape[0]
-    for k in range(N):
-        pivot = k
-        for i in range(k + 1, N):
-            if abs(matrix[i, k]) > abs(matrix[pivot, k]):
-                pivot = i
-        if not abs(matrix[pivot, k]) > 0.0:
-            return False
-        if pivot != k:
-            for j in range(N):
-                matrix[k, j], matrix[pivot, j] = matrix[pivot, j], matrix[k, j]
-            for j in range(right.shape[1]):
-                right[k, j], right[pivot, j] = right[pivot, j], right[k, j]
-        for i in range(k + 1, N):
-            factor = matrix[i, k] / matrix[k, k]
-            for j in range(k + 1, N):
-                matrix[i, j] -= factor * matrix[k, j]
-            for j in range(right.shape[1]):
-                right[i, j] -= factor * right[k, j]
-    for k in range(N - 1, -1, -1):
-        for j in range(right.shape[1]):
-            total = right[k, j]
-            for i in range(k + 1, N):
-                total -= matrix[k, i] * right[i, j]
-            right[k, j] = total / matrix[k, k]
-    return True
 
 
 @linked_njit
@@ -122,7 +92,7 @@ def closing_kernel(c, duration, side, t):
     defect = new_vector(N)
     slope = new_matrix(N, N)
     states = new_matrix(N, 4)
-    if not eliminate(law, kicks):
+    if not eliminate(law, kicks)[0]:
         return False, defect, slope, states
     w = new_vector(N)
     for j in range(N):
@@ -205,7 +175,7 @@ def newton_kernel(c, duration, side, t, iterations):
         step = new_matrix(N, 1)
         for j in range(N):
             step[j, 0] = defect[j]
-        if not regular or not math.isfinite(size) or not eliminate(slope, step):
+        if not regular or not math.isfinite(size) or not eliminate(slope, step)[0]:
             return False, t, size, states
         # No flight time may shrink to less than a fifth of itself in one step.
         share, largest = 1.0, 0.0

@@ -7,8 +7,8 @@ import math
 import numpy as np
 import numpy.typing as npt
 
-from vines.kernels import linked_njit, new_matrix, new_vector, njit, zero_matrix
-from vines.model import PARAMETER_NAMES
+from vines.kernels import copy_values, linked_njit, new_matrix, new_vector, njit, zero_matrix
+from vines.model import FREQUENCY, MASS, PARAMETER_NAMES
 from vines.orbits._assemble import assemble
 from vines.orbits._equations import closing_kernel
 from vines.orbits._orbit import Orbit
@@ -27,7 +27,7 @@ def unfold(values, p, side, phases):
     """Return the times of all impacts from the phases of the free ones; each further set of them comes pT/2 later."""
     t = new_vector(side.size)
     for j in range(side.size):
-        t[j] = (phases[j % phases.size] + math.pi * p * (j // phases.size)) / values[2]
+        t[j] = (phases[j % phases.size] + math.pi * p * (j // phases.size)) / values[FREQUENCY]
     return t
 
 
@@ -47,14 +47,17 @@ def closing_at(values, p, side, phases):
     """
     n = phases.size
     t = unfold(values, p, side, phases)
-    regular, defect, slope, states = closing_kernel(essentials(values), 2.0 * math.pi * p / values[2], side, t)
+    regular, defect, slope, states = closing_kernel(essentials(values), 2.0 * math.pi * p / values[FREQUENCY], side, t)
     if not regular:
         defect[:] = np.nan
     folded = zero_matrix(n, n)
     for i in range(n):
         for j in range(side.size):
-            folded[i, j % n] += slope[i, j] / (values[0] * values[2])
-    return defect[:n] / values[0], folded, t, states
+            folded[i, j % n] += slope[i, j] / (values[MASS] * values[FREQUENCY])
+    scaled = new_vector(n)
+    for i in range(n):
+        scaled[i] = defect[i] / values[MASS]
+    return scaled, folded, t, states
 
 
 @linked_njit
@@ -65,13 +68,15 @@ def _linearised(values, index, p, side, y):
     values[index] = y[n]
     defect, folded, _, _ = closing_at(values, p, side, y[:n])
     matrix = new_matrix(n, n + 1)
-    matrix[:, :n] = folded
+    for i in range(n):
+        copy_values(matrix[i], folded[i])
     step = DIFFERENCE * max(abs(y[n]), 0.01)
     values[index] = y[n] + step
     above = closing_at(values, p, side, y[:n])[0]
     values[index] = y[n] - step
     below = closing_at(values, p, side, y[:n])[0]
-    matrix[:, n] = (above - below) / (2.0 * step)
+    for i in range(n):
+        matrix[i, n] = (above[i] - below[i]) / (2.0 * step)
     return defect, matrix
 
 

@@ -11,42 +11,9 @@ import cmath
 import math
 
 from vines.kernels import linked_njit, new_matrix, new_vector, njit
+from vines.orbits._elimination import eliminate
 
 __all__ = ["defects_kernel", "linear_kernel", "sample_kernel", "start_kernel"]
-
-
-@linked_njit
-def _eliminated(matrix, right):
-    """Solve matrix x = right in place by Gaussian elimination and return the determinant; 0 if singular."""
-    N = matrix.shape[0]
-    det = 1.0
-    for k in range(N):
-        pivot = k
-        for i in range(k + 1, N):
-            if abs(matrix[i, k]) > abs(matrix[pivot, k]):
-                pivot = i
-        if matrix[pivot, k] == 0.0:
-            return 0.0
-        if pivot != k:
-            det = -det
-            for j in range(N):
-                matrix[k, j], matrix[pivot, j] = matrix[pivot, j], matrix[k, j]
-            for j in range(3):
-                right[k, j], right[pivot, j] = right[pivot, j], right[k, j]
-        det *= matrix[k, k]
-        for i in range(k + 1, N):
-            factor = matrix[i, k] / matrix[k, k]
-            for j in range(k + 1, N):
-                matrix[i, j] -= factor * matrix[k, j]
-            for j in range(3):
-                right[i, j] -= factor * right[k, j]
-    for k in range(N - 1, -1, -1):
-        for j in range(3):
-            total = right[k, j]
-            for i in range(k + 1, N):
-                total -= matrix[k, i] * right[i, j]
-            right[k, j] = total / matrix[k, k]
-    return det
 
 
 @linked_njit
@@ -116,7 +83,7 @@ def linear_kernel(c, span, flip, side, tau, R):
         law[j, j] += 1.0
         for k in range(3):
             kicks[j, k] = -e * (v[j, N + k] - sign * ball[b, N + k])
-    factor *= _eliminated(law, kicks)
+    factor *= eliminate(law, kicks)[1]
     for j in range(N):
         b, sign = (j - 1, 1.0) if j > 0 else (N - 1, float(flip))
         for m in range(3):

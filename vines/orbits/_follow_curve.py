@@ -9,8 +9,8 @@ from dataclasses import dataclass, field
 import numpy as np
 import numpy.typing as npt
 
-from vines.errors import OrbitNotFound, ParameterError, nearest
-from vines.model import PARAMETER_NAMES
+from vines.errors import OrbitNotFound, ParameterError
+from vines.model import VI_NES
 from vines.orbits._branch import Bifurcation
 from vines.orbits._curve import Curve, SpecialPoint
 from vines.orbits._curve_problem import CurveProblem
@@ -76,8 +76,7 @@ def follow_curve(
     ('symmetry_breaking', ('box', 'box'))
     """
     for name in parameters:
-        if name not in PARAMETER_NAMES:
-            raise ParameterError(f"unknown parameter {name!r}: {nearest(str(name), PARAMETER_NAMES)}")
+        VI_NES.parameter(name)
     if len(set(parameters)) != 2:
         raise ParameterError(f"parameters are {parameters}, allowed are two different ones")
     if set(box) != set(parameters):

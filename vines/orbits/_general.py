@@ -9,7 +9,7 @@ import numpy.typing as npt
 
 from vines.dynamics._constants import constants
 from vines.errors import OrbitNotFound, ParameterError
-from vines.model import Params, Word
+from vines.model import V1, V2, Params, Word
 from vines.orbits._assemble import assemble, asymmetry
 from vines.orbits._closed_form import refuse_resonance
 from vines.orbits._equations import newton_kernel
@@ -93,7 +93,7 @@ def proper(word: Word, duration: float, t: Floats, states: Floats) -> bool:
     """Say whether a solution is an orbit of least period pT whose impacts are in order and come from inside."""
     if not np.all(np.diff(t, append=t[0] + duration) > 0):
         return False
-    if not np.all(np.array(word.sides) * (states[:, 1] - states[:, 3]) > 0):
+    if not np.all(np.array(word.sides) * (states[:, V1] - states[:, V2]) > 0):
         return False
     return _repetition(word, duration, t, states) >= _SAME
 

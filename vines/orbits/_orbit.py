@@ -12,7 +12,7 @@ import numpy.typing as npt
 from vines.dynamics import Measures
 from vines.dynamics._impact_law import after_impact, impact_law
 from vines.dynamics._trajectory import IMPACT
-from vines.model import Params, Word
+from vines.model import V1, V2, Params, Word
 
 __all__ = ["Orbit", "short_hash"]
 
@@ -106,7 +106,7 @@ class Orbit:
     @property
     def w_dot(self) -> Floats:
         """Relative velocity w' = v1 - v2 just before each impact, shape (N,)."""
-        return self.states[:, 1] - self.states[:, 3]
+        return self.states[:, V1] - self.states[:, V2]
 
     @property
     def phase(self) -> Floats:
@@ -154,7 +154,7 @@ class Orbit:
     def _after(self) -> Floats:
         """Return v1, v2 just after each impact (paper, eq. (12)), shape (N, 2)."""
         law = impact_law(self.params.mu, self.params.r)
-        return np.column_stack(after_impact(law, self.states[:, 1], self.states[:, 3]))
+        return np.column_stack(after_impact(law, self.states[:, V1], self.states[:, V2]))
 
     def start(self) -> dict[str, float]:
         """Return a state just after the first impact from which `vines.simulate` follows the orbit.

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from vines.dynamics import ball_locked, no_ball
+from vines.model import X1
 from vines.orbits._branch import Bifurcation, Branch
 from vines.orbits._orbit import Orbit
 
@@ -112,7 +113,7 @@ def bifurcation_row(bifurcation: Bifurcation, branch_id: str | None = None) -> R
         "orbit_id": orbit.orbit_id,
         "t": (orbit.t - orbit.t[0]).tolist(),
         "side": orbit.side.tolist(),
-        "x1": orbit.states[:, 0].tolist(),
+        "x1": orbit.states[:, X1].tolist(),
         "w_dot": orbit.w_dot.tolist(),
         "phase": orbit.phase.tolist(),
     }

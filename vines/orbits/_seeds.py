@@ -9,7 +9,7 @@ import numpy.typing as npt
 
 from vines.dynamics import simulate
 from vines.dynamics._constants import Constants
-from vines.model import Params, Word
+from vines.model import STATE_NAMES, VI_NES, Params, Word
 from vines.orbits._flights import start_kernel
 from vines.orbits._floquet import monodromy
 from vines.orbits._orbit import Orbit
@@ -42,10 +42,10 @@ def harvested_times(word: Word, p: Params) -> Iterator[Floats]:
         hits = simulate(p, x1=x1, v1=v1, x2=x2, v2=v2, periods=_PERIODS, max_impacts_per_period=200).impacts
         if len(hits) <= N:
             continue
-        letters = "".join(np.where(hits["side"] > 0, "L", "R"))
+        letters = VI_NES.letters(hits["side"])
         t = np.asarray(hits["t"])
         change = np.abs(t[N:] - t[:-N] - duration)
-        for name in ("x1", "v1", "x2", "v2"):
+        for name in STATE_NAMES:
             change = np.maximum(change, np.abs(hits[name][N:] - hits[name][:-N]))
         reads = np.array([letters[k : k + N] == word.letters for k in range(len(change))])
         for k in [k for k in np.argsort(change, kind="stable") if reads[k] and change[k] < 0.5][:_BEST]:

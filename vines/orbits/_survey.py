@@ -7,7 +7,7 @@ import math
 from vines.dynamics._flight import derivatives, phasors, turn
 from vines.dynamics._impact_law import after_impact_kernel
 from vines.dynamics._saltation import jacobian_kernel
-from vines.kernels import linked_njit, new_cube, njit
+from vines.kernels import copy_values, linked_njit, new_cube, njit
 from vines.orbits._turning import turning_points_kernel
 
 __all__ = ["NO_TURNING", "inspect_flight", "survey_kernel"]
@@ -107,7 +107,8 @@ def survey_kernel(c, duration, side, t, states):
         phase = (c.Omega * t[j]) % (2.0 * math.pi)
         x1, v1, x2, v2 = states[j, 0], states[j, 1], states[j, 2], states[j, 3]
         J, x1n, v1n, v2n = jacobian_kernel(c.mu, c.A, c.Omega, c.r, c.lam, x1, v1, v2, phase, tau)
-        jacobians[j] = J
+        for i in range(4):
+            copy_values(jacobians[j, i], J[i])
         residual = max(
             residual,
             abs(x1 - x2 - side[j]),

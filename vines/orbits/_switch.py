@@ -6,6 +6,7 @@ import numpy as np
 
 from vines.dynamics import no_ball
 from vines.errors import OrbitNotFound
+from vines.model import X1
 from vines.orbits._branch import Bifurcation
 from vines.orbits._family import GeneralProblem
 from vines.orbits._general import origin, refine
@@ -76,7 +77,7 @@ def switch_branch(bifurcation: Bifurcation) -> list[Orbit]:
 def _pair(orbit: Orbit) -> list[Orbit]:
     """Return an orbit and its mirror image in the one order that does not depend on which of them was found."""
     pair = [orbit, mirror_image(orbit)]
-    return sorted(pair, key=lambda one: float(one.states[:, 0].mean()), reverse=True)
+    return sorted(pair, key=lambda one: float(one.states[:, X1].mean()), reverse=True)
 
 
 def _step_off(problem: GeneralProblem, step: float) -> Orbit | None:

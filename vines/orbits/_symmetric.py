@@ -6,7 +6,7 @@ import numpy as np
 import numpy.typing as npt
 
 from vines.errors import OrbitNotFound
-from vines.model import Params, Word
+from vines.model import V2, Params, Word
 from vines.orbits._assemble import assemble
 from vines.orbits._closed_form import (
     SymmetricFamily,
@@ -104,7 +104,7 @@ class SymmetricProblem:
         self.word = orbit.word
         self.parameter = parameter
         self._fixed = orbit.params.as_dict()
-        self.start = np.array([-orbit.states[0, 3], self._fixed[parameter]])
+        self.start = np.array([-orbit.states[0, V2], self._fixed[parameter]])
 
     def _at(self, value: float) -> tuple[SymmetricFamily, float]:
         now = {**self._fixed, self.parameter: value}

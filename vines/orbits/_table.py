@@ -14,8 +14,7 @@ from vines.dynamics._integrals import largest_displacement, segment_integrals
 from vines.dynamics._saltation import jacobian_kernel
 from vines.errors import ParameterError
 from vines.kernels import complex_matrix, complex_vector, entry_njit
-from vines.model import Params
-from vines.model._params import LAM_TABLE_1
+from vines.model import AMPLITUDE, DAMPING, FREQUENCY, LAM_TABLE_1, MASS, RESTITUTION, Params
 from vines.orbits._eigenvalues import eigenvalues_kernel
 from vines.orbits._survey import inspect_flight
 
@@ -89,10 +88,8 @@ def symmetric_table(
     points = np.stack([column.ravel() for column in columns], axis=-1)
     # The extremes of every column stand for the rest: the allowed ranges are intervals, resonance apart.
     for corner in (points.min(axis=0), points.max(axis=0)) if len(points) else ():
-        Params(*corner.tolist()[:2], Omega=float(corner[2]), r=float(corner[3]), lam=max(float(corner[4]), 1e-9))
-    if np.isnan(points).any() or (points[:, 4] < 0).any():
-        raise ParameterError("a parameter is not a number or lam is negative; allowed is lam >= 0")
-    if (np.hypot(1 - points[:, 2] ** 2, points[:, 4] * points[:, 2]) <= 1e-9).any():
+        Params(*corner.tolist())
+    if (np.hypot(1 - points[:, FREQUENCY] ** 2, points[:, DAMPING] * points[:, FREQUENCY]) <= 1e-9).any():
         raise ParameterError("lam is 0 at Omega = 1, where the response grows without bound; give lam > 0")
     out = np.zeros((len(points), 2), dtype=_ROW)
     _table_kernel(points, period, out)
@@ -105,7 +102,8 @@ def _table_kernel(points, period, out):
     H = complex_matrix(4, 4)
     multipliers = complex_vector(4)
     for i in range(points.shape[0]):
-        mu, A, Omega, r, lam = points[i, 0], points[i, 1], points[i, 2], points[i, 3], points[i, 4]
+        mu, A, Omega = points[i, MASS], points[i, AMPLITUDE], points[i, FREQUENCY]
+        r, lam = points[i, RESTITUTION], points[i, DAMPING]
         c = constants_kernel(mu, A, Omega, r, lam)
         half = math.pi * period / Omega
         s = complex(-c.free.half, c.free.gamma)

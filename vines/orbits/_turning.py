@@ -9,7 +9,7 @@ computed.
 from __future__ import annotations
 
 from vines.dynamics._flight import derivatives, fourth_bound, turn
-from vines.kernels import linked_njit, new_vector, njit
+from vines.kernels import copy_values, linked_njit, new_vector, njit
 
 __all__ = ["turning_points_kernel"]
 
@@ -86,7 +86,7 @@ def turning_points_kernel(c, zr, zi, qr, qi, drift, duration):
             if ua * ub < 0.0 or (ua == 0.0 and a > 0.0):
                 if count == found.size:
                     grown = new_vector(2 * count)
-                    grown[:count] = found
+                    copy_values(grown, found)
                     found = grown
                 found[count] = _root(c, zr, zi, qr, qi, drift, a, b, ua) if ua != 0.0 else a
                 count += 1
@@ -94,4 +94,6 @@ def turning_points_kernel(c, zr, zi, qr, qi, drift, duration):
             left[depth], right[depth] = a + h, b
             left[depth + 1], right[depth + 1] = a, a + h
             depth += 2
-    return found[:count].copy()
+    out = new_vector(count)
+    copy_values(out, found[:count])
+    return out

@@ -14,7 +14,7 @@ import numpy.typing as npt
 from vines.dynamics._constants import oscillator
 from vines.dynamics._impact_law import impact_law_kernel
 from vines.kernels import njit
-from vines.model import Params
+from vines.model import AMPLITUDE, DAMPING, FREQUENCY, MASS, RESTITUTION, Params
 
 __all__ = ["Essentials", "essentials", "essentials_of", "values_of"]
 
@@ -37,13 +37,14 @@ class Essentials(NamedTuple):
 
 def values_of(p: Params) -> npt.NDArray[np.float64]:
     """Return mu, A, Omega, r, lam, shape (5,)."""
-    return np.array([p.mu, p.A, p.Omega, p.r, p.lam])
+    return np.array(list(p.as_dict().values()))
 
 
 @njit
 def essentials(values):
     """Return the `Essentials` at parameter values mu, A, Omega, r, lam; not finite where the model does not exist."""
-    mu, A, Omega, r, lam = values[0], values[1], values[2], values[3], values[4]
+    mu, A, Omega = values[MASS], values[AMPLITUDE], values[FREQUENCY]
+    r, lam = values[RESTITUTION], values[DAMPING]
     free = oscillator(1.0, A, Omega, lam)
     law = impact_law_kernel(mu, r)
     return Essentials(law.ratio, law.pass1, Omega, free.half, free.gamma, free.qr, free.qi)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import itertools
 
 from vines.errors import ParameterError
-from vines.model import Word
+from vines.model import VI_NES, Word
 
 __all__ = ["words_up_to"]
 
@@ -46,7 +46,7 @@ def words_up_to(length: int, period: int = 1) -> list[Word]:
         raise ParameterError(f"period is {period}, allowed is period >= 1")
     found: list[Word] = []
     for p, n in itertools.product(range(1, period + 1), range(2, length + 1)):
-        words = {Word(f"{''.join(letters)}/{p}T") for letters in itertools.product("LR", repeat=n)}
+        words = {Word(f"{''.join(letters)}/{p}T") for letters in itertools.product(VI_NES.alphabet, repeat=n)}
         kept = {min(word, word.mirror, key=lambda one: (-one.n, one.letters)) for word in words if word.n and word.m}
         found += sorted(kept, key=lambda one: one.letters)
     return found

@@ -8,8 +8,9 @@ if TYPE_CHECKING:
     from vines.pipeline._builder import Declaration, span
     from vines.pipeline._code import CodeDigests
     from vines.pipeline._collection import Collection, load_collection, members
-    from vines.pipeline._declaration import Carry, Pipeline, Refine, Stage, available, file_of, find, load
+    from vines.pipeline._declaration import Carry, Pipeline, Refine, Stage
     from vines.pipeline._events import Event, RunSummary, StageOutcome, silent
+    from vines.pipeline._files import available, file_of, find
     from vines.pipeline._form import json_schema
     from vines.pipeline._graph import mermaid, mermaid_of_all
     from vines.pipeline._include import with_included
@@ -18,6 +19,7 @@ if TYPE_CHECKING:
     from vines.pipeline._journal import Journal
     from vines.pipeline._kinds import KINDS, Kind, kind, kinds, register
     from vines.pipeline._plan import StagePlan, code_digests, plan, pool_keys
+    from vines.pipeline._reading import load
     from vines.pipeline._run import run_pipeline
     from vines.pipeline._shard import Shard
 
@@ -91,14 +93,14 @@ _HOME = {
     "StageOutcome": "vines.pipeline._events",
     "StagePlan": "vines.pipeline._plan",
     "WholeJob": "vines.pipeline._jobs",
-    "available": "vines.pipeline._declaration",
+    "available": "vines.pipeline._files",
     "code_digests": "vines.pipeline._plan",
-    "file_of": "vines.pipeline._declaration",
-    "find": "vines.pipeline._declaration",
+    "file_of": "vines.pipeline._files",
+    "find": "vines.pipeline._files",
     "json_schema": "vines.pipeline._form",
     "kind": "vines.pipeline._kinds",
     "kinds": "vines.pipeline._kinds",
-    "load": "vines.pipeline._declaration",
+    "load": "vines.pipeline._reading",
     "load_collection": "vines.pipeline._collection",
     "members": "vines.pipeline._collection",
     "mermaid": "vines.pipeline._graph",

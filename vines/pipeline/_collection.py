@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from vines.errors import DeclarationError, nearest
-from vines.pipeline._declaration import available, find
+from vines.pipeline._files import available, find
 from vines.pipeline._include import parse, with_included
 from vines.pipeline._names import NAME, RESERVED
 

@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cached_property
 from graphlib import CycleError, TopologicalSorter
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
-from vines.errors import DeclarationError, FileMissingError, UnknownNameError, nearest
-from vines.places import shipped
+from vines.errors import DeclarationError, UnknownNameError, nearest
 
 if TYPE_CHECKING:
     import msgspec
@@ -19,13 +17,12 @@ if TYPE_CHECKING:
     from vines.pipeline._axes import Axis
     from vines.pipeline._kinds import Kind
 
-__all__ = ["JUMP", "MOST", "Carry", "Pipeline", "Refine", "Stage", "available", "file_of", "find", "load"]
+__all__ = ["JUMP", "MOST", "Carry", "Pipeline", "Refine", "Stage"]
 
 JUMP = (("", 0.1),)
 """Relative change of a number from one point to the next that counts as a jump, where nothing is said."""
 MOST = 10_000
 """Points that a refinement adds at most, where nothing is said."""
-_STAGES = re.compile(r"^\s*(\[\s*stages\b|include\s*=|pipelines\s*=)", re.MULTILINE)
 
 
 @dataclass(frozen=True, slots=True)
@@ -196,85 +193,3 @@ class Pipeline:
                 wanted.add(name)
                 open_ends.extend(self.stages[name].after)
         return tuple(name for name in self.order if name in wanted)
-
-
-def available(root: Path) -> dict[str, Path]:
-    """Return the files of all pipelines and collections by name: of the project, and those that ship with vines.
-
-    Files of ``pipelines/`` that declare neither stages nor pipelines, such as published claims, are none.
-    """
-    found: dict[str, Path] = {}
-    for folder in (shipped("pipelines"), root / "pipelines"):
-        for path in sorted(folder.glob("*.toml")):
-            if _declares(path):
-                found[path.stem] = path
-    return dict(sorted(found.items()))
-
-
-def _declares(path: Path) -> bool:
-    return _STAGES.search(path.read_text("utf-8", errors="replace")) is not None
-
-
-def file_of(name: str, root: Path) -> Path | None:
-    """Return the file of a pipeline or collection, as `available` has it; ``None`` if there is none of that name."""
-    for folder in (root / "pipelines", shipped("pipelines")):
-        path = folder / f"{name}.toml"
-        if path.is_file() and _declares(path):
-            return path
-    return None
-
-
-def find(name: str, root: Path) -> Path:
-    """Return the file of a pipeline.
-
-    Parameters
-    ----------
-    name : str
-        A name, looked for in ``pipelines/`` of the project and then among those that ship with vines; or a path.
-    root : Path
-        Root of the project.
-
-    Raises
-    ------
-    UnknownNameError
-        If no pipeline has that name.
-    FileMissingError
-        If it is a path and there is no such file.
-    """
-    if name.endswith(".toml") or "/" in name:
-        path = Path(name)
-        if not path.is_file():
-            raise FileMissingError(f"{name}: there is no such file; 'vines list' shows the pipelines there are")
-        return path
-    for folder in (root / "pipelines", shipped("pipelines")):
-        path = folder / f"{name}.toml"
-        if path.is_file():
-            return path
-    raise UnknownNameError(f"unknown pipeline {name!r}: {nearest(name, available(root))}")
-
-
-def load(path: Path, overrides: Mapping[str, Any] | None = None, *, root: Path | None = None) -> Pipeline:
-    """Read a declaration.
-
-    Parameters
-    ----------
-    path : Path
-        A TOML file; its stem is the name of the pipeline.
-    overrides : mapping, optional
-        Values that replace those of the file, by dotted key such as ``stages.up.vary.A.count``. Texts are read as
-        TOML values where they are such.
-    root : Path, optional
-        Root of the project; found from the current folder if left out.
-
-    Raises
-    ------
-    FileMissingError
-        If there is no such file.
-    DeclarationError
-        If it cannot be read; one line with file, key, what is allowed and the nearest name.
-    ParameterError, StateError
-        If a parameter or start state is one that the model cannot have.
-    """
-    from vines.pipeline._reading import read
-
-    return read(Path(path), overrides or {}, root)

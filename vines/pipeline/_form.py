@@ -20,8 +20,8 @@ _NUMBER = {"type": "number"}
 def json_schema() -> dict[str, Any]:
     """Return the JSON Schema (draft 2020-12) of a declaration with the kinds that are registered.
 
-    It checks names, types and allowed words. Numbers that cannot be, and how stages hang together, are checked when the
-    declaration is read.
+    It checks names, types, allowed words and the ranges of options. Parameters that cannot be, and how stages hang
+    together, are checked when the declaration is read.
     """
     known = kinds()
     parameters = sorted({name for each in known.values() for name in each.parameters})
@@ -82,7 +82,11 @@ def _kind(spec: Kind) -> Iterator[tuple[str, Any]]:
             "type": "object",
             "description": _described(spec.options, spec.summary),
             "required": ["kind", key],
-            "properties": {"kind": {"const": spec.name, "description": spec.summary}, key: {"enum": names}},
+            "properties": {
+                "kind": {"const": spec.name, "description": spec.summary},
+                key: {"enum": names},
+                **_options(spec.options),
+            },
             "allOf": [
                 {"if": {"properties": {key: {"const": name}}}, "then": {"$ref": f"#/$defs/{spec.name}.{name}"}}
                 for name in names
@@ -151,7 +155,8 @@ def _options(options: type[msgspec.Struct]) -> dict[str, Any]:
 def _inlined(form: Any, parts: dict[str, Any]) -> Any:
     if isinstance(form, dict):
         if "$ref" in form:
-            return _inlined(parts[form["$ref"]], parts)
+            # what an option says of itself stands before what the table in it says
+            return {**_inlined(parts[form["$ref"]], parts), **{key: form[key] for key in form if key != "$ref"}}
         return {key: _inlined(value, parts) for key, value in form.items()}
     return [_inlined(each, parts) for each in form] if isinstance(form, list) else form
 

@@ -9,7 +9,7 @@ import itertools
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple, Protocol, TypeVar, overload
+from typing import TYPE_CHECKING, Any, Generic, NamedTuple, Protocol, TypeVar, overload
 
 from vines.errors import UnknownNameError, nearest
 
@@ -24,6 +24,7 @@ __all__ = ["Batch", "Input", "Job", "Point", "Points", "Range", "Spread", "Whole
 
 _Item = TypeVar("_Item")
 _Made = TypeVar("_Made")
+_Options = TypeVar("_Options", bound="msgspec.Struct")
 
 
 class Point(NamedTuple):
@@ -118,7 +119,7 @@ class Range:
 
 
 @dataclass(frozen=True, slots=True)
-class Job:
+class Job(Generic[_Options]):
     """Some points of a stage of the points shape, to be computed in one call.
 
     The result of a point must not depend on which other points share its job: chunks are cut by the clock.
@@ -126,7 +127,8 @@ class Job:
     Attributes
     ----------
     options : msgspec.Struct
-        The options of the kind, as declared, defaults filled in.
+        The options of the kind, as declared, defaults filled in; their type stands in brackets where a body takes the
+        job.
     points : Points
         The points, in the order of the chain when they are carried: one by one, or as columns.
     carry : str or None
@@ -141,7 +143,7 @@ class Job:
         no host.
     """
 
-    options: msgspec.Struct
+    options: _Options
     points: Points
     carry: str | None
     start: dict[str, Any] | None
@@ -218,13 +220,14 @@ def one_by_one(function: Callable[[_Item], _Made], items: Sequence[_Item]) -> li
 
 
 @dataclass(frozen=True, slots=True)
-class WholeJob:
+class WholeJob(Generic[_Options]):
     """A stage of the whole shape, to be computed in one call.
 
     Attributes
     ----------
     options : msgspec.Struct
-        The options of the kind, as declared, defaults filled in.
+        The options of the kind, as declared, defaults filled in; their type stands in brackets where a body takes the
+        job.
     params : dict of str to float
         The fixed parameters (dimensionless).
     ranges : dict of str to Range
@@ -235,18 +238,24 @@ class WholeJob:
         The files that the kind named as ingredients (see ``Kind.files``).
     folder : Path
         An empty folder; every file that the body leaves there becomes part of the result.
+    root : Path
+        Root of the project, below which options name files.
+    cache : Path
+        Where the body may keep what can be made again.
     provenance : dict
         As in :class:`Job`.
     spread : Spread
         For parts of the work that do not depend on each other; how many processes share them changes no result.
     """
 
-    options: msgspec.Struct
+    options: _Options
     params: dict[str, float]
     ranges: dict[str, Range]
     inputs: dict[str, Input]
     files: tuple[Path, ...]
     folder: Path
+    root: Path
+    cache: Path
     provenance: dict[str, Any]
     spread: Spread = one_by_one
 

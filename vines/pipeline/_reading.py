@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import copy
-import functools
 import itertools
 import tomllib
 from collections.abc import Iterable, Mapping
@@ -12,29 +11,49 @@ from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
-import msgspec
-
 from vines.errors import DeclarationError, VinesError, nearest
 from vines.pipeline._axes import Axis, exact, read_axis
 from vines.pipeline._declaration import Pipeline, Stage
 from vines.pipeline._include import with_included
 from vines.pipeline._kinds import Kind, kind
 from vines.pipeline._names import NAME, RESERVED
+from vines.pipeline._options import known, option_names, read_options
 from vines.pipeline._points import read_carry, read_refine, read_zipped
 from vines.places import find_root
 
-__all__ = ["GENERAL", "TOP", "read", "read_form"]
+__all__ = ["GENERAL", "TOP", "load", "read_form"]
 
 TOP = ("include", "params", "source", "stages", "title")
 GENERAL = ("carry", "kind", "needs", "params", "refine", "vary", "zip")
 
 
-def read(path: Path, overrides: Mapping[str, Any], root: Path | None) -> Pipeline:
-    """Read a declaration; see :func:`vines.pipeline.load`."""
+def load(path: Path, overrides: Mapping[str, Any] | None = None, *, root: Path | None = None) -> Pipeline:
+    """Read a declaration.
+
+    Parameters
+    ----------
+    path : Path
+        A TOML file; its stem is the name of the pipeline.
+    overrides : mapping, optional
+        Values that replace those of the file, by dotted key such as ``stages.up.vary.A.count``. Texts are read as
+        TOML values where they are such.
+    root : Path, optional
+        Root of the project; found from the current folder if left out.
+
+    Raises
+    ------
+    FileMissingError
+        If there is no such file.
+    DeclarationError
+        If it cannot be read; one line with file, key, what is allowed and the nearest name.
+    ParameterError, StateError
+        If a parameter or start state is one that the model cannot have.
+    """
+    path = Path(path)
     form = with_included(path)
     if "pipelines" in form:
         raise DeclarationError(f"{path}: a collection of pipelines, which are run, not the file; name one of them here")
-    return read_form(path.stem, form, overrides, path, root)
+    return read_form(path.stem, form, overrides or {}, path, root)
 
 
 def read_form(
@@ -61,7 +80,7 @@ def read_form(
         As :func:`vines.pipeline.load`.
     """
     form = _override(declared, overrides, path)
-    _known(form, TOP, f"{path}")
+    known(form, TOP, f"{path}")
     if not NAME.fullmatch(name) or name in RESERVED:
         rule = "a name is [a-z][a-z0-9_]* and no reserved word of SQL"
         raise DeclarationError(f"{path}: a pipeline cannot be called {name!r}; {rule}; rename the file")
@@ -70,7 +89,7 @@ def read_form(
         raise DeclarationError(f"{path}: no stages; declare at least one as [stages.NAME]")
     kinds = {stage: _kind(table, f"{path}: stages.{stage}") for stage, table in tables.items()}
     common = _table(form.get("params", {}), f"{path}: params")
-    _known(common, sorted({p for each in kinds.values() for p in each.parameters}), f"{path}: params")
+    known(common, sorted({p for each in kinds.values() for p in each.parameters}), f"{path}: params")
     stages = {stage: _stage(stage, tables[stage], kinds[stage], common, path) for stage in tables}
     title, source = (_text(form.get(key, ""), f"{path}: {key}") for key in ("title", "source"))
     pipeline = Pipeline(name, title, source, path, root or find_root(), stages)
@@ -117,26 +136,23 @@ def _stage(name: str, table: dict[str, Any], spec: Kind, common: dict[str, Any],
         form = spec.options_of(table)
     except VinesError as error:
         raise type(error)(f"{where}: {error}") from None
-    fields = _fields(form)
     general = [key for key in GENERAL if _allows(spec, key)]
-    own_keys = filter(None, (spec.variant, *(field.encode_name for field in fields)))
-    _known(table, [*general, *own_keys], where)
-    zipped = read_zipped(table["zip"], table.get("vary", {}), f"{where}.zip") if "zip" in table else ()
-    axes = _axes(table.get("vary", {}), spec, where, {name for names in zipped for name in names})
+    own_keys = filter(None, (spec.variant, *option_names(form)))
+    known(table, [*general, *own_keys], where)
+    # a kind may have an option of its own under a general key that it does not take, as basins have refine
+    shared = {key: value for key, value in table.items() if key in general}
+    zipped = read_zipped(shared["zip"], shared.get("vary", {}), f"{where}.zip") if "zip" in shared else ()
+    axes = _axes(shared.get("vary", {}), spec, where, {name for names in zipped for name in names})
     _check_zipped(zipped, axes, where)
-    params = _params(table.get("params", {}), spec, common, axes, path, where)
-    own = {key: value for key, value in table.items() if key not in GENERAL}
-    _known_inside(own, form, where)
+    params = _params(shared.get("params", {}), spec, common, axes, path, where)
+    own = {key: value for key, value in table.items() if key not in general}
     plain = {key: _plain(value, f"{where}.{key}") for key, value in own.items()}
-    try:
-        options = msgspec.convert(plain, form)
-    except msgspec.ValidationError as error:
-        raise DeclarationError(_say(error, where)) from None
-    carry = read_carry(table["carry"], axes, f"{where}.carry") if "carry" in table else None
+    options = read_options(plain, form, where)
+    carry = read_carry(shared["carry"], axes, f"{where}.carry") if "carry" in shared else None
     refine = None
-    if "refine" in table:
-        refine = read_refine(table["refine"], spec, axes, zipped, carry, f"{where}.refine")
-    needs = table.get("needs", [])
+    if "refine" in shared:
+        refine = read_refine(shared["refine"], spec, axes, zipped, carry, f"{where}.refine")
+    needs = shared.get("needs", [])
     if not isinstance(needs, list) or not all(isinstance(need, str) for need in needs):
         raise DeclarationError(f'{where}.needs is {needs!r}; list names of stages, such as ["up"]')
     if len(set(needs)) < len(needs):
@@ -163,7 +179,7 @@ def _allows(spec: Kind, key: str) -> bool:
 
 def _axes(form: object, spec: Kind, where: str, zipped: Iterable[str]) -> tuple[Axis, ...]:
     table = _table(form, f"{where}.vary")
-    _known(table, spec.parameters, f"{where}.vary")
+    known(table, spec.parameters, f"{where}.vary")
     interval = spec.vary == "range"
     return tuple(
         read_axis(name, value, f"{where}.vary.{name}", interval=interval, zipped=name in zipped)
@@ -186,7 +202,7 @@ def _params(
     form: object, spec: Kind, common: dict[str, Any], axes: tuple[Axis, ...], path: Path, where: str
 ) -> dict[str, float]:
     own = _table(form, f"{where}.params")
-    _known(own, spec.parameters, f"{where}.params")
+    known(own, spec.parameters, f"{where}.params")
     varied = {axis.name for axis in axes}
     params: dict[str, float] = {}
     for name, default in spec.parameters.items():
@@ -251,13 +267,6 @@ def _extremes(axis: Axis) -> tuple[float, ...]:
     return tuple(dict.fromkeys(float(end) for end in ends))
 
 
-def _known(table: Iterable[str], allowed: Iterable[str], where: str) -> None:
-    names = list(allowed)
-    for key in table:
-        if key not in names:
-            raise DeclarationError(f"{where}: unknown key {key!r}: {nearest(key, names)}")
-
-
 def _table(form: object, where: str) -> dict[str, Any]:
     if not isinstance(form, dict):
         raise DeclarationError(f"{where} is {_shown(form)}; a table of keys is needed here")
@@ -282,25 +291,3 @@ def _plain(form: Any, where: str) -> Any:
     if isinstance(form, list):
         return [_plain(value, f"{where}[{i}]") for i, value in enumerate(form)]
     return form
-
-
-@functools.cache
-def _fields(struct: type[msgspec.Struct]) -> tuple[msgspec.structs.FieldInfo, ...]:
-    return msgspec.structs.fields(struct)
-
-
-def _known_inside(table: dict[str, Any], struct: type[msgspec.Struct], where: str) -> None:
-    """See that tables inside a stage, such as its start state, have no unknown key either."""
-    for field in _fields(struct):
-        inner = table.get(field.encode_name)
-        if isinstance(inner, dict) and isinstance(field.type, type) and issubclass(field.type, msgspec.Struct):
-            place = f"{where}.{field.encode_name}"
-            _known(inner, [each.encode_name for each in _fields(field.type)], place)
-            _known_inside(inner, field.type, place)
-
-
-def _say(error: msgspec.ValidationError, where: str) -> str:
-    """Turn ``Expected `int`, got `str` - at `$.settle``` into a line with file and key."""
-    text, _, place = str(error).partition(" - at `$")
-    text = (text[:1].lower() + text[1:]).replace("`", "")
-    return f"{where}{place.rstrip('`')}: {text}"

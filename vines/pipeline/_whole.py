@@ -75,6 +75,8 @@ def whole_task(prepared: Prepared, store: Store, planner: Planner, *, replace: b
         inputs={need: _input(need, store.result(planner.keys[need])) for need in stage.needs},
         files=prepared.ingredients.files,
         folder=Path(),
+        root=planner.pipeline.root,
+        cache=store.cache,
         provenance=prepared.ingredients.provenance(key),
     )
     spec = stage.kind

@@ -46,6 +46,7 @@ _HOMES: dict[str, str] = {
     "digest": "vines.schema._tables",
     "reference": "vines.schema._reference",
     "table": "vines.schema._tables",
+    "toml": "vines.schema._toml",
     "tables": "vines.schema._tables",
     "WireFormat": "vines.schema._messages",
     "field_notes": "vines.schema._messages",

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any
 from vines.doors import brought
 from vines.errors import PlugInError, SchemaError, UnknownNameError, nearest
 from vines.places import shipped
+from vines.schema._declared import expand
 
 if TYPE_CHECKING:
     import pyarrow as pa
@@ -281,10 +282,10 @@ def _folder(name: str) -> Path:
 
 def _read(file: str, form: dict[str, Any]) -> Table:
     try:
-        columns = tuple(Column(**{**column, "values": tuple(column.get("values", ()))}) for column in form["columns"])
+        columns = tuple(Column(**column) for entry in form["columns"] for column in expand(entry))
         spec = Table(form["name"], form["description"], form["version"], columns, form.get("stored", True))
-    except (KeyError, TypeError) as error:
-        raise SchemaError(f"schemas/{file}: {error}; install vines again") from None
+    except (KeyError, TypeError, SchemaError) as error:
+        raise SchemaError(f"schemas/{file}: {error}; correct it, or install again what brings it") from None
     wrong = [column.dtype for column in columns if column.dtype not in DTYPES]
     if wrong or not columns or columns[0].name != "point_id":
         raise SchemaError(f"schemas/{file}: dtypes are {', '.join(DTYPES)}, and the first column is point_id")

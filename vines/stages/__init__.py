@@ -10,6 +10,7 @@ if TYPE_CHECKING:
     from vines.stages.api._asking import checks, list_tables, query, rows_of, save_query, table
     from vines.stages.api._declarable import (
         declaration_schema,
+        default_shown,
         describe_kind,
         describe_plot,
         list_kinds,
@@ -18,12 +19,14 @@ if TYPE_CHECKING:
     from vines.stages.api._export import export
     from vines.stages.api._finding import all_logs, find_logs, recordings_folder
     from vines.stages.api._found import found
+    from vines.stages.api._home import Home, current
+    from vines.stages.api._init import init_study
     from vines.stages.api._keeping import Difference, clean, diff, graph
-    from vines.stages.api._opening import open_store
     from vines.stages.api._orbit_log import orbit_log
     from vines.stages.api._parts import load_pipeline, members_of
+    from vines.stages.api._reference import reference_kinds, reference_plots
     from vines.stages.api._running import list_pipelines, run, status, status_of_each
-    from vines.stages.api._study import init_study
+    from vines.stages.api._study import Study, study
     from vines.stages.api._warm_up import compile_cold, compile_if_cold, warm_up
     from vines.stages.audit import Verification, verify
     from vines.stages.kinds._register import register_kinds
@@ -35,6 +38,8 @@ __all__ = [
     "Compared",
     "Derived",
     "Difference",
+    "Home",
+    "Study",
     "Verification",
     "all_logs",
     "checks",
@@ -42,7 +47,9 @@ __all__ = [
     "compare_run",
     "compile_cold",
     "compile_if_cold",
+    "current",
     "declaration_schema",
+    "default_shown",
     "describe_kind",
     "describe_plot",
     "diff",
@@ -58,11 +65,12 @@ __all__ = [
     "list_tables",
     "load_pipeline",
     "members_of",
-    "open_store",
     "orbit_log",
     "query",
     "reconstruct_run",
     "recordings_folder",
+    "reference_kinds",
+    "reference_plots",
     "register_kinds",
     "report",
     "rows_of",
@@ -70,12 +78,17 @@ __all__ = [
     "save_query",
     "status",
     "status_of_each",
+    "study",
     "table",
     "verify",
     "warm_up",
 ]
 
 _HOME = {
+    "Study": "api._study",
+    "Home": "api._home",
+    "current": "api._home",
+    "study": "api._study",
     "Verification": "audit",
     "verify": "audit",
     "all_logs": "api._finding",
@@ -90,6 +103,7 @@ _HOME = {
     "compile_if_cold": "api._warm_up",
     "clean": "api._keeping",
     "declaration_schema": "api._declarable",
+    "default_shown": "api._declarable",
     "describe_kind": "api._declarable",
     "describe_plot": "api._declarable",
     "list_kinds": "api._declarable",
@@ -100,14 +114,15 @@ _HOME = {
     "found": "api._found",
     "graph": "api._keeping",
     "ingest_folder": "rig._running",
-    "init_study": "api._study",
+    "init_study": "api._init",
     "list_pipelines": "api._running",
     "list_tables": "api._asking",
     "load_pipeline": "api._parts",
     "members_of": "api._parts",
-    "open_store": "api._opening",
     "query": "api._asking",
     "reconstruct_run": "rig._by_hand",
+    "reference_kinds": "api._reference",
+    "reference_plots": "api._reference",
     "register_kinds": "kinds._register",
     "report": "reports._report",
     "rows_of": "api._asking",

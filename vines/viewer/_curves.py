@@ -5,12 +5,14 @@ from __future__ import annotations
 import numpy as np
 import rerun as rr
 
+from vines.model import VI_NES
 from vines.viewer._clock import Clock
 from vines.viewer._style import BALL, BASE, DAMPER, IMPACTS, LEFT, LINE, MASS, RIGHT, SPRING, STORED
 
 __all__ = ["balance", "curves"]
 
 _Colour = tuple[int, int, int]
+_ENERGIES = VI_NES.energies
 
 
 def balance(states: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
@@ -27,9 +29,13 @@ def balance(states: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
         In M b² omega0², each 0 at first: ``base_work``, ``damper_loss``, ``impact_loss`` and ``stored`` (change of
         kinetic and potential energy); base_work = damper_loss + impact_loss + stored but for rounding.
     """
-    stored = states["kinetic_1"] + states["kinetic_2"] + states["potential"]
-    since = {name: states[name] - states[name][0] for name in ("base_work", "damper_loss", "impact_loss")}
+    stored = _stored(states)
+    since = {name: states[name] - states[name][0] for name in (*_ENERGIES.gained, *_ENERGIES.lost)}
     return {**since, "stored": stored - stored[0]}
+
+
+def _stored(states: dict[str, np.ndarray]) -> np.ndarray:
+    return np.sum([states[name] for name in _ENERGIES.stored], axis=0)
 
 
 def curves(
@@ -63,9 +69,8 @@ def curves(
     _lines(rec, f"{root}/ends", ends, indexes)
     _lines(rec, f"{root}/w/gap", [("w", states["w"], LINE)], indexes)
     _lines(rec, f"{root}/w_dot/rate", [("w'", states["w_dot"], LINE)], indexes)
-    total = states["kinetic_1"] + states["kinetic_2"] + states["potential"]
     energies: list[tuple[str, np.ndarray, _Colour]] = [
-        ("total", total, MASS),
+        ("total", _stored(states), MASS),
         ("mass, v1²/2", states["kinetic_1"], LINE),
         ("spring, (x1 − e)²/2", states["potential"], SPRING),
         ("ball, µ v2²/2", states["kinetic_2"], BALL),

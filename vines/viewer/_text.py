@@ -6,6 +6,7 @@ import numpy as np
 import rerun as rr
 
 from vines.logs import Log
+from vines.model import VI_NES
 from vines.viewer._clock import Clock
 from vines.viewer._style import LEFT, RIGHT
 
@@ -13,13 +14,7 @@ __all__ = ["about", "impact_lines", "send_impact_log"]
 
 _EMPTY = ("", "null", "{}", "[]")
 """Provenance that says nothing, as text and as JSON."""
-_MEANINGS = {
-    "mu": "mass ratio",
-    "A": "forcing amplitude",
-    "Omega": "forcing frequency",
-    "r": "restitution",
-    "lam": "damping",
-}
+_MEANINGS = {each.name: each.label for each in VI_NES.parameters}
 
 
 def impact_lines(impacts: dict[str, np.ndarray]) -> list[str]:
@@ -44,7 +39,7 @@ def send_impact_log(rec: rr.RecordingStream, path: str, impacts: dict[str, np.nd
     left = impacts["side"] == 1
     columns = rr.TextLog.columns(
         text=impact_lines(impacts),
-        level=np.where(left, "L", "R").tolist(),
+        level=list(VI_NES.letters(impacts["side"])),
         color=np.where(left[:, None], LEFT, RIGHT).astype(np.uint8),
     )
     rec.send_columns(path, indexes=clock.columns(impacts["t"]), columns=columns)

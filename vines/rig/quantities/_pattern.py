@@ -8,6 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from vines.model import VI_NES
+
 __all__ = ["HOLDS", "Pattern", "Periods", "cut_into_periods", "find_pattern"]
 
 Floats = npt.NDArray[np.float64]
@@ -94,7 +96,7 @@ def cut_into_periods(unwrapped: Floats, side: Floats, span: tuple[float, float],
     words = [""] * max(last - first, 0)
     for n, sigma in zip(number, side, strict=True):
         if first <= n < last:
-            words[n - first] += "L" if sigma > 0 else "R"
+            words[n - first] += VI_NES.letters([sigma])
     return Periods(cut, number, words, first)
 
 

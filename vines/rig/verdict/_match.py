@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from vines.errors import OrbitNotFound, ParameterError
-from vines.model import Params, Word
+from vines.model import START_NAMES, Params, Word
 
 if TYPE_CHECKING:
     from vines.orbits import Orbit
@@ -187,16 +187,16 @@ def _followed(row: Mapping[str, Any], p: Params) -> Iterator[Candidate]:
 
 def _simulated(p: Params, found: Sequence[Candidate]) -> Iterator[Candidate]:
     """Return what simulations from a few starts settle to, if it is none of the orbits found, and its mirror image."""
-    from vines.attractors import settle
+    from vines.attractors import settle_from
 
     for begin in _STARTS:
-        settled = settle(p, **dict(zip(("x1", "v1", "x2", "v2"), begin, strict=True)), settle=300, lyapunov=False)
+        settled = settle_from(p, dict(zip(START_NAMES, (*begin, 0.0), strict=True)), settle=300, lyapunov=False)
         periodic = settled.regime == "periodic"
         word = str(settled.word or "") if periodic else ""
         if word and any(same_pattern(Word(one.word), Word(word)) and one.stable for one in found if one.word):
             continue
         name = str(settled.name) if periodic else settled.regime
-        state = {key: float(settled.final[key]) for key in ("x1", "v1", "x2", "v2", "phase")}
+        state = {key: float(settled.final[key]) for key in START_NAMES}
         yield Candidate(name, word, settled.regime, state, None, source="simulation")
         if periodic and not settled.symmetric:
             image = {key: -value for key, value in state.items() if key != "phase"}

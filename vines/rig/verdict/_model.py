@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import numpy.typing as npt
 
-from vines.model import Params
+from vines.model import PARAMETER_NAMES, Params
 from vines.rig.fit import Motion, forced_response, free_part, root
 from vines.rig.quantities import (
     Pattern,
@@ -95,8 +95,7 @@ def measured_params(run: Reconstruction) -> Params:
 
 def parameter_spread(run: Reconstruction) -> dict[str, float]:
     """Return the standard uncertainties of the parameters."""
-    names = {"mu": "mu", "A": "A", "Omega": "Omega", "r": "r_effective", "lam": "lam"}
-    return {name: run.quantities[quantity].u for name, quantity in names.items()}
+    return {name: run.quantities["r_effective" if name == "r" else name].u for name in PARAMETER_NAMES}
 
 
 def parameter_draws(p: Params, spread: dict[str, float], draws: int = DRAWS, seed: int = 0) -> dict[str, Floats]:

@@ -10,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from vines.errors import OrbitNotFound, ParameterError
+from vines.model import PARAMETER_NAMES, V1, V2, X2
 from vines.rig.fit import Motion, forced_response, free_part, root
 
 if TYPE_CHECKING:
@@ -19,8 +20,6 @@ if TYPE_CHECKING:
 __all__ = ["Numbers", "pushed", "sensitivity"]
 
 Floats = npt.NDArray[np.float64]
-
-_PARAMETERS = ("mu", "A", "Omega", "r", "lam")
 
 _FORCES = ("friction", "tilt")
 """On the ball, in units of b omega0^2."""
@@ -58,7 +57,7 @@ def sensitivity(orbit: Orbit) -> Mapping[str, Numbers]:
     right, friction slows its sliding against the cavity and drives the oscillator with mu times the opposite.
     """
     found = {}
-    for name in _PARAMETERS:
+    for name in PARAMETER_NAMES:
         step = _STEP * max(getattr(orbit.params, name), _STEP)
         pair = [_moved(orbit, orbit.params.replace(**{name: getattr(orbit.params, name) + e})) for e in (-step, step)]
         if pair[0] is not None and pair[1] is not None:
@@ -91,8 +90,8 @@ def _slope(low: Numbers, high: Numbers, step: float) -> Numbers:
 def _numbers(orbit: Orbit, change: Floats) -> Numbers:
     """Return the numbers of an orbit whose states (v1, v2, x2, t) before impacts have changed."""
     p = orbit.params
-    v1, v2 = orbit.states[:, 1] + change[:, 0], orbit.states[:, 3] + change[:, 1]
-    x2, t = orbit.states[:, 2] + change[:, 2], orbit.t + change[:, 3]
+    v1, v2 = orbit.states[:, V1] + change[:, 0], orbit.states[:, V2] + change[:, 1]
+    x2, t = orbit.states[:, X2] + change[:, 2], orbit.t + change[:, 3]
     after = v1 - p.mu * (1 + p.r) / (1 + p.mu) * (v1 - v2)
     stop = float(t[0] + orbit.period)
     s = root(1.0, p.lam)

@@ -9,8 +9,7 @@ from typing import TYPE_CHECKING, Any, Literal
 from vines import schema
 from vines.catalogue import connect
 from vines.errors import QueryError, UnknownNameError, nearest
-from vines.places import find_root
-from vines.stages.api._opening import open_store
+from vines.stages.api._home import Home, current
 
 if TYPE_CHECKING:
     import pyarrow as pa
@@ -18,7 +17,7 @@ if TYPE_CHECKING:
 __all__ = ["checks", "list_tables", "query", "rows_of", "save_query", "table"]
 
 
-def query(sql: str) -> pa.Table:
+def query(sql: str, *, study: Home | None = None) -> pa.Table:
     """Ask the catalogue in SQL.
 
     Parameters
@@ -26,6 +25,8 @@ def query(sql: str) -> pa.Table:
     sql : str
         One query in DuckDB's dialect over the views of docs/tables.md: one a table over all pinned results, and one a
         stage, named ``"<pipeline>.<stage>"``.
+    study : Home, optional
+        Whose; the one that the current folder belongs to if left out.
 
     Returns
     -------
@@ -42,17 +43,19 @@ def query(sql: str) -> pa.Table:
     >>> query("select 1 + 1 as two").to_pylist()
     [{'two': 2}]
     """
-    with connect(open_store()) as catalogue:
+    with connect((study or current()).store) as catalogue:
         return catalogue.query(sql)
 
 
-def table(name: str) -> pa.Table:
+def table(name: str, *, study: Home | None = None) -> pa.Table:
     """Return all rows of a view of the catalogue.
 
     Parameters
     ----------
     name : str
         A table such as ``orbits``, or a stage such as ``quickstart.up``.
+    study : Home, optional
+        Whose; the one that the current folder belongs to if left out.
 
     Returns
     -------
@@ -64,13 +67,13 @@ def table(name: str) -> pa.Table:
     UnknownNameError
         If there is no such view.
     """
-    with connect(open_store()) as catalogue:
+    with connect((study or current()).store) as catalogue:
         return catalogue.table(name)
 
 
-def list_tables() -> list[dict[str, Any]]:
+def list_tables(*, study: Home | None = None) -> list[dict[str, Any]]:
     """Return name, rows and description of the views: the tables, then the single stages."""
-    store = open_store()
+    store = (study or current()).store
     known = schema.tables()
     with connect(store) as catalogue:
         counts = {view: catalogue.count(view) for view in (*known, *sorted(set(catalogue.names) - set(known)))}
@@ -80,7 +83,7 @@ def list_tables() -> list[dict[str, Any]]:
     ]
 
 
-def rows_of(sql: str) -> tuple[list[str], list[tuple[Any, ...]]]:
+def rows_of(sql: str, *, study: Home | None = None) -> tuple[list[str], list[tuple[Any, ...]]]:
     """Ask the catalogue and return the names of the columns and the rows; quicker than Arrow for what is only shown.
 
     Raises
@@ -88,11 +91,11 @@ def rows_of(sql: str) -> tuple[list[str], list[tuple[Any, ...]]]:
     QueryError
         If DuckDB cannot answer; one line.
     """
-    with connect(open_store()) as catalogue:
+    with connect((study or current()).store) as catalogue:
         return catalogue.fetch(sql)
 
 
-def save_query(sql: str, out: Path, form: Literal["csv", "parquet"]) -> None:
+def save_query(sql: str, out: Path, form: Literal["csv", "parquet"], *, study: Home | None = None) -> None:
     """Ask the catalogue and write the answer to a file, which is replaced as a whole or not at all.
 
     Raises
@@ -102,19 +105,24 @@ def save_query(sql: str, out: Path, form: Literal["csv", "parquet"]) -> None:
     """
     if not out.parent.is_dir():
         raise QueryError(f"{out}: the folder {out.parent} does not exist; make it first")
-    with connect(open_store()) as catalogue, tempfile.TemporaryDirectory(dir=out.parent, prefix=".vines-") as folder:
+    with (
+        connect((study or current()).store) as catalogue,
+        tempfile.TemporaryDirectory(dir=out.parent, prefix=".vines-") as folder,
+    ):
         part = Path(folder) / "part"
         catalogue.save(sql, part, form)
         part.replace(out)
 
 
-def checks(name: str | None = None) -> list[dict[str, Any]]:
+def checks(name: str | None = None, *, study: Home | None = None) -> list[dict[str, Any]]:
     """Return what the checks of published values gave.
 
     Parameters
     ----------
     name : str, optional
         A pipeline or collection; all pipelines that were run if left out.
+    study : Home, optional
+        Whose; the one that the current folder belongs to if left out.
 
     Returns
     -------
@@ -128,14 +136,15 @@ def checks(name: str | None = None) -> list[dict[str, Any]]:
     """
     from vines.pipeline import available, members
 
-    known = {*available(find_root()), *open_store().pinned()}
+    study = study or current()
+    known = {*available(study.root), *study.store.pinned()}
     if name is not None and name not in known:
         raise UnknownNameError(f"unknown pipeline {name!r}: {nearest(name, known)}")
     where = ""
     if name is not None:
-        names = members(name, find_root()) if name in available(find_root()) else (name,)
+        names = members(name, study.root) if name in available(study.root) else (name,)
         where = f"where pipeline in ({', '.join(repr(each) for each in names)})"
-    rows = query(f"select * from checks {where} order by pipeline, stage, point_id").to_pylist()
+    rows = query(f"select * from checks {where} order by pipeline, stage, point_id", study=study).to_pylist()
     if not rows:
         what = name or "any pipeline"
         raise UnknownNameError(f"nothing has been checked for {what}; run 'vines run {name or 'quickstart'}' first")

@@ -13,9 +13,10 @@ from vines.pipeline import KINDS, json_schema
 from vines.stages.kinds._register import register_kinds
 from vines.stages.plots import PLOTS
 
-__all__ = ["declaration_schema", "describe_kind", "describe_plot", "list_kinds", "list_plots"]
+__all__ = ["declaration_schema", "default_shown", "describe_kind", "describe_plot", "list_kinds", "list_plots"]
 
-_GENERAL = frozenset({"carry", "kind", "needs", "params", "plot", "refine", "vary", "zip"})
+_LEAST = {"minimum": "<=", "exclusiveMinimum": "<"}
+_MOST = {"maximum": "<=", "exclusiveMaximum": "<"}
 
 
 def declaration_schema() -> str:
@@ -66,16 +67,15 @@ def _listed(things: Register[Any]) -> Iterator[dict[str, Any]]:
 
 def _described(thing: Any, key: str) -> dict[str, Any]:
     form = json_schema()["$defs"][key]
-    required = [field.encode_name for field in msgspec.structs.fields(thing.options) if field.required]
-    options = list(_options(form["properties"], required, ""))
+    fields = msgspec.structs.fields(thing.options)
+    own = {field.encode_name: form["properties"][field.encode_name] for field in fields}
+    options = list(_options(own, [field.encode_name for field in fields if field.required], ""))
     return {"name": thing.name, "summary": thing.summary, "description": form["description"], "options": options}
 
 
 def _options(forms: Mapping[str, Any], required: Iterable[str], prefix: str) -> Iterator[dict[str, Any]]:
     """Yield a row for each option; those of the tables in a list of tables follow with its name before theirs."""
     for name, form in forms.items():
-        if not prefix and name in _GENERAL:
-            continue
         yield {
             "option": prefix + name,
             "type": _type(form),
@@ -83,9 +83,9 @@ def _options(forms: Mapping[str, Any], required: Iterable[str], prefix: str) -> 
             "required": name in required,
             "meaning": form.get("description", ""),
         }
-        inner = form.get("items", form)
-        if isinstance(inner, dict) and "properties" in inner:
-            yield from _options(inner["properties"], inner.get("required", ()), f"{prefix}{name}.")
+        for inner in (form, form.get("items", {}), *form.get("anyOf", ())):
+            if isinstance(inner, dict) and "properties" in inner:
+                yield from _options(inner["properties"], inner.get("required", ()), f"{prefix}{name}.")
 
 
 def _type(form: Mapping[str, Any]) -> str:
@@ -95,6 +95,8 @@ def _type(form: Mapping[str, Any]) -> str:
     --------
     >>> _type({"anyOf": [{"type": "integer", "minimum": 2}, {"type": "null"}]}), _type({"enum": ["up", "down"]})
     ('integer >= 2', 'up | down')
+    >>> _type({"type": "number", "exclusiveMinimum": 0, "maximum": 1})
+    '0 < number <= 1'
     """
     if "enum" in form:
         return " | ".join(map(str, form["enum"]))
@@ -106,5 +108,22 @@ def _type(form: Mapping[str, Any]) -> str:
         return f"[{', '.join(map(_type, inner))}]" if inner else f"list of {_type(form.get('items', {}))}"
     if what == "object":
         return "table"
-    limits = {"minimum": ">=", "exclusiveMinimum": ">", "maximum": "<=", "exclusiveMaximum": "<"}
-    return " ".join([what, *(f"{sign} {form[key]:g}" for key, sign in limits.items() if key in form)])
+    least = next((f"{form[key]:g} {sign}" for key, sign in _LEAST.items() if key in form), "")
+    most = next((f"{sign} {form[key]:g}" for key, sign in _MOST.items() if key in form), "")
+    if least and not most:
+        number, sign = least.split()
+        return f"{what} {sign.replace('<', '>')} {number}"
+    return " ".join(filter(None, (least, what, most)))
+
+
+def default_shown(row: Mapping[str, Any]) -> str:
+    """Return the default of an option as a declaration would write it; ``required`` where there is none.
+
+    Examples
+    --------
+    >>> default_shown({"required": False, "default": 400}), default_shown({"required": True, "default": None})
+    ('400', 'required')
+    """
+    if row["required"]:
+        return "required"
+    return "" if row["default"] is None else json.dumps(row["default"], ensure_ascii=False)

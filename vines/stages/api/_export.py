@@ -7,15 +7,20 @@ from pathlib import Path
 
 from vines.errors import FileMissingError, UnknownNameError
 from vines.pipeline import available, with_included
-from vines.places import find_root, shipped
-from vines.stages.api._opening import open_store
+from vines.places import shipped
+from vines.stages.api._home import Home, current
 from vines.stages.api._stored import stored_pipelines
 
 __all__ = ["export"]
 
 
 def export(
-    folder: Path, *names: str, logs: bool = False, licence: Path | None = None, citation: Path | None = None
+    folder: Path,
+    *names: str,
+    logs: bool = False,
+    licence: Path | None = None,
+    citation: Path | None = None,
+    study: Home | None = None,
 ) -> list[str]:
     """Copy results into a folder that opens without vines (docs/tables.md, "An export").
 
@@ -29,6 +34,8 @@ def export(
         Whether the MCAP logs go along.
     licence, citation : Path, optional
         Files that become LICENSE and CITATION.cff; by default those at the root of the project, else those of vines.
+    study : Home, optional
+        Whose; the one that the current folder belongs to if left out.
 
     Returns
     -------
@@ -46,8 +53,9 @@ def export(
     """
     from vines.catalogue import Collected, export_results, stage_results
 
-    store = open_store()
-    wanted = stored_pipelines(names, store.pinned())
+    study = study or current()
+    store = study.store
+    wanted = stored_pipelines(names, store.pinned(), study.root)
     results = [
         (pipeline, stage, result)
         for pipeline, stage, result in stage_results(store, wanted)
@@ -55,23 +63,23 @@ def export(
     ]
     if not results:
         raise UnknownNameError("nothing is stored yet that could be exported; run 'vines run quickstart' first")
-    declarations, titles = _declared(wanted, names)
+    declarations, titles = _declared(wanted, names, study.root)
     return export_results(
         Collected(
             results=results,
             declarations=declarations,
             titles=titles,
-            licence=_text(licence, "LICENSE"),
-            citation=_text(citation, "CITATION.cff"),
+            licence=_text(licence, "LICENSE", study.root),
+            citation=_text(citation, "CITATION.cff", study.root),
             logs=logs,
         ),
         folder.absolute(),
     )
 
 
-def _declared(pipelines: Collection[str], names: Iterable[str]) -> tuple[dict[str, str], dict[str, str]]:
+def _declared(pipelines: Collection[str], names: Iterable[str], root: Path) -> tuple[dict[str, str], dict[str, str]]:
     """Return the text of the declarations by file name, those of collections too, and the title of each pipeline."""
-    files = available(find_root())
+    files = available(root)
     texts: dict[str, str] = {}
     titles: dict[str, str] = {}
     for name in dict.fromkeys([*pipelines, *names]):
@@ -86,8 +94,8 @@ def _declared(pipelines: Collection[str], names: Iterable[str]) -> tuple[dict[st
     return texts, titles
 
 
-def _text(given: Path | None, name: str) -> str:
-    own = find_root() / name
+def _text(given: Path | None, name: str, root: Path) -> str:
+    own = root / name
     path = given if given is not None else (own if own.is_file() else shipped(name))
     try:
         return path.read_text("utf-8")

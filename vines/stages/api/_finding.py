@@ -5,18 +5,18 @@ from __future__ import annotations
 from pathlib import Path
 
 from vines.errors import FileMissingError, UnknownNameError, nearest
-from vines.places import cache_folder
-from vines.stages.api._opening import open_store
+from vines.stages.api._home import Home, current
+from vines.store import Store
 
 __all__ = ["all_logs", "find_logs", "recordings_folder"]
 
 
-def recordings_folder() -> Path:
+def recordings_folder(*, study: Home | None = None) -> Path:
     """Return the folder of recordings (.rrd) that can be made again from their logs."""
-    return cache_folder() / "rrd"
+    return (study or current()).cache / "rrd"
 
 
-def all_logs() -> list[Path]:
+def all_logs(*, study: Home | None = None) -> list[Path]:
     """Return the MCAP files of all logs of the catalogue.
 
     Raises
@@ -24,15 +24,14 @@ def all_logs() -> list[Path]:
     UnknownNameError
         If nothing with logs has been run.
     """
-    found = [path for logs in _pinned().values() for path in logs.values()]
+    found = [path for logs in _pinned((study or current()).store).values() for path in logs.values()]
     if not found:
         raise UnknownNameError("there are no logs: nothing with logs has been run here; try 'vines run quickstart'")
     return list(dict.fromkeys(found))
 
 
-def _pinned() -> dict[str, dict[str, Path]]:
+def _pinned(store: Store) -> dict[str, dict[str, Path]]:
     """Return for each stage that is pinned its logs by their points."""
-    store = open_store()
     return {
         f"{pipeline}.{stage}": store.result(pin["result"]).logs
         for pipeline, stages in store.pinned().items()
@@ -41,13 +40,15 @@ def _pinned() -> dict[str, dict[str, Path]]:
     }
 
 
-def find_logs(name: str) -> list[Path]:
+def find_logs(name: str, *, study: Home | None = None) -> list[Path]:
     """Return the MCAP files of a log name.
 
     Parameters
     ----------
     name : str
         ``<pipeline>.<stage>`` (all its logs), ``<pipeline>.<stage>/<point>`` (all of that point), a log id, or a path.
+    study : Home, optional
+        Whose; the one that the current folder belongs to if left out.
 
     Raises
     ------
@@ -63,7 +64,7 @@ def find_logs(name: str) -> list[Path]:
                 f"{name}: there is no such file; 'vines query \"select * from logs\"' lists the logs"
             )
         return [path]
-    logs = _pinned()
+    logs = _pinned((study or current()).store)
     stage, _, point = name.partition("/")
     if stage in logs:
         if not point:

@@ -9,7 +9,7 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from vines.stages.api._opening import open_store
+from vines.stages.api._home import Home, current
 from vines.stages.api._parts import load_parts
 
 if TYPE_CHECKING:
@@ -26,14 +26,15 @@ MOST = 6
 """Bifurcations of a stage that the screen lists before it only counts them."""
 
 
-def found(name: str) -> list[str]:
+def found(name: str, *, study: Home | None = None) -> list[str]:
     """Return the lines of the screen.
 
     What was found is read from the result tables once and kept in the cache, under a name made of the keys of the
     results, so that a run with nothing to do stays quick.
     """
-    store = open_store()
-    parts = load_parts(name)
+    study = study or current()
+    store = study.store
+    parts = load_parts(name, study=study)
     if parts[0].collection:
         return _of_all(store, parts)
     pipeline = parts[0].pipeline.name

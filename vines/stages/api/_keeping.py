@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from vines.errors import StoreError, UnknownNameError, VinesError, nearest
 from vines.pipeline import available, code_digests, mermaid, mermaid_of_all, plan, pool_keys, what_changed
-from vines.places import find_root
-from vines.stages.api._opening import open_store
+from vines.stages.api._home import Home, current
 from vines.stages.api._parts import load_parts
 
 if TYPE_CHECKING:
@@ -45,22 +44,25 @@ class Difference:
         return all(table.same for table in self.tables)
 
 
-def graph(name: str | Declaration) -> str:
+def graph(name: str | Declaration, *, study: Home | None = None) -> str:
     """Return a pipeline, or those of a collection, as a Mermaid flowchart: stages, needs, and where they stand."""
-    store = open_store()
-    parts = load_parts(name)
+    study = study or current()
+    store = study.store
+    parts = load_parts(name, study=study)
     code = code_digests(store)
     drawn = [(part.pipeline, {each.name: each for each in plan(part.pipeline, store, code=code)}) for part in parts]
     return mermaid_of_all(drawn) if parts[0].collection else mermaid(*drawn[0])
 
 
-def clean(*, remove: bool = False) -> list[Garbage]:
+def clean(*, remove: bool = False, study: Home | None = None) -> list[Garbage]:
     """Find results and pools of points that nothing refers to, and remove them if asked.
 
     Parameters
     ----------
     remove : bool
         Whether to remove them; waits for a run that is writing.
+    study : Home, optional
+        Whose; the one that the current folder belongs to if left out.
 
     Returns
     -------
@@ -74,18 +76,19 @@ def clean(*, remove: bool = False) -> list[Garbage]:
     """
     from vines.store import find_garbage, remove_garbage
 
-    store = open_store()
+    study = study or current()
+    store = study.store
     if not store.data.is_dir():
         return []
     if not remove:
-        return find_garbage(store, _wanted(store))
+        return find_garbage(store, _wanted(study))
     with store.writing():
-        garbage = find_garbage(store, _wanted(store))
+        garbage = find_garbage(store, _wanted(study))
         remove_garbage(store, garbage)
     return garbage
 
 
-def diff(a: str, b: str, *, rtol: float = 1e-9, atol: float = 0.0) -> Difference:
+def diff(a: str, b: str, *, rtol: float = 1e-9, atol: float = 0.0, study: Home | None = None) -> Difference:
     """Compare two results of a stage: what was asked for, and the values.
 
     Parameters
@@ -94,6 +97,8 @@ def diff(a: str, b: str, *, rtol: float = 1e-9, atol: float = 0.0) -> Difference
         ``<pipeline>.<stage>`` for its result now, the first letters of a key, or the folder of a result.
     rtol, atol : float
         Numbers are the same if ``|a - b| <= atol + rtol max(|a|, |b|)``.
+    study : Home, optional
+        Whose; the one that the current folder belongs to if left out.
 
     Raises
     ------
@@ -104,7 +109,7 @@ def diff(a: str, b: str, *, rtol: float = 1e-9, atol: float = 0.0) -> Difference
     """
     from vines.catalogue import compare_tables
 
-    store = open_store()
+    store = (study or current()).store
     one, other = _result(store, a), _result(store, b)
     forms = [result.manifest["ingredients"] for result in (one, other)]
     if forms[0]["kind"] != forms[1]["kind"]:
@@ -115,13 +120,14 @@ def diff(a: str, b: str, *, rtol: float = 1e-9, atol: float = 0.0) -> Difference
     return Difference(one.key, other.key, what_changed(*forms), tables)
 
 
-def _wanted(store: Store) -> set[str]:
+def _wanted(study: Home) -> set[str]:
     """Return the keys of the pools that pipelines ask for as they are declared now."""
     wanted: set[str] = set()
+    store = study.store
     code = code_digests(store)
-    for name in available(find_root()):
+    for name in available(study.root):
         try:
-            wanted |= {key for part in load_parts(name) for key in pool_keys(part.pipeline, store, code)}
+            wanted |= {key for part in load_parts(name, study=study) for key in pool_keys(part.pipeline, store, code)}
         except VinesError:  # a declaration that cannot be read asks for nothing
             continue
     return wanted

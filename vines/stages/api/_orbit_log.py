@@ -12,6 +12,7 @@ import numpy as np
 from vines.dynamics import simulate
 from vines.errors import StateError
 from vines.logs import write_run
+from vines.model import STATE_NAMES
 from vines.schema import numpy_dtype
 
 if TYPE_CHECKING:
@@ -79,7 +80,7 @@ def orbit_log(orbit: Orbit, path: str | os.PathLike[str], *, per_period: int = 6
     ).final
     # Times of the log run from 0 or a little later: t modulo the period, which leaves the phase as it is.
     t = begun["t"] % orbit.period
-    state = {name: begun[name] for name in ("x1", "v1", "x2", "v2")}
+    state = {name: begun[name] for name in STATE_NAMES}
     phi = (begun["phase"] - p.Omega * t) % (2 * math.pi)
     run = simulate(
         p, x1=state["x1"], v1=state["v1"], x2=state["x2"], v2=state["v2"], t=t, phi=phi, periods=orbit.word.p

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from vines.errors import DeclarationError, UnknownNameError, nearest
 from vines.pipeline import Pipeline, file_of, find, load, load_collection
-from vines.places import find_root
+from vines.stages.api._home import Home, current
 from vines.stages.kinds._register import register_kinds
 
 if TYPE_CHECKING:
@@ -45,7 +45,7 @@ class Part:
         return f"{self.pipeline.name}." if self.collection else ""
 
 
-def members_of(name: str | Declaration) -> tuple[str | Declaration, ...]:
+def members_of(name: str | Declaration, *, study: Home | None = None) -> tuple[str | Declaration, ...]:
     """Return the pipelines that a name stands for: those of a collection, or the name alone.
 
     Raises
@@ -53,11 +53,13 @@ def members_of(name: str | Declaration) -> tuple[str | Declaration, ...]:
     UnknownNameError, FileMissingError, DeclarationError
         One line each: no such pipeline or file, or what is wrong in it.
     """
-    collection = _collection(name)
+    collection = _collection(name, (study or current()).root)
     return (name,) if collection is None else collection.members
 
 
-def load_pipeline(name: str | Declaration, overrides: Mapping[str, Any] | None = None) -> Pipeline:
+def load_pipeline(
+    name: str | Declaration, overrides: Mapping[str, Any] | None = None, *, study: Home | None = None
+) -> Pipeline:
     """Read the declaration of a pipeline, by name, by the path of its file, or as it was made in Python.
 
     Raises
@@ -66,7 +68,7 @@ def load_pipeline(name: str | Declaration, overrides: Mapping[str, Any] | None =
         One line each: no such pipeline or file, or what is wrong in it.
     """
     register_kinds()
-    root = find_root()
+    root = (study or current()).root
     if isinstance(name, str):
         path = find(name, root)
         _check_name(path, root)
@@ -75,7 +77,11 @@ def load_pipeline(name: str | Declaration, overrides: Mapping[str, Any] | None =
 
 
 def load_parts(
-    name: str | Declaration, stages: Iterable[str] | None = None, overrides: Mapping[str, Any] | None = None
+    name: str | Declaration,
+    stages: Iterable[str] | None = None,
+    overrides: Mapping[str, Any] | None = None,
+    *,
+    study: Home | None = None,
 ) -> list[Part]:
     """Read a pipeline, or all pipelines of a collection, with what is wanted of each.
 
@@ -87,6 +93,8 @@ def load_parts(
         Of a pipeline, names of stages; of a collection, names of pipelines, or ``<pipeline>.<stage>``.
     overrides : mapping, optional
         Values by dotted key; in a collection the name of a pipeline stands before each.
+    study : Home, optional
+        Whose; the one that the current folder belongs to if left out.
 
     Raises
     ------
@@ -94,13 +102,14 @@ def load_parts(
         As :func:`load_pipeline`, and where a stage or a key names no pipeline of the collection.
     """
     given = dict(overrides or {})
-    collection = _collection(name)
+    study = study or current()
+    collection = _collection(name, study.root)
     if collection is None:
-        return [Part(load_pipeline(name, given), None if stages is None else tuple(stages), given)]
+        return [Part(load_pipeline(name, given, study=study), None if stages is None else tuple(stages), given)]
     wanted = _by_member(collection, None if stages is None else tuple(stages))
     own = _split(collection, given)
     return [
-        Part(load_pipeline(member, own[member]), wanted[member], own[member], collection.name)
+        Part(load_pipeline(member, own[member], study=study), wanted[member], own[member], collection.name)
         for member in collection.members
         if member in wanted
     ]
@@ -113,10 +122,9 @@ def _check_name(path: Path, root: Path) -> None:
         raise DeclarationError(f"{path}: the pipeline {path.stem!r} is declared in {known} already; rename this file")
 
 
-def _collection(name: str | Declaration) -> Collection | None:
+def _collection(name: str | Declaration, root: Path) -> Collection | None:
     if not isinstance(name, str):
         return None
-    root = find_root()
     path = find(name, root)
     _check_name(path, root)
     return load_collection(path, root)

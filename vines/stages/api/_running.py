@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 from vines.errors import EngineError, PackageMissingError, VinesError
 from vines.pipeline import available, code_digests, plan
-from vines.places import find_root
-from vines.stages.api._opening import open_store
+from vines.stages.api._home import Home, current
 from vines.stages.api._parts import Part, load_parts, members_of
 
 if TYPE_CHECKING:
@@ -32,6 +31,7 @@ def run(
     force: bool = False,
     retry_failed: bool = False,
     report: Callable[[Event], None] | None = None,
+    study: Home | None = None,
 ) -> RunSummary:
     """Compute what a pipeline still lacks, or all pipelines of a collection, one after the other.
 
@@ -60,6 +60,8 @@ def run(
         Try the points again that failed.
     report : callable, optional
         Gets an event for everything that happens.
+    study : Home, optional
+        Whose; the one that the current folder belongs to if left out.
 
     Returns
     -------
@@ -77,7 +79,8 @@ def run(
     EngineError
         If the scheduler of dask does not answer any more; what was computed is stored.
     """
-    parts = load_parts(name, stages, overrides)
+    study = study or current()
+    parts = load_parts(name, stages, overrides, study=study)
     from vines.pipeline import RunSummary, Shard
 
     asked: dict[str, Any] = {
@@ -89,14 +92,16 @@ def run(
         "force": force,
         "retry_failed": retry_failed,
     }
-    outcomes = [outcome for part in parts for outcome in _run_part(part, asked, report)]
+    outcomes = [outcome for part in parts for outcome in _run_part(part, asked, report, study.store)]
     label = next((part.collection or part.pipeline.name for part in parts), str(name))
     summary = RunSummary(label, tuple(outcomes))
     summary.check()
     return summary
 
 
-def _run_part(part: Part, asked: dict[str, Any], report: Callable[[Event], None] | None) -> Iterable[StageOutcome]:
+def _run_part(
+    part: Part, asked: dict[str, Any], report: Callable[[Event], None] | None, store: Store
+) -> Iterable[StageOutcome]:
     """Run one pipeline. In a collection an error of one, such as a damaged result, is an outcome: the others go on."""
     from vines.pipeline import Event, Journal, StageOutcome, run_pipeline, silent
 
@@ -105,7 +110,6 @@ def _run_part(part: Part, asked: dict[str, Any], report: Callable[[Event], None]
     def told(event: Event) -> None:
         tell(replace(event, stage=part.prefix + event.stage) if event.stage else event)
 
-    store = open_store()
     name = part.pipeline.name
     try:
         with Journal(store.logs, name, {"stages": part.stages, **asked, "set": part.overrides}, told) as journal:
@@ -120,7 +124,7 @@ def _run_part(part: Part, asked: dict[str, Any], report: Callable[[Event], None]
     return [replace(outcome, name=part.prefix + outcome.name) for outcome in summary.stages]
 
 
-def list_pipelines() -> list[dict[str, Any]]:
+def list_pipelines(*, study: Home | None = None) -> list[dict[str, Any]]:
     """Return name, title, source and number of stages of the pipelines of the project and of those that ship.
 
     A collection has no stages, and its pipelines under ``pipelines``.
@@ -128,7 +132,7 @@ def list_pipelines() -> list[dict[str, Any]]:
     from vines.pipeline import with_included
 
     rows = []
-    for name, path in available(find_root()).items():
+    for name, path in available((study or current()).root).items():
         try:
             form = with_included(path)
         except VinesError as error:
@@ -148,23 +152,31 @@ def list_pipelines() -> list[dict[str, Any]]:
 
 
 def status(
-    name: str | Declaration, *, stages: Iterable[str] | None = None, overrides: Mapping[str, Any] | None = None
+    name: str | Declaration,
+    *,
+    stages: Iterable[str] | None = None,
+    overrides: Mapping[str, Any] | None = None,
+    study: Home | None = None,
 ) -> list[StagePlan]:
     """Return where each stage of a pipeline stands, with the reason why it is stale.
 
     In a collection stages are ``<pipeline>.<stage>``; points that two pipelines share are wanted by both.
     """
-    store = open_store()
-    return _plans(load_parts(name, stages, overrides), store, code_digests(store))
+    study = study or current()
+    return _plans(load_parts(name, stages, overrides, study=study), study.store, code_digests(study.store))
 
 
-def status_of_each(name: str | None = None) -> tuple[dict[str, list[StagePlan]], dict[str, str]]:
+def status_of_each(
+    name: str | None = None, *, study: Home | None = None
+) -> tuple[dict[str, list[StagePlan]], dict[str, str]]:
     """Return where the stages of several pipelines stand; the sources of their kinds are looked at once for all.
 
     Parameters
     ----------
     name : str, optional
         A pipeline, or a collection for those in it; all pipelines there are if left out.
+    study : Home, optional
+        Whose; the one that the current folder belongs to if left out.
 
     Returns
     -------
@@ -178,14 +190,16 @@ def status_of_each(name: str | None = None) -> tuple[dict[str, list[StagePlan]],
     VinesError
         If the named pipeline itself cannot be read.
     """
-    names = [row["name"] for row in list_pipelines() if not row["pipelines"]] if name is None else members_of(name)
-    store = open_store()
+    study = study or current()
+    store = study.store
+    listed = list_pipelines(study=study) if name is None else []
+    names = members_of(name, study=study) if name is not None else [r["name"] for r in listed if not r["pipelines"]]
     code = code_digests(store)
     plans: dict[str, list[StagePlan]] = {}
     unreadable: dict[str, str] = {}
     for each in map(str, names):
         try:
-            plans[each] = _plans(load_parts(each), store, code)
+            plans[each] = _plans(load_parts(each, study=study), store, code)
         except VinesError as error:
             if each == name:
                 raise

@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable
+from pathlib import Path
 
 from vines.errors import UnknownNameError, VinesError, nearest
 from vines.pipeline import members
-from vines.places import find_root
 
 __all__ = ["stored_pipelines"]
 
 
-def stored_pipelines(names: Iterable[str], pinned: Collection[str]) -> list[str]:
+def stored_pipelines(names: Iterable[str], pinned: Collection[str], root: Path) -> list[str]:
     """Return the names of pipelines with results, of collections those of their members; all if no name is given.
 
     Raises
@@ -21,13 +21,13 @@ def stored_pipelines(names: Iterable[str], pinned: Collection[str]) -> list[str]
 
     Examples
     --------
-    >>> stored_pipelines((), {"fig4": {}, "fig2": {}})
+    >>> stored_pipelines((), {"fig4": {}, "fig2": {}}, Path())
     ['fig2', 'fig4']
     """
     found: dict[str, None] = {}
     for name in names:
         try:
-            mine = [name] if name in pinned else [each for each in members(name, find_root()) if each in pinned]
+            mine = [name] if name in pinned else [each for each in members(name, root) if each in pinned]
         except VinesError:
             mine = []
         if not mine:

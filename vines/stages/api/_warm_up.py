@@ -15,16 +15,17 @@ __all__ = ["compile_cold", "compile_if_cold", "warm_up"]
 
 
 def _tasks() -> dict[str, Task]:
-    """Return the kinds of tasks by name, those that take longest first."""
+    """Return the kinds of tasks by name, those that take longest first and those that wait for others last."""
     from vines.kernels import Task
 
     listed = (
-        Task("many_runs", "many runs and what they settle to", "vines.attractors._warm_up:many_runs"),
-        Task("orbits", "periodic orbits and their families", "vines.orbits._warm_up:orbits"),
         Task("one_run", "one run and what it settles to", "vines.attractors._warm_up:one_run"),
-        Task("runs", "energies, samples, tangent maps of a run", "vines.dynamics._warm_up:runs"),
-        Task("curves", "bifurcations in two parameters", "vines.orbits._warm_up:curves"),
+        Task("lanes", "many runs beside each other", "vines.dynamics._warm_up:lanes"),
+        Task("orbits", "periodic orbits and their families", "vines.orbits._warm_up:orbits"),
         Task("scatter", "runs with scatter", "vines.dynamics._warm_up:scatter"),
+        Task("curves", "bifurcations in two parameters", "vines.orbits._warm_up:curves"),
+        Task("runs", "energies, samples, tangent maps of a run", "vines.dynamics._warm_up:runs"),
+        Task("many_runs", "many runs and what they settle to", "vines.attractors._warm_up:many_runs"),
     )
     return {task.name: task for task in listed}
 

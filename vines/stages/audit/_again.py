@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from vines import schema
+from vines.model import START_NAMES
 from vines.pipeline import kind
 from vines.stages.audit._compare import (
     TOLERANCE,
@@ -25,7 +26,6 @@ if TYPE_CHECKING:
 
 __all__ = ["PointsAgain", "start_again"]
 
-_STATE = ("x1", "v1", "x2", "v2", "phase")
 _REGULAR = ("periodic", "no_impact")
 _PROMPT = 600
 """Forcing periods within which a start comes to its attractor without a chaotic transient."""
@@ -109,7 +109,7 @@ def _compute(result: Result, row: dict[str, Any]) -> dict[str, list[dict[str, An
             options=msgspec.convert(form["options"], spec.options),
             points=Points(fixed, varied, Ids.of([row["point_id"]])),
             carry=carry,
-            start={f"end_{name}": row[name] for name in _STATE} if carry is not None else None,
+            start={f"end_{name}": row[name] for name in START_NAMES} if carry is not None else None,
             folder=Path(folder),
             provenance=result.manifest["provenance"],
         )
@@ -149,7 +149,7 @@ def start_again(result: Result, table: str, place: int) -> Comparison:
 def _from_end(row: dict[str, Any]) -> Attractor:
     from vines.attractors import settle_from
 
-    return settle_from(params_of(row), {name: row[f"end_{name}"] for name in _STATE}, settle=0)
+    return settle_from(params_of(row), {name: row[f"end_{name}"] for name in START_NAMES}, settle=0)
 
 
 def _from_cell(result: Result, row: dict[str, Any]) -> Attractor | None:

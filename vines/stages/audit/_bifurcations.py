@@ -6,11 +6,12 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from vines.model import PARAMETER_NAMES
 from vines.stages.audit._cycles import Cycles
 from vines.stages.audit._defect import Defect, model_defects, relative, words
 from vines.stages.audit._flights import Flights
 from vines.stages.audit._orbits import product_defect
-from vines.stages.audit._rows import PARAMETERS, Floats, Rows
+from vines.stages.audit._rows import Floats, Rows
 
 __all__ = ["bifurcation_defects", "branch_defects", "curve_defects"]
 
@@ -60,7 +61,7 @@ def _named(rows: Rows, names: str, values: str) -> Floats:
     codes, known = rows.codes(names)
     off = np.full(len(rows), np.inf)
     for code, name in enumerate(known):
-        if name in PARAMETERS:
+        if name in PARAMETER_NAMES:
             off = np.where(codes == code, relative(rows[values], rows[name]), off)
     return off
 

@@ -9,8 +9,7 @@ from typing import Any
 import numpy as np
 
 from vines import schema
-from vines.model import Params
-from vines.stages.audit._rows import PARAMETERS
+from vines.model import PARAMETER_NAMES, START_NAMES, Params
 
 __all__ = ["TOLERANCE", "Comparison", "compare_rows", "compare_within_errors", "params_of", "stored_row"]
 
@@ -98,7 +97,7 @@ def compare_within_errors(comparison: Comparison, stored: Mapping[str, Any], aga
 
     Both rows are samples of the motion, so four standard errors are those of their difference.
     """
-    for name in ("mu", "A", "Omega", "r", "lam", "x1", "v1", "x2", "v2", "phase"):
+    for name in (*PARAMETER_NAMES, *START_NAMES):
         comparison.number(name, stored[name], again[name], TOLERANCE * (1 + abs(stored[name] or 0.0)))
     for name in ("regime", "settled", "status"):
         comparison.same(name, stored[name], again[name])
@@ -110,7 +109,7 @@ def compare_within_errors(comparison: Comparison, stored: Mapping[str, Any], aga
 
 def params_of(row: Mapping[str, Any]) -> Params:
     """Return the parameters of a row."""
-    return Params(**{name: row[name] for name in PARAMETERS})
+    return Params(**{name: row[name] for name in PARAMETER_NAMES})
 
 
 def stored_row(result: Any, table: str, place: int) -> dict[str, Any]:

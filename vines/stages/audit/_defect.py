@@ -7,7 +7,8 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from vines.stages.audit._rows import PARAMETERS, Floats, Rows
+from vines.model import PARAMETER_NAMES, VI_NES
+from vines.stages.audit._rows import Floats, Rows
 
 __all__ = ["Defect", "forced_amplitude", "model_defects", "relative", "words"]
 
@@ -58,13 +59,13 @@ def model_defects(rows: Rows, where: npt.NDArray[np.bool_]) -> list[Defect]:
         Rows that were computed.
     """
     found = []
-    if rows.has(*PARAMETERS):
+    if rows.has(*PARAMETER_NAMES):
         outside = np.zeros(len(rows))
-        for name in PARAMETERS:
-            value = rows[name]
-            bad = ~(np.isfinite(value) & ((value >= 0) if name in ("A", "lam", "r") else (value > 0)))
-            outside = np.where(bad | ((value > 1) & (name == "r")), np.inf, outside)
-        found.append(Defect("parameters", "those of the model: mu, Omega > 0, A, lam >= 0, 0 <= r <= 1", 0.0, outside))
+        for each in VI_NES.parameters:
+            inside = np.isfinite(rows[each.name]) & each.allowed.holds(rows[each.name])
+            outside = np.where(inside, outside, np.inf)
+        allowed = ", ".join(each.allowed.of(each.name) for each in VI_NES.parameters)
+        found.append(Defect("parameters", f"those of the model: {allowed}", 0.0, outside))
     if rows.has("max_abs_x1", "reduction", "A", "Omega", "lam"):
         free = forced_amplitude(rows, 1.0)
         found.append(

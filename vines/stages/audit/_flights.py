@@ -13,7 +13,8 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from vines.stages.audit._rows import PARAMETERS, Floats, Rows
+from vines.model import PARAMETER_NAMES
+from vines.stages.audit._rows import Floats, Rows
 
 __all__ = ["Flights", "Sums"]
 
@@ -81,7 +82,7 @@ class Flights:
         state : mapping
             The other attributes.
         """
-        return cls(**{name: parameters[name][each] for name in PARAMETERS}, **state)
+        return cls(**{name: parameters[name][each] for name in PARAMETER_NAMES}, **state)
 
     def after(self) -> tuple[Floats, Floats]:
         """Return v1 and v2 just after the impacts (paper, eq. (12))."""

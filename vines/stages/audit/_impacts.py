@@ -8,10 +8,11 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from vines.model import PARAMETER_NAMES, START_NAMES, STATE_NAMES
 from vines.stages.audit._cycles import Cycles
 from vines.stages.audit._defect import Defect, relative
 from vines.stages.audit._flights import Flights
-from vines.stages.audit._rows import PARAMETERS, Floats, Rows
+from vines.stages.audit._rows import Floats, Rows
 
 __all__ = ["POINT_COLUMNS", "impact_defects", "motion_defects"]
 
@@ -28,7 +29,7 @@ def impact_defects(rows: Rows) -> Iterator[Defect]:
     v1, v2, mu, r = rows["v1"], rows["v2"], rows["mu"], rows["r"]
     new1, new2 = rows["v1_after"], rows["v2_after"]
     size = 1 + np.abs(v1) + np.abs(v2)
-    outside = [~(np.isfinite(rows[name]) & (rows[name] >= 0)) for name in PARAMETERS]
+    outside = [~(np.isfinite(rows[name]) & (rows[name] >= 0)) for name in PARAMETER_NAMES]
     yield Defect("parameters", "those of the model", 0.0, np.where(np.any(outside, axis=0), np.inf, 0.0))
     yield Defect("momentum", "v1 + mu v2 is kept", 1e-12, np.abs(v1 + mu * v2 - new1 - mu * new2) / size)
     yield Defect("impact law", "w' after = -r w' before", 1e-12, np.abs(new1 - new2 + r * (v1 - v2)) / size)
@@ -60,7 +61,7 @@ def motion_defects(
     if not len(places):
         return
     chosen = rows.take(flying & (which >= 0))
-    state = {name: chosen[name] for name in ("x1", "v1", "x2", "v2", "phase")}
+    state = {name: chosen[name] for name in START_NAMES}
     flights = Flights.of(chosen, slice(None), {**state, "dt": chosen["dt_next"]})
     number = np.nan_to_num(chosen["attractor"])
     # one number for each run of impacts: the point and which of its attractors
@@ -79,7 +80,7 @@ def _landing(rows: Rows, flights: Flights, owner: npt.NDArray[np.int64]) -> Floa
     off = np.full(len(rows), np.nan)
     follows = (owner[1:] == owner[:-1]) & (rows["index"][1:] == rows["index"][:-1] + 1)
     landed = flights.land()
-    stored = [rows[name] for name in ("x1", "v1", "x2", "v2")]
+    stored = [rows[name] for name in STATE_NAMES]
     gap = np.max([np.abs(a[:-1] - b[1:]) for a, b in zip(landed, stored, strict=True)], axis=0)
     turned = np.abs(
         np.exp(1j * (rows["phase"] + rows["Omega"] * rows["dt_next"])[:-1]) - np.exp(1j * rows["phase"][1:])

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 import numpy.typing as npt
 
+from vines.model import START_NAMES, STATE_NAMES
 from vines.stages.audit._cycles import Cycles
 from vines.stages.audit._defect import Defect, model_defects, relative, words
 from vines.stages.audit._flights import Flights
@@ -27,7 +28,7 @@ def orbit_cycles(rows: Rows) -> Cycles:
     dt[:-1] = t[1:] - t[:-1]
     last = np.cumsum(rows.lengths) - 1
     dt[last] = t[last - rows.lengths + 1] + _period(rows) - t[last]
-    state = {name: rows.lists(name) for name in ("x1", "v1", "x2", "v2", "phase")}
+    state = {name: rows.lists(name) for name in START_NAMES}
     flights = Flights.of(rows, each, {**state, "dt": dt})
     return Cycles(flights, rows.lengths)
 
@@ -40,7 +41,7 @@ def orbit_defects(rows: Rows) -> Iterator[Defect]:
     """Yield the checks of rows of the table ``orbits``."""
     yield from model_defects(rows, np.ones(len(rows), dtype=bool))
     yield Defect("word", "word, name, n, m and p agree", 0.0, np.where(np.isnan(d := words(rows)), np.inf, d))
-    lists = ("side", "x1", "v1", "x2", "v2", "w_dot", "phase")
+    lists = ("side", *STATE_NAMES, "w_dot", "phase")
     right = (rows.lengths > 0) & (rows.lengths == rows["n"] + rows["m"])
     right &= all(len(rows.lists(name)) == int(rows.lengths.sum()) for name in lists)
     yield Defect("impacts", "n + m of them in each list", 0.0, np.where(right, 0.0, np.inf))

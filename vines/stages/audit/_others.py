@@ -6,6 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from vines.model import PARAMETER_NAMES
 from vines.stages.audit._defect import Defect, model_defects, relative, words
 from vines.stages.audit._rows import Floats, Rows
 
@@ -61,7 +62,7 @@ def reduced_defects(rows: Rows) -> Iterator[Defect]:
 
 def _closed_form(rows: Rows) -> Floats:
     """Return the residual of the equation of symmetric 1:1 orbits, (alpha² + beta²) V² + 2 alpha V + 1 - B² = 0."""
-    mu, A, Omega, r, lam = (rows[name] for name in ("mu", "A", "Omega", "r", "lam"))
+    mu, A, Omega, r, lam = (rows[name] for name in PARAMETER_NAMES)
     half, gamma = np.pi / Omega, np.sqrt(1 - lam**2 / 4)
     s = -lam / 2 + 1j * gamma
     q = 1 / (1 + np.exp(s * half))

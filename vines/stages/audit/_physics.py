@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from vines import schema
+from vines.model import PARAMETER_NAMES
 from vines.stages.audit._bifurcations import bifurcation_defects, branch_defects, curve_defects
 from vines.stages.audit._defect import Defect
 from vines.stages.audit._files import check_table
@@ -17,7 +18,7 @@ from vines.stages.audit._orbits import orbit_defects
 from vines.stages.audit._others import basin_defects, check_defects, optimum_defects, reduced_defects
 from vines.stages.audit._points import attractor_defects, point_defects
 from vines.stages.audit._rig import comparison_defects, cycle_defects, reconstruction_defects, rig_impact_defects
-from vines.stages.audit._rows import PARAMETERS, Rows
+from vines.stages.audit._rows import Rows
 
 if TYPE_CHECKING:
     import pyarrow as pa
@@ -84,7 +85,7 @@ def check_physics(ledger: Ledger, where: str, result: Result, name: str) -> None
 def describe_row(table: pa.Table, place: int) -> str:
     """Return the parameters by which a reader finds a row."""
     row: dict[str, Any] = table.slice(place, 1).to_pylist()[0]
-    told = [f"{name} = {row[name]:.10g}" for name in PARAMETERS[:3] if isinstance(row.get(name), float)]
+    told = [f"{name} = {row[name]:.10g}" for name in PARAMETER_NAMES[:3] if isinstance(row.get(name), float)]
     return ", ".join([*told, f"point_id {row['point_id']}"])
 
 
@@ -117,7 +118,7 @@ def _fixed(rows: Rows, result: Result) -> Defect:
     varied = {axis[0] for axis in form["vary"]} | set(_SCALED.get(form["kind"], ()))
     wrong = np.zeros(len(rows))
     for parameter, value in form["params"].items():
-        if parameter not in varied and rows.has(parameter) and parameter in PARAMETERS:
+        if parameter not in varied and rows.has(parameter) and parameter in PARAMETER_NAMES:
             wrong[rows[parameter] != value] = np.inf
     return Defect("declared parameters", "those that do not vary are as declared", 0.0, wrong)
 

@@ -11,7 +11,7 @@ import numpy.typing as npt
 
 from vines.dynamics import simulate
 from vines.errors import OrbitNotFound
-from vines.model import Params, Word
+from vines.model import STATE_NAMES, Params, Word
 from vines.orbits import Orbit, find_orbit, orbit_row
 from vines.stages.audit._compare import TOLERANCE, Comparison, compare_rows, params_of, stored_row
 from vines.stages.audit._located import locate_again
@@ -101,6 +101,6 @@ def _fly(comparison: Comparison, orbit: Orbit) -> None:
     allowed = TOLERANCE * max(1.0, orbit.max_multiplier)
     stored = np.roll(orbit.states, -1, axis=0)
     times = np.append(orbit.t[1:], orbit.t[0] + orbit.period)
-    flown = np.column_stack([met[name] for name in ("x1", "v1", "x2", "v2")])
+    flown = np.column_stack([met[name] for name in STATE_NAMES])
     comparison.number("an impact in the simulator", float(np.abs(flown - stored).max()), 0.0, allowed)
     comparison.number("a time in the simulator", float(np.abs(met["t"] - times).max()), 0.0, allowed)

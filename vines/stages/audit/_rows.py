@@ -11,10 +11,9 @@ import numpy.typing as npt
 if TYPE_CHECKING:
     import pyarrow as pa
 
-__all__ = ["PARAMETERS", "Floats", "Rows"]
+__all__ = ["Floats", "Rows"]
 
 Floats = npt.NDArray[np.float64]
-PARAMETERS = ("mu", "A", "Omega", "r", "lam")
 
 
 class Rows:

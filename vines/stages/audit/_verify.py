@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from vines.errors import StoreError, UnknownNameError
-from vines.stages.api._opening import open_store
+from vines.stages.api._home import Home, current
 from vines.stages.api._stored import stored_pipelines
 from vines.stages.audit._files import check_files, check_provenance, check_schema
 from vines.stages.audit._ledger import Ledger, Line
@@ -52,6 +52,7 @@ def verify(
     recompute: int = 0,
     seed: int = 0,
     report: Callable[[str], object] | None = None,
+    study: Home | None = None,
 ) -> Verification:
     """Check stored results: files, schemas, provenance, and the physics of every row.
 
@@ -71,6 +72,8 @@ def verify(
         Seed of the draw.
     report : callable, optional
         Gets a line for everything that begins.
+    study : Home, optional
+        Whose; the one that the current folder belongs to if left out.
 
     Returns
     -------
@@ -83,18 +86,17 @@ def verify(
 
     Examples
     --------
-    >>> import os, tempfile
-    >>> os.environ["VINES_DATA"] = tempfile.mkdtemp()
-    >>> verify()
+    >>> import tempfile, vines
+    >>> verify(study=vines.study(tempfile.mkdtemp()))
     Traceback (most recent call last):
         ...
     vines.errors.UnknownNameError: nothing is stored yet; run 'vines run quickstart' first
-    >>> del os.environ["VINES_DATA"]
     """
-    store = open_store()
+    study = study or current()
+    store = study.store
     ledger = Ledger()
     say = report or (lambda line: None)
-    results = _results(store, names, everything, ledger)
+    results = _results(study, names, everything, ledger)
     rows = 0
     intact: dict[str, Result] = {}
     for where, result in results.items():
@@ -109,10 +111,11 @@ def verify(
     return Verification(len(results), rows, tuple(ledger.lines))
 
 
-def _results(store: Store, names: tuple[str, ...], everything: bool, ledger: Ledger) -> dict[str, Result]:
+def _results(study: Home, names: tuple[str, ...], everything: bool, ledger: Ledger) -> dict[str, Result]:
     """Return the results to verify by ``<pipeline>.<stage>``; one that several stages share comes once."""
+    store = study.store
     pinned = store.pinned()
-    chosen: dict[str, dict[str, Any]] = {name: pinned[name] for name in stored_pipelines(names, pinned)}
+    chosen: dict[str, dict[str, Any]] = {name: pinned[name] for name in stored_pipelines(names, pinned, study.root)}
     keys: dict[str, str] = {}
     says = "a result for each pin"
     for pipeline, pins in chosen.items():

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -10,14 +10,17 @@ from vines.model import Params, Word
 from vines.orbits import Branch, Families, Orbit, bifurcation_row, branch_row, follow_families, orbit_row, words_up_to
 from vines.pipeline import Batch, Job
 
+if TYPE_CHECKING:
+    from vines.stages.kinds.atlas import AtlasOptions
+
 __all__ = ["compute"]
 
 Rows = list[dict[str, Any]]
 
 
-def compute(job: Job) -> Batch:
+def compute(job: Job[AtlasOptions]) -> Batch:
     """Seek and follow the orbits along the line of every point of the job."""
-    options: Any = job.options
+    options = job.options
     words = [Word(word) for word in options.words] or words_up_to(options.length, options.period)
     tables: dict[str, Rows] = {"atlas": [], "orbits": [], "branches": [], "bifurcations": []}
     for point in job.points:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 import pyarrow as pa
@@ -12,12 +12,15 @@ from vines.model import Params
 from vines.pipeline import Batch, WholeJob
 from vines.stages.bodies._rows import outline
 
+if TYPE_CHECKING:
+    from vines.stages.kinds.basins import BasinsOptions
+
 __all__ = ["compute"]
 
 
-def compute(job: WholeJob) -> Batch:
+def compute(job: WholeJob[BasinsOptions]) -> Batch:
     """Find the basins and describe the attractors."""
-    options: Any = job.options
+    options = job.options
     p = Params(**job.params)
     axes = [(axis.name, np.linspace(axis.start, axis.stop, axis.count)) for axis in (options.x, options.y)]
     found = basins(

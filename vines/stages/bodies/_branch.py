@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -19,10 +19,13 @@ from vines.orbits import (
 )
 from vines.pipeline import Batch, Range, WholeJob
 
+if TYPE_CHECKING:
+    from vines.stages.kinds.branch import BranchOptions
+
 __all__ = ["branch_tables", "compute"]
 
 
-def compute(job: WholeJob) -> Batch:
+def compute(job: WholeJob[BranchOptions]) -> Batch:
     """Follow one orbit from end to end of the range, or all families, and what comes out of them."""
     if len(job.ranges) != 1:
         raise DeclarationError(f"a branch is followed in one parameter, this one varies {len(job.ranges)}")
@@ -30,7 +33,7 @@ def compute(job: WholeJob) -> Batch:
     return Batch(tables=branch_tables(_branches(job.options, job.params, axis, span)))
 
 
-def _branches(options: Any, params: dict[str, float], axis: str, span: Range) -> list[Branch]:
+def _branches(options: BranchOptions, params: dict[str, float], axis: str, span: Range) -> list[Branch]:
     start = Params(**{**params, axis: span.start})
     at = np.linspace(span.start, span.stop, options.points).tolist()
     if options.families == "one":

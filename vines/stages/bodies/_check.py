@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from vines.catalogue import connect_tables
 from vines.errors import DeclarationError, QueryError, nearest
 from vines.pipeline import Batch, Input, WholeJob
 from vines.stages.bodies._claims import Claim, read_claims
+
+if TYPE_CHECKING:
+    from vines.stages.kinds.check import CheckOptions
 
 __all__ = ["UNEXPLAINED", "compute", "verdict"]
 
@@ -17,9 +20,9 @@ UNEXPLAINED = "unexplained"
 """Reason of a difference that the claim does not know of."""
 
 
-def compute(job: WholeJob) -> Batch:
+def compute(job: WholeJob[CheckOptions]) -> Batch:
     """Compare each claim that the stage names with the tables of the stages it needs."""
-    options: Any = job.options
+    options = job.options
     claims = read_claims(job.files[0])
     for name in options.claims:
         if name not in claims:

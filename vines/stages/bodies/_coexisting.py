@@ -9,8 +9,8 @@ import numpy as np
 
 from vines.attractors import Attractor, Classified, classify_many, share_error
 from vines.dynamics import no_ball
-from vines.model import PARAMETER_NAMES, Params, Word
-from vines.stages.bodies._rows import STATE, outline
+from vines.model import PARAMETER_NAMES, START_NAMES, Params, Word
+from vines.stages.bodies._rows import outline
 
 __all__ = ["attractor_rows", "coexisting", "random_starts"]
 
@@ -51,7 +51,7 @@ def coexisting(
     columns = np.array([[getattr(attractor.params, name) for name in PARAMETER_NAMES] for attractor in own])
     many = classify_many(
         dict(zip(PARAMETER_NAMES, np.repeat(columns, random, axis=0).T, strict=True)),
-        dict(zip(STATE, starts.T, strict=False)),
+        dict(zip(START_NAMES, starts.T, strict=False)),
         settle=settle,
         record=record,
         watch=watch,

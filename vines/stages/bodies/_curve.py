@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -11,6 +11,9 @@ from vines.errors import DeclarationError, OrbitNotFound
 from vines.model import Params, Word
 from vines.orbits import Bifurcation, Curve, curve_rows, follow_curve, follow_families
 from vines.pipeline import Batch, WholeJob
+
+if TYPE_CHECKING:
+    from vines.stages.kinds.curve import CurveOptions
 
 __all__ = ["compute"]
 
@@ -21,9 +24,9 @@ _SLOW = 0.01
 """Impact speed below which those of two orbits are compared absolutely: at some grazings it vanishes."""
 
 
-def compute(job: WholeJob) -> Batch:
+def compute(job: WholeJob[CurveOptions]) -> Batch:
     """Find the bifurcations on lines through the box and follow each that lies on no curve yet, both ways."""
-    options: Any = job.options
+    options = job.options
     if len(job.ranges) != 2:
         raise DeclarationError(f"a curve is followed in two parameters, this one varies {len(job.ranges)}")
     first, second = job.ranges
@@ -50,7 +53,9 @@ def _between(low: float, high: float, count: int) -> list[float]:
     return [low + (high - low) * share for share in shares]
 
 
-def _bifurcations(options: Any, p: Params, parameter: str, within: tuple[float, float]) -> Iterator[Bifurcation]:
+def _bifurcations(
+    options: CurveOptions, p: Params, parameter: str, within: tuple[float, float]
+) -> Iterator[Bifurcation]:
     word = Word(options.word)
     # Inside the range, since a curve does not begin at its border.
     seeds = np.linspace(*within, options.seeds + 2)[1:-1].tolist()

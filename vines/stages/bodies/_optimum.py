@@ -3,19 +3,22 @@
 from __future__ import annotations
 
 import math
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from vines.errors import DeclarationError
 from vines.model import Params
 from vines.orbits import Optimum, optimise, orbit_row
 from vines.pipeline import Batch, WholeJob
 
+if TYPE_CHECKING:
+    from vines.stages.kinds.optimum import OptimumOptions
+
 __all__ = ["compute", "optimum_row"]
 
 
-def compute(job: WholeJob) -> Batch:
+def compute(job: WholeJob[OptimumOptions]) -> Batch:
     """Search over the declared ranges."""
-    options: Any = job.options
+    options = job.options
     if not job.ranges:
         raise DeclarationError(
             "an optimum is sought over the range of at least one parameter; give vary.A = { from, to }"

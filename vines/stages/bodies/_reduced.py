@@ -3,16 +3,19 @@
 from __future__ import annotations
 
 import math
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from vines.model import Params
 from vines.orbits import Orbit, Reduced, reduced_orbits, reduced_range, symmetric_orbits
 from vines.pipeline import Batch, Job
 
+if TYPE_CHECKING:
+    from vines.stages.kinds.reduced import ReducedOptions
+
 __all__ = ["compute", "reduced_row"]
 
 
-def compute(job: Job) -> Batch:
+def compute(job: Job[ReducedOptions]) -> Batch:
     """Compare approximation and orbit at every point of the job."""
     return Batch(tables={"reduced": [reduced_row(point.id, Params(**point.params)) for point in job.points]})
 

@@ -7,15 +7,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from vines.dynamics import ball_locked, no_ball
-from vines.model import Word
+from vines.model import START_NAMES, STATE_NAMES, Word
 
 if TYPE_CHECKING:
     from vines.attractors import Attractor
     from vines.model import Params
 
 __all__ = ["impact_rows", "outline", "point_row"]
-
-STATE = ("x1", "v1", "x2", "v2", "phase")
 
 
 def point_row(
@@ -52,7 +50,7 @@ def point_row(
         **p.as_dict(),
         "carry": carry,
         "seed": seed,
-        **{name: start[name] for name in STATE},
+        **{name: start[name] for name in START_NAMES},
         "settle_periods": before + attractor.transient,
         "record_periods": attractor.recorded,
         "settled": attractor.settled,
@@ -100,7 +98,7 @@ def outline(attractor: Attractor) -> dict[str, Any]:
         "reduction": m.max_abs_x1 / yardstick if yardstick > 0 else None,
         "impacts_per_period": m.impacts_per_period,
         "sticks_per_period": m.sticks_per_period,
-        **{f"end_{name}": attractor.final[name] for name in STATE},
+        **{f"end_{name}": attractor.final[name] for name in START_NAMES},
     }
 
 
@@ -124,7 +122,7 @@ def impact_rows(point_id: str, params: Params, impacts: np.ndarray, number: int 
     columns |= {name: np.full(n, value) for name, value in params.as_dict().items()}
     columns["attractor"] = np.full(n, number, dtype=np.int64)
     columns["index"] = np.arange(n, dtype=np.int64)
-    for name in ("t", "side", "phase", "x1", "v1", "x2", "v2", "w_dot", "v1_after", "v2_after"):
+    for name in ("t", "side", "phase", *STATE_NAMES, "w_dot", "v1_after", "v2_after"):
         columns[name] = kept[name]
     columns["dt_next"] = np.diff(impacts["t"]) if n else np.empty(0)
     return columns

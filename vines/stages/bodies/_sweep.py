@@ -2,23 +2,26 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pyarrow as pa
 
 from vines.attractors import Attractor, classify_many, settle
-from vines.model import PARAMETER_NAMES, Params
+from vines.model import PARAMETER_NAMES, START_NAMES, STATE_NAMES, Params
 from vines.pipeline import Batch, Job
 from vines.stages.bodies._coexisting import attractor_rows, coexisting, random_starts
-from vines.stages.bodies._rows import STATE, impact_rows, point_row
+from vines.stages.bodies._rows import impact_rows, point_row
+
+if TYPE_CHECKING:
+    from vines.stages.kinds.sweep import SweepOptions
 
 __all__ = ["compute", "representative"]
 
 
-def compute(job: Job) -> Batch:
+def compute(job: Job[SweepOptions]) -> Batch:
     """Settle every point of the job; carried points start where the one before them ended, all others run at once."""
-    options: Any = job.options
+    options = job.options
     starts, own = _along_the_chain(job) if job.carry is not None else _each_for_itself(job)
     drawn = options.seed if options.start == "random" and job.carry is None else None
     listed = coexisting(
@@ -46,11 +49,11 @@ def compute(job: Job) -> Batch:
     return Batch(tables={"points": rows, "impacts": pa.table(columns), "attractors": attractors})
 
 
-def _along_the_chain(job: Job) -> tuple[list[dict[str, float]], list[Attractor]]:
+def _along_the_chain(job: Job[SweepOptions]) -> tuple[list[dict[str, float]], list[Attractor]]:
     """Return starts and attractors where each point starts from the end of the one before."""
-    options: Any = job.options
+    options = job.options
     if job.start is not None:
-        start = {name: float(job.start[f"end_{name}"]) for name in STATE}
+        start = {name: float(job.start[f"end_{name}"]) for name in START_NAMES}
     else:
         (start,) = _starts(job, 1)
     starts, own = [], []
@@ -68,17 +71,17 @@ def _along_the_chain(job: Job) -> tuple[list[dict[str, float]], list[Attractor]]
         )
         starts.append(start)
         own.append(attractor)
-        start = {name: attractor.final[name] for name in STATE}
+        start = {name: attractor.final[name] for name in START_NAMES}
     return starts, own
 
 
-def _each_for_itself(job: Job) -> tuple[list[dict[str, float]], list[Attractor]]:
+def _each_for_itself(job: Job[SweepOptions]) -> tuple[list[dict[str, float]], list[Attractor]]:
     """Return starts and attractors where every point starts as the options say."""
-    options: Any = job.options
+    options = job.options
     starts = _starts(job, len(job.points))
     many = classify_many(
         {name: job.points.column(name) for name in PARAMETER_NAMES},
-        {name: np.array([start[name] for start in starts]) for name in STATE},
+        {name: np.array([start[name] for start in starts]) for name in START_NAMES},
         settle=options.settle,
         record=options.record,
         watch=options.watch,
@@ -87,14 +90,14 @@ def _each_for_itself(job: Job) -> tuple[list[dict[str, float]], list[Attractor]]
     return starts, [many.attractor(k) for k in range(len(many))]
 
 
-def _starts(job: Job, count: int) -> list[dict[str, float]]:
+def _starts(job: Job[SweepOptions], count: int) -> list[dict[str, float]]:
     """Return the starts of the first points: the same for all, or drawn at random for each."""
-    options: Any = job.options
+    options = job.options
     if options.start == "random":
         drawn = [random_starts(Params(**point.params), 1, options.seed)[0] for point in job.points[:count]]
     else:
-        drawn = [[getattr(options.start, name) for name in STATE[:4]]] * count
-    return [dict(zip(STATE, [*map(float, start), 0.0], strict=True)) for start in drawn]
+        drawn = [[getattr(options.start, name) for name in STATE_NAMES]] * count
+    return [dict(zip(START_NAMES, [*map(float, start), 0.0], strict=True)) for start in drawn]
 
 
 def representative(attractor: Attractor, keep: int) -> np.ndarray:

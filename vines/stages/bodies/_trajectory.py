@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, TypedDict
+from typing import TYPE_CHECKING, Any, TypedDict
 
 import numpy as np
 import pyarrow as pa
@@ -10,10 +10,13 @@ import pyarrow as pa
 from vines.attractors import settle
 from vines.dynamics import simulate
 from vines.logs import write_run
-from vines.model import Params
+from vines.model import START_NAMES, STATE_NAMES, Params
 from vines.pipeline import Batch, Job
-from vines.stages.bodies._rows import STATE, impact_rows, point_row
+from vines.stages.bodies._rows import impact_rows, point_row
 from vines.stages.bodies._sweep import representative
+
+if TYPE_CHECKING:
+    from vines.stages.kinds.trajectory import TrajectoryOptions
 
 __all__ = ["compute"]
 
@@ -22,18 +25,18 @@ CLASSIFY_AFTER = 400
 CLASSIFY_OVER = 64
 
 
-def compute(job: Job) -> Batch:
+def compute(job: Job[TrajectoryOptions]) -> Batch:
     """Run every point: `settle` periods unrecorded, `record` periods into a log, and on to name the attractor.
 
     Carried points start where the one before them, or the point of a sweep that starts the chain, ended.
     """
-    options: Any = job.options
+    options = job.options
     rows: list[dict[str, Any]] = []
     impacts: list[dict[str, Any]] = []
     logs: dict[str, str] = {}
-    start = {name: getattr(options.start, name) for name in STATE[:4]} | {"phase": 0.0}
+    start = {name: getattr(options.start, name) for name in STATE_NAMES} | {"phase": 0.0}
     if job.start is not None:
-        start = {name: float(job.start[f"end_{name}"]) for name in STATE}
+        start = {name: float(job.start[f"end_{name}"]) for name in START_NAMES}
     for point in job.points:
         p = Params(**point.params)
         state = start
@@ -58,7 +61,7 @@ def compute(job: Job) -> Batch:
             bare=options.bare,
         )
         if job.carry is not None:
-            start = {name: attractor.final[name] for name in STATE}
+            start = {name: attractor.final[name] for name in START_NAMES}
     columns = {name: np.concatenate([part[name] for part in impacts]) for name in impacts[0]}
     return Batch(tables={"points": rows, "impacts": pa.table(columns)}, logs=logs)
 

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Annotated
 
 import msgspec
+from msgspec import Meta
 
 from vines.errors import ParameterError
 from vines.model import Params, Word
@@ -17,38 +18,32 @@ __all__ = ["KIND", "Amplitudes", "AtlasOptions"]
 class Amplitudes(msgspec.Struct, frozen=True, forbid_unknown_fields=True, rename={"start": "from", "stop": "to"}):
     """Evenly spaced forcing amplitudes, ends included."""
 
-    start: float
-    stop: float
-    count: int
+    start: Annotated[float, Meta(description="The first")]
+    stop: Annotated[float, Meta(description="The last, above the first")]
+    count: Annotated[int, Meta(ge=2, description="How many")]
 
 
 class AtlasOptions(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """All orbits of all words of up to `length` impacts and `period` forcing periods over a box of parameters.
 
     A point of the grid is a line through the box along the forcing amplitude, on which the families are followed, so
-    that each orbit knows its branch. `words` names words instead of `length` and `period`.
+    that each orbit knows its branch.
     """
 
-    amplitude: Amplitudes
-    length: int = 3
-    period: int = 1
-    words: tuple[str, ...] = ()
+    amplitude: Annotated[Amplitudes, Meta(description="Forcing amplitudes at which orbits are listed")]
+    length: Annotated[int, Meta(ge=2, le=12, description="Impacts of the longest words")] = 3
+    period: Annotated[int, Meta(ge=1, description="Forcing periods of the longest words")] = 1
+    words: Annotated[tuple[str, ...], Meta(description="Words instead of all up to `length` and `period`")] = ()
 
 
-def _check(params: dict[str, float], options: Any) -> None:
+def _check(params: dict[str, float], options: AtlasOptions) -> None:
     along = options.amplitude
     for end in (along.start, along.stop):
         Params(**params, A=end)
-    if not along.start < along.stop or along.count < 2:
-        raise ParameterError(
-            f"amplitude is {along.start:g} to {along.stop:g} in {along.count} values; allowed are from < to, count >= 2"
-        )
+    if not along.start < along.stop:
+        raise ParameterError(f"amplitude is {along.start:g} to {along.stop:g}, allowed is from < to")
     for word in options.words:
         Word(word)
-    if not 2 <= options.length <= 12 or options.period < 1:
-        raise ParameterError(
-            f"length is {options.length} and period {options.period}, allowed are 2 <= length <= 12 and period >= 1"
-        )
 
 
 KIND = Kind(

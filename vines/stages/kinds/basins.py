@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from typing import Any, Literal
+from typing import Annotated
 
 import msgspec
+from msgspec import Meta
 
-from vines.errors import ParameterError
-from vines.model import Params
+from vines.errors import ParameterError, nearest
+from vines.model import START_NAMES, Params
 from vines.pipeline import Kind
-from vines.stages.kinds._checks import check_least
 from vines.stages.kinds._parameters import PARAMETERS
 
 __all__ = ["KIND", "BasinsOptions", "Grid"]
@@ -18,40 +18,42 @@ __all__ = ["KIND", "BasinsOptions", "Grid"]
 class Grid(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """A coordinate of the start with evenly spaced values, `from` and `to` included."""
 
-    name: Literal["x1", "v1", "x2", "v2", "phase"]
-    start: float = msgspec.field(name="from")
-    stop: float = msgspec.field(name="to")
-    count: int = 100
+    name: Annotated[str, Meta(description="Which coordinate", extra_json_schema={"enum": list(START_NAMES)})]
+    start: Annotated[float, Meta(description="The first value")] = msgspec.field(name="from")
+    stop: Annotated[float, Meta(description="The last value")] = msgspec.field(name="to")
+    count: Annotated[int, Meta(ge=2, description="How many")] = 100
 
 
 class BasinsOptions(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """To which attractor each start of a grid over the coordinates `x` and `y` comes, the others as in `start`.
+    """To which attractor each start of a grid over the coordinates `x` and `y` comes, the others as in `start`."""
 
-    Starts that come to no known orbit within `settle` periods are classified, exponents being believed after `watch`
-    periods more. After `patience` periods a start that has not settled is called so, and so is one on chaos that does
-    not last as long.
-    Cells at a boundary are halved in both directions `refine` times.
-    """
+    x: Annotated[Grid, Meta(description="Coordinate of the start along the grid")]
+    y: Annotated[Grid, Meta(description="Coordinate of the start across the grid")]
+    start: Annotated[
+        dict[str, float], Meta(description="Values of the other coordinates; 0 where nothing is said")
+    ] = {}
+    refine: Annotated[int, Meta(ge=0, description="How often cells at a boundary are halved in both directions")] = 0
+    settle: Annotated[
+        int, Meta(ge=1, description="Forcing periods after which a start that came to no known orbit is classified")
+    ] = 256
+    patience: Annotated[
+        int,
+        Meta(
+            ge=1,
+            description="Forcing periods after which a start is called unsettled, and so is chaos that ends sooner",
+        ),
+    ] = 4000
+    watch: Annotated[int, Meta(ge=16, description="Forcing periods more before a Lyapunov exponent is believed")] = 128
 
-    x: Grid
-    y: Grid
-    start: dict[str, float] = {}
-    refine: int = 0
-    settle: int = 256
-    patience: int = 4000
-    watch: int = 128
 
-
-def _check(params: dict[str, float], options: Any) -> None:
+def _check(params: dict[str, float], options: BasinsOptions) -> None:
     Params(**params)
     names = {options.x.name, options.y.name}
     if len(names) < 2 or names & set(options.start):
         raise ParameterError(f"x is {options.x.name}, y is {options.y.name}: give two coordinates, not again in start")
-    for name in options.start:
-        if name not in ("x1", "v1", "x2", "v2", "phase"):
-            raise ParameterError(f"unknown coordinate {name!r} in start, allowed: x1, v1, x2, v2, phase")
-    values = msgspec.structs.asdict(options) | {"count": min(options.x.count, options.y.count)}
-    check_least(values, {"count": 2, "refine": 0, "settle": 1, "patience": 1, "watch": 16})
+    for name in (options.x.name, options.y.name, *options.start):
+        if name not in START_NAMES:
+            raise ParameterError(f"unknown coordinate {name!r} of the start: {nearest(name, START_NAMES)}")
 
 
 KIND = Kind(
@@ -63,6 +65,6 @@ KIND = Kind(
     tables=("attractors", "basins"),
     parameters=PARAMETERS,
     check=_check,
-    kernels=("many_runs", "one_run", "runs"),
+    kernels=("one_run", "lanes", "runs", "many_runs"),
     again="starts",
 )

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from typing import Any, Literal
+from typing import Annotated, Literal
 
 import msgspec
+from msgspec import Meta
 
 from vines.model import Params, Word
 from vines.pipeline import Kind, Pipeline, Stage
-from vines.stages.kinds._checks import check_axes, check_least
+from vines.stages.kinds._checks import check_axes
 from vines.stages.kinds._parameters import PARAMETERS
 
 __all__ = ["KIND", "BranchOptions"]
@@ -17,23 +18,25 @@ __all__ = ["KIND", "BranchOptions"]
 class BranchOptions(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """Families of periodic orbits of one word, followed in the varied parameter.
 
-    `points` values of the parameter, evenly spaced from end to end, are among the orbits on every sheet of a branch.
     `families = "one"` follows the orbit that `find_orbit` chooses at the start of the range to its end, `"all"` every
-    family that is found at one of `seeds` values of the parameter. `switch` is the number of generations that are
-    followed out of them at symmetry breakings and period doublings.
+    family that is found at one of `seeds` values of the parameter.
     """
 
-    word: str
-    points: int = 400
-    families: Literal["one", "all"] = "one"
-    seeds: int = 13
-    switch: int = 0
+    word: Annotated[str, Meta(description="Word of the impacts, such as LR")]
+    points: Annotated[
+        int,
+        Meta(ge=2, description="Evenly spaced values of the parameter that have an orbit on every sheet of a branch"),
+    ] = 400
+    families: Annotated[Literal["one", "all"], Meta(description="Which families are followed")] = "one"
+    seeds: Annotated[int, Meta(ge=2, description="Values of the parameter at which families are sought")] = 13
+    switch: Annotated[
+        int, Meta(ge=0, description="Generations followed out of symmetry breakings and period doublings")
+    ] = 0
 
 
-def _check(params: dict[str, float], options: Any) -> None:
+def _check(params: dict[str, float], options: BranchOptions) -> None:
     Params(**params)
     Word(options.word)
-    check_least(msgspec.structs.asdict(options), {"points": 2, "seeds": 2, "switch": 0})
 
 
 def _fits(stage: Stage, pipeline: Pipeline) -> None:

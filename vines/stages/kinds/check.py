@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any
 
 import msgspec
+from msgspec import Meta
 
 from vines.errors import DeclarationError, FileMissingError, nearest
 from vines.pipeline import Kind, Pipeline, Stage
@@ -17,7 +18,7 @@ __all__ = ["KIND", "CheckOptions"]
 class CheckOptions(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """Published values against the tables of the needed stages."""
 
-    claims: tuple[str, ...]
+    claims: Annotated[tuple[str, ...], Meta(description="Names of published values in pipelines/claims.toml")]
 
 
 def _claims_file(options: Any, root: Path) -> tuple[Path, ...]:

@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Annotated
 
 import msgspec
+from msgspec import Meta
 
-from vines.errors import DeclarationError, ParameterError
+from vines.errors import DeclarationError
 from vines.pipeline import Kind, Pipeline, Stage
-from vines.stages.kinds._seed import check_seed
 
 __all__ = ["COMPARE", "KIND", "CompareOptions"]
 
-COMPARE = ("orbits", "one_run", "many_runs", "scatter")
+COMPARE = ("orbits", "one_run", "lanes", "many_runs", "scatter")
 """Kinds of tasks whose kernels the comparison of a measured run with the model asks for."""
 
 
@@ -20,18 +20,12 @@ class CompareOptions(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """Every run of the needed stages of kind `reconstruct` beside the branches that coexist at its parameters.
 
     Needed stages with orbits, such as those of kind `branch`, are the catalogue: they say which words to look for.
-    `seed` is that of the ensembles. `record` forcing periods of each run go into a log, beside one of the model.
     """
 
-    seed: int = 0
-    record: int = 12
-
-
-def _check(params: dict[str, float], options: Any) -> None:
-    del params
-    check_seed(options)
-    if options.record < 0:
-        raise ParameterError(f"record is {options.record}, allowed is record >= 0")
+    seed: Annotated[int, Meta(ge=0, description="Seed of the ensembles")] = 0
+    record: Annotated[
+        int, Meta(ge=0, description="Forcing periods of each run that go into a log, beside one of the model")
+    ] = 12
 
 
 def _fits(stage: Stage, pipeline: Pipeline) -> None:
@@ -54,7 +48,6 @@ KIND = Kind(
     tables=("comparisons", "rig_cycles"),
     needs=True,
     logs=True,
-    check=_check,
     kernels=COMPARE,
     fits=_fits,
 )

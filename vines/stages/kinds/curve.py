@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from typing import Any, Literal
+from typing import Annotated, Literal
 
 import msgspec
+from msgspec import Meta
 
-from vines.errors import ParameterError
 from vines.model import Params, Word
 from vines.pipeline import Kind, Pipeline, Stage
-from vines.stages.kinds._checks import check_axes, check_least
+from vines.stages.kinds._checks import check_axes
 from vines.stages.kinds._parameters import PARAMETERS
 
 __all__ = ["KIND", "CurveOptions"]
@@ -19,23 +19,22 @@ class CurveOptions(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """Every curve of one type of bifurcation of a word in the plane of the two varied parameters.
 
     The bifurcations are found on the families of the word along the first parameter, at `lines` values of the second
-    and from `seeds` values of the first, and along what comes out of these families by symmetry breaking. `step` is
-    the largest step, relative to the box.
+    and from `seeds` values of the first, and along what comes out of these families by symmetry breaking.
     """
 
-    word: str
-    type: Literal["fold", "symmetry_breaking", "period_doubling", "neimark_sacker", "grazing"]
-    lines: int = 3
-    seeds: int = 9
-    step: float = 0.02
+    word: Annotated[str, Meta(description="Word of the impacts, such as LR")]
+    type: Annotated[
+        Literal["fold", "symmetry_breaking", "period_doubling", "neimark_sacker", "grazing"],
+        Meta(description="Which bifurcation is followed"),
+    ]
+    lines: Annotated[int, Meta(ge=1, description="Values of the second parameter on which it is sought")] = 3
+    seeds: Annotated[int, Meta(ge=2, description="Values of the first parameter at which families are sought")] = 9
+    step: Annotated[float, Meta(gt=0, le=1, description="Largest step, relative to the box")] = 0.02
 
 
-def _check(params: dict[str, float], options: Any) -> None:
+def _check(params: dict[str, float], options: CurveOptions) -> None:
     Params(**params)
     Word(options.word)
-    check_least(msgspec.structs.asdict(options), {"lines": 1, "seeds": 2})
-    if not 0 < options.step <= 1:
-        raise ParameterError(f"step is {options.step:g}, allowed is 0 < step <= 1")
 
 
 def _fits(stage: Stage, pipeline: Pipeline) -> None:

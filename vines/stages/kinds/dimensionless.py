@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import msgspec
 
-from vines.model import PhysicalParams
+from vines.model import VI_NES, PhysicalParams
 from vines.pipeline import Kind
 from vines.stages.kinds._parameters import TABLE_1
 
@@ -17,7 +15,7 @@ class DimensionlessOptions(msgspec.Struct, frozen=True, forbid_unknown_fields=Tr
     """A rig in SI units, Table 1 of the paper by default, and its dimensionless parameters; nothing to choose."""
 
 
-def _check(params: dict[str, float], options: Any) -> None:
+def _check(params: dict[str, float], options: DimensionlessOptions) -> None:
     del options
     rig = PhysicalParams(**{name: params[name] for name in TABLE_1})
     rig.dimensionless(**{name: value for name, value in params.items() if name not in TABLE_1})
@@ -30,7 +28,7 @@ KIND = Kind(
     options=DimensionlessOptions,
     body="vines.stages.bodies._dimensionless:compute",
     tables=("dimensionless",),
-    parameters={**TABLE_1, "E": None, "omega": None, "m": None},
+    parameters={**TABLE_1, **{each.name: each.default for each in VI_NES.run}},
     vary="grid",
     check=_check,
 )

@@ -3,33 +3,26 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any
+from typing import Annotated
 
 import msgspec
+from msgspec import Meta
 
-from vines.errors import ParameterError
 from vines.pipeline import Kind
 
 __all__ = ["KIND", "IngestOptions"]
 
 
 class IngestOptions(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """Run folders at or below `folder` (from the root of the project), or those that the needed stage made.
+    """Run folders at or below `folder`, or those that the needed stage made."""
 
-    `log_rate` is the number of samples a second of a channel in the logs at most; 0 keeps all.
-    """
-
-    folder: str = ""
-    log_rate: float = 2048.0
-
-
-def _check(params: dict[str, float], options: Any) -> None:
-    del params
-    if options.log_rate < 0:
-        raise ParameterError(f"log_rate is {options.log_rate:g}, allowed is log_rate >= 0")
+    folder: Annotated[str, Meta(description="Where run folders lie, from the root of the project")] = ""
+    log_rate: Annotated[
+        float, Meta(ge=0, description="Samples a second of a channel in the logs at most [Hz]; 0 keeps all")
+    ] = 2048.0
 
 
-def _run_files(options: Any, root: Path) -> tuple[Path, ...]:
+def _run_files(options: IngestOptions, root: Path) -> tuple[Path, ...]:
     """Return every file of the run folders, because the result depends on their contents."""
     if not options.folder:
         return ()
@@ -42,7 +35,7 @@ def _run_files(options: Any, root: Path) -> tuple[Path, ...]:
     return tuple(files)
 
 
-def _readers(options: Any) -> tuple[str, ...]:
+def _readers(options: object) -> tuple[str, ...]:
     """Name the readers of files, those of installed packages too: which one a file needs is seen when it is read."""
     del options
     from vines.rig.formats import readers
@@ -59,7 +52,6 @@ KIND = Kind(
     tables=("rig_runs", "rig_channels"),
     needs=True,
     logs=True,
-    check=_check,
     files=_run_files,
     code=_readers,
 )

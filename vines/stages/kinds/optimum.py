@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from typing import Any, Literal
+from typing import Annotated, Literal
 
 import msgspec
+from msgspec import Meta
 
 from vines.errors import ParameterError
 from vines.model import Params, Word
@@ -15,25 +16,22 @@ __all__ = ["KIND", "OptimumOptions"]
 
 
 class OptimumOptions(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """The stable orbit of a word with least max|x1| or largest K2/K1 over the varied parameters.
+    """The stable orbit of a word with least max|x1| or largest K2/K1 over the varied parameters."""
 
-    `largest_multiplier` keeps the Floquet multipliers inside that radius.
-    """
+    word: Annotated[str, Meta(description="Word of the impacts, such as LR")]
+    objective: Annotated[
+        Literal["max_abs_x1", "kinetic_ratio"], Meta(description="What is best: the least max|x1|, the largest K2/K1")
+    ]
+    largest_multiplier: Annotated[
+        float, Meta(gt=0, le=1, description="Radius that keeps the Floquet multipliers inside")
+    ] = 1.0
 
-    word: str
-    objective: Literal["max_abs_x1", "kinetic_ratio"]
-    largest_multiplier: float = 1.0
 
-
-def _check(params: dict[str, float], options: Any) -> None:
+def _check(params: dict[str, float], options: OptimumOptions) -> None:
     Params(**{name: value for name, value in params.items() if name != "b"})
     Word(options.word)
     if not params["b"] > 0:
         raise ParameterError(f"b is {params['b']:g}, allowed is b > 0: it is the half length of the cavity")
-    if not 0 < options.largest_multiplier <= 1:
-        raise ParameterError(
-            f"largest_multiplier is {options.largest_multiplier:g}, allowed is 0 < largest_multiplier <= 1"
-        )
 
 
 KIND = Kind(

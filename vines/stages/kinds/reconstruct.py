@@ -2,26 +2,21 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Annotated
 
 import msgspec
+from msgspec import Meta
 
 from vines.errors import DeclarationError
 from vines.pipeline import Kind, Pipeline, Stage
-from vines.stages.kinds._seed import check_seed
 
 __all__ = ["KIND", "ReconstructOptions"]
 
 
 class ReconstructOptions(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """Every run with the ball of the needed stages of kind `ingest`; `seed` is that of the draws for uncertainties."""
+    """Every run with the ball of the needed stages of kind `ingest`."""
 
-    seed: int = 0
-
-
-def _check(params: dict[str, float], options: Any) -> None:
-    del params
-    check_seed(options)
+    seed: Annotated[int, Meta(ge=0, description="Seed of the draws for uncertainties")] = 0
 
 
 def _fits(stage: Stage, pipeline: Pipeline) -> None:
@@ -34,7 +29,7 @@ def _fits(stage: Stage, pipeline: Pipeline) -> None:
         raise DeclarationError("it reconstructs what was ingested; name a stage of kind ingest in needs")
 
 
-def _readers(options: Any) -> tuple[str, ...]:
+def _readers(options: object) -> tuple[str, ...]:
     """Name the readers of files, those of installed packages too: which one a file needs is seen when it is read."""
     del options
     from vines.rig.formats import readers
@@ -50,7 +45,6 @@ KIND = Kind(
     body="vines.stages.rig._reconstruct:compute",
     tables=("reconstructions", "rig_impacts"),
     needs=True,
-    check=_check,
     fits=_fits,
     code=_readers,
 )

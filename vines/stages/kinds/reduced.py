@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import msgspec
 
 from vines.model import Params
@@ -17,7 +15,7 @@ class ReducedOptions(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """The multiple-scales approximation of the symmetric 1:1 response beside the exact orbit; nothing to choose."""
 
 
-def _check(params: dict[str, float], options: Any) -> None:
+def _check(params: dict[str, float], options: ReducedOptions) -> None:
     del options
     Params(**params)
 

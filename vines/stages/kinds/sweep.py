@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from typing import Literal
+from typing import Annotated, Literal
 
 import msgspec
+from msgspec import Meta
 
 from vines.pipeline import Kind
 from vines.stages.kinds._parameters import PARAMETERS
@@ -16,26 +17,33 @@ __all__ = ["KIND", "SweepOptions"]
 class SweepOptions(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """The settled attractor of each point: `settle` periods, then `record` periods that are classified and measured.
 
-    Where nothing repeats, a point runs on for `watch` periods before its Lyapunov exponent is believed. `keep` is the
-    number of recorded periods whose impacts are kept where the attractor is not periodic; of a periodic one, one
-    repetition is; 0 keeps no impacts. At each point `random` further starts are drawn with `seed`, and the table
-    ``attractors`` lists every attractor that they come to beside the point's own. With `start = "random"` the own
-    start is drawn in the same way.
+    The table ``attractors`` lists every attractor that random starts come to beside the point's own.
     """
 
-    start: Start | Literal["random"] = msgspec.field(default_factory=Start)
-    settle: int = 400
-    record: int = 64
-    watch: int = 512
-    keep: int = 64
-    random: int = 0
-    seed: int = 0
+    start: Annotated[
+        Start | Literal["random"], Meta(description="Start state (dimensionless), or 'random' to draw it at each point")
+    ] = msgspec.field(default_factory=Start)
+    settle: Annotated[int, Meta(ge=0, description="Forcing periods that are left out")] = 400
+    record: Annotated[int, Meta(ge=2, description="Forcing periods that are classified and measured")] = 64
+    watch: Annotated[
+        int,
+        Meta(ge=16, description="Where nothing repeats: forcing periods more before a Lyapunov exponent is believed"),
+    ] = 512
+    keep: Annotated[
+        int,
+        Meta(
+            ge=0,
+            description="Recorded periods whose impacts are kept, of a periodic attractor one repetition; 0 keeps none",
+        ),
+    ] = 64
+    random: Annotated[int, Meta(ge=0, description="Further starts that are drawn at each point")] = 0
+    seed: Annotated[int, Meta(ge=0, description="Seed of these draws")] = 0
 
 
 def _kernels(options: SweepOptions, carried: bool) -> tuple[str, ...]:
     # Lanes run the points that do not wait for each other, and random starts.
     alone = carried and not options.random
-    return ("one_run",) if alone else ("one_run", "many_runs")
+    return ("one_run",) if alone else ("one_run", "lanes", "many_runs")
 
 
 KIND = Kind(

@@ -2,40 +2,33 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Annotated, Any
 
 import msgspec
+from msgspec import Meta
 
 from vines.errors import ParameterError
 from vines.pipeline import Kind
-from vines.stages.kinds._seed import check_seed
 
 __all__ = ["KIND", "SynthOptions"]
 
 
 class SynthOptions(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """A synthetic campaign: a sweep of the base amplitude up and down with ring-downs between.
+    """A synthetic campaign: a sweep of the base amplitude up and down with ring-downs between."""
 
-    `amplitudes` are A = E/b in rising order, `settings` those of the synthetic rig (docs/rig.md), `draw` draws its
-    imperfections over their ranges, `warming` is the change of temperature over the campaign [K].
-    """
-
-    amplitudes: tuple[float, ...]
-    seed: int = 0
-    draw: bool = False
-    warming: float = 0.0
-    settings: dict[str, Any] = {}
+    amplitudes: Annotated[
+        tuple[Annotated[float, Meta(gt=0)], ...], Meta(min_length=1, description="A = E/b in rising order")
+    ]
+    seed: Annotated[int, Meta(ge=0, description="Seed of noise and of what is drawn")] = 0
+    draw: Annotated[bool, Meta(description="Whether imperfections are drawn over their ranges")] = False
+    warming: Annotated[float, Meta(description="Change of temperature over the campaign [K]")] = 0.0
+    settings: Annotated[dict[str, Any], Meta(description="Settings of the synthetic rig (docs/rig.md)")] = {}
 
 
-def _check(params: dict[str, float], options: Any) -> None:
+def _check(params: dict[str, float], options: SynthOptions) -> None:
     del params
-    if (
-        not options.amplitudes
-        or list(options.amplitudes) != sorted(set(options.amplitudes))
-        or options.amplitudes[0] <= 0
-    ):
-        raise ParameterError(f"amplitudes are {list(options.amplitudes)}, allowed are positive numbers in rising order")
-    check_seed(options)
+    if list(options.amplitudes) != sorted(set(options.amplitudes)):
+        raise ParameterError(f"amplitudes are {list(options.amplitudes)}, allowed are numbers in rising order")
 
 
 KIND = Kind(

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+from typing import Annotated
+
 import msgspec
+from msgspec import Meta
 
 from vines.pipeline import Kind
 from vines.stages.kinds._parameters import PARAMETERS
@@ -12,16 +15,15 @@ __all__ = ["KIND", "TrajectoryOptions"]
 
 
 class TrajectoryOptions(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """One run of the simulator: `settle` periods unrecorded, then `record` periods into an MCAP log.
+    """One run of the simulator: `settle` periods unrecorded, then `record` periods into an MCAP log."""
 
-    With `bare` the log also carries what a viewer without vines understands (docs/logs.md).
-    """
-
-    start: Start = msgspec.field(default_factory=Start)
-    settle: int = 400
-    record: int = 10
-    per_period: int = 200
-    bare: bool = True
+    start: Annotated[Start, Meta(description="Start state (dimensionless)")] = msgspec.field(default_factory=Start)
+    settle: Annotated[int, Meta(ge=0, description="Forcing periods that are left out")] = 400
+    record: Annotated[int, Meta(ge=2, description="Forcing periods in the log")] = 10
+    per_period: Annotated[int, Meta(ge=2, description="Samples of the state in a forcing period")] = 200
+    bare: Annotated[
+        bool, Meta(description="Whether the log also carries what a viewer without vines understands (docs/logs.md)")
+    ] = True
 
 
 KIND = Kind(

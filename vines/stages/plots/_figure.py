@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from vines.figures import save
 from vines.pipeline import Batch, WholeJob
-from vines.stages.plots._plot import plot_of
+from vines.stages.plots._plot import PlotOptions, plot_of
 
 __all__ = ["compute"]
 
 
-def compute(job: WholeJob) -> Batch:
+def compute(job: WholeJob[PlotOptions]) -> Batch:
     """Draw the needed stages."""
     save(plot_of(job.options).draw(job.inputs, job.options), job.folder)
     return Batch()

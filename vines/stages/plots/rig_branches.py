@@ -10,6 +10,7 @@ from msgspec import Meta
 
 from vines.errors import DeclarationError
 from vines.figures import MEASURES, RIG_PANELS
+from vines.model import VI_NES
 from vines.stages.plots._checks import check_panels, check_window, needs_table
 from vines.stages.plots._plot import Plot, PlotOptions
 
@@ -160,7 +161,7 @@ def impact_places(impacts: list[Row], word: list[str]) -> list[list[Row]]:
     periods: dict[int, list[Row]] = {}
     for row in impacts:
         periods.setdefault(row["period"], []).append(row)
-    sides = {number: "".join("L" if row["side"] > 0 else "R" for row in own) for number, own in periods.items()}
+    sides = {number: VI_NES.letters(row["side"] for row in own) for number, own in periods.items()}
     p = len(word)
     # A repetition may begin in any period: take the turn in which most of them fit.
     turn = max(range(p), key=lambda t: sum(text == word[(number + t) % p] for number, text in sides.items()))

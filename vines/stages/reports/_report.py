@@ -11,8 +11,7 @@ from typing import Any
 from vines import schema
 from vines.errors import FileMissingError, UnknownNameError, nearest
 from vines.pipeline import available, with_included
-from vines.places import find_root
-from vines.stages.api._opening import open_store
+from vines.stages.api._home import Home, current
 from vines.stages.api._stored import stored_pipelines
 from vines.stages.reports._page import Figure, Head, Run, Section, StageFacts, page
 from vines.store import Result, Store, canonical, write_text
@@ -25,7 +24,7 @@ _MOST = 200
 """Rows that are shown of a table: few, but of tables that are read line by line up to this many."""
 
 
-def report(name: str, out: Path | None = None) -> Path:
+def report(name: str, out: Path | None = None, *, study: Home | None = None) -> Path:
     """Write one self-contained HTML page about a pipeline or a collection: figures, checks, tables, runs, provenance.
 
     Parameters
@@ -34,6 +33,8 @@ def report(name: str, out: Path | None = None) -> Path:
         The pipeline or collection. Of a collection, members that were never run are left out.
     out : Path, optional
         The file; ``data/reports/<name>.html`` if left out. An existing one is replaced.
+    study : Home, optional
+        Whose; the one that the current folder belongs to if left out.
 
     Returns
     -------
@@ -47,11 +48,12 @@ def report(name: str, out: Path | None = None) -> Path:
     FileMissingError
         If the folder of `out` does not exist.
     """
-    store = open_store()
-    files = available(find_root())
+    study = study or current()
+    store = study.store
+    files = available(study.root)
     if name not in files and name not in store.pinned():
         raise UnknownNameError(f"unknown pipeline {name!r}: {nearest(name, {*files, *store.pinned()})}")
-    pipelines = stored_pipelines([name], store.pinned())
+    pipelines = stored_pipelines([name], store.pinned(), study.root)
     path = (out or store.data / "reports" / f"{name}.html").absolute()
     if out is not None and not path.parent.is_dir():
         raise FileMissingError(f"{out}: the folder {path.parent} does not exist; make it first")

@@ -12,11 +12,11 @@ import msgspec
 from vines import schema
 from vines.errors import RigError, VinesError
 from vines.pipeline import CodeDigests
-from vines.places import cache_folder, data_folder
 from vines.rig import RunInfo, compare, find_runs, load_reconstruction, match_ring_downs, read_folder
 from vines.rig.formats import readers
 from vines.rig.records import comparison_rows, impact_columns, reconstruction_row
 from vines.stages.api._asking import query
+from vines.stages.api._home import Home, current
 from vines.stages.rig._runs import free_decay, make, wanted
 from vines.store import write_parquet, write_text
 
@@ -48,7 +48,7 @@ class Derived:
     files: tuple[Path, ...]
 
 
-def reconstruct_run(folder: Path, ring_downs: Sequence[Path] = ()) -> Derived:
+def reconstruct_run(folder: Path, ring_downs: Sequence[Path] = (), *, study: Home | None = None) -> Derived:
     """Reconstruct one run, and write ``reconstruction.json`` and ``rig_impacts.parquet`` to its ``derived/``.
 
     Parameters
@@ -58,6 +58,8 @@ def reconstruct_run(folder: Path, ring_downs: Sequence[Path] = ()) -> Derived:
     ring_downs : sequence of Path
         Run folders of its ring-downs; if left out, those that its ``run.json`` names, else its neighbours in time,
         among the run folders beside it.
+    study : Home, optional
+        Whose; the one that the current folder belongs to if left out.
 
     Returns
     -------
@@ -70,17 +72,18 @@ def reconstruct_run(folder: Path, ring_downs: Sequence[Path] = ()) -> Derived:
     RigError
         If the run is refused, one of its ring-downs is not there, or it shows too few impacts; one line says why.
     """
+    study = study or current()
     if not (folder / "run.json").is_file():
         find_runs(folder)  # says what is missing where there are no runs at all
         raise RigError(f"{folder} holds run folders; name one of them, or run the stage reconstruct of a pipeline")
-    if folder.resolve().is_relative_to((data_folder() / "results").resolve()):
+    if folder.resolve().is_relative_to(study.store.results.resolve()):
         raise RigError(f"{folder} is a stored result, which is never changed; name the run folder that was ingested")
     info = read_folder(folder).info
     if info.protocol == "ringdown":
         raise RigError(f"run {info.run_id!r} is a ring-down: it gives omega0 and lam of the runs that name it")
     chosen = _given(ring_downs) if ring_downs else _beside(folder, info)
-    code = CodeDigests(cache_folder() / "code.json").digest("vines.stages.rig._reconstruct:compute", *readers())
-    work = wanted(folder, [free_decay(path) for path in chosen.values()], 0, code, cache_folder())
+    code = CodeDigests(study.cache / "code.json").digest("vines.stages.rig._reconstruct:compute", *readers())
+    work = wanted(folder, [free_decay(path) for path in chosen.values()], 0, code, study.cache)
     if refused := make(work):
         raise RigError(refused)
     found = load_reconstruction(work.kept)
@@ -115,14 +118,14 @@ class Compared:
     file: Path
 
 
-def compare_run(folder: Path, ring_downs: Sequence[Path] = ()) -> Compared:
+def compare_run(folder: Path, ring_downs: Sequence[Path] = (), *, study: Home | None = None) -> Compared:
     """Reconstruct one run, compare it with the branches that coexist, and write ``derived/comparison.json``.
 
     The orbits that the catalogue holds near the run's parameters say which words are looked for beside the usual ones.
 
     Parameters
     ----------
-    folder, ring_downs
+    folder, ring_downs, study
         As for `reconstruct_run`.
 
     Raises
@@ -130,21 +133,23 @@ def compare_run(folder: Path, ring_downs: Sequence[Path] = ()) -> Compared:
     FileMissingError, RigError
         As for `reconstruct_run`.
     """
-    derived = reconstruct_run(folder, ring_downs)
-    found = compare(derived.found, _near(derived.row))
+    study = study or current()
+    derived = reconstruct_run(folder, ring_downs, study=study)
+    found = compare(derived.found, _near(derived.row, study))
     file, text = folder / "derived" / "comparison.json", _json(comparison_rows(found))
     write_text(file, text)
     return Compared(derived, found, msgspec.json.decode(text), file)
 
 
-def _near(row: dict[str, Any]) -> list[dict[str, Any]]:
+def _near(row: dict[str, Any], study: Home) -> list[dict[str, Any]]:
     """Return of each branch of the catalogue its orbit nearest to a run, if that is within a fifth of its A and mu."""
     if not all(row[name] for name in ("A", "mu")):
         return []
     apart = [f"abs({name} / {row[name]!r} - 1)" for name in ("A", "mu")]
     return query(
         f"select word, branch_id, mu, A, Omega, r, lam, t from orbits where greatest({', '.join(apart)}) <= 0.2 "
-        f"qualify row_number() over (partition by pipeline, stage, branch_id order by {' + '.join(apart)}, A, mu) = 1"
+        f"qualify row_number() over (partition by pipeline, stage, branch_id order by {' + '.join(apart)}, A, mu) = 1",
+        study=study,
     ).to_pylist()
 
 

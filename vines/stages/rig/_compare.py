@@ -2,23 +2,27 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from vines.errors import RigError
+from vines.model import PARAMETER_NAMES
 from vines.pipeline import Batch, Input, WholeJob
 from vines.rig import Reconstruction, compare_all, load_reconstruction
 from vines.rig.records import comparison_rows, cycle_rows, row_id
 from vines.stages.rig._overlay import overlay_logs
 
+if TYPE_CHECKING:
+    from vines.stages.kinds.compare import CompareOptions
+
 __all__ = ["compute"]
 
-_KNOWN = ("word", "branch_id", "mu", "A", "Omega", "r", "lam", "t")
+_KNOWN = ("word", "branch_id", *PARAMETER_NAMES, "t")
 """Columns of orbits from which a branch is followed to the parameters of a run."""
 
 
-def compute(job: WholeJob) -> Batch:
+def compute(job: WholeJob[CompareOptions]) -> Batch:
     """Compare all runs at measured parameters, and every other one at parameters calibrated on the rest."""
-    options: Any = job.options
+    options = job.options
     runs: list[Reconstruction] = []
     lost: list[dict[str, Any]] = []
     catalogue: list[dict[str, Any]] = []

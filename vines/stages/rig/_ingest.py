@@ -4,21 +4,23 @@ from __future__ import annotations
 
 import shutil
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from vines.errors import RigError
 from vines.pipeline import Batch, WholeJob
-from vines.places import find_root
 from vines.rig import find_runs, read_run
 from vines.rig.ingest import SUMS
 from vines.rig.records import channel_rows, run_row, write_log
 
+if TYPE_CHECKING:
+    from vines.stages.kinds.ingest import IngestOptions
+
 __all__ = ["compute"]
 
 
-def compute(job: WholeJob) -> Batch:
+def compute(job: WholeJob[IngestOptions]) -> Batch:
     """Read every run, refuse what can't be used, and keep the rest."""
-    options: Any = job.options
+    options = job.options
     runs: list[dict[str, Any]] = []
     channels: list[dict[str, Any]] = []
     logs: dict[str, str] = {}
@@ -40,11 +42,11 @@ def compute(job: WholeJob) -> Batch:
     return Batch(tables={"rig_runs": runs, "rig_channels": channels}, logs=logs)
 
 
-def _folders(job: WholeJob) -> tuple[Path, ...]:
+def _folders(job: WholeJob[IngestOptions]) -> tuple[Path, ...]:
     """Return the run folders, in the order of time."""
-    options: Any = job.options
+    options = job.options
     if bool(options.folder) == bool(job.inputs):
         raise RigError("ingest takes either folder or needs = [a stage of kind synth]")
     if options.folder:
-        return find_runs(find_root() / options.folder)
+        return find_runs(job.root / options.folder)
     return tuple(path for stage in job.inputs.values() for path in find_runs(stage.folder / "runs"))

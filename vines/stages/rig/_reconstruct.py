@@ -3,33 +3,35 @@
 from __future__ import annotations
 
 import shutil
-from typing import Any
+from typing import TYPE_CHECKING
 
 from vines import schema
 from vines.errors import RigError
 from vines.pipeline import Batch, WholeJob
-from vines.places import cache_folder
 from vines.rig import load_reconstruction
 from vines.rig.records import failed_row, impact_columns, reconstruction_row
 from vines.stages.rig._runs import free_decay, kept_runs, make, ring_downs_of, wanted
 
+if TYPE_CHECKING:
+    from vines.stages.kinds.reconstruct import ReconstructOptions
+
 __all__ = ["compute"]
 
 
-def compute(job: WholeJob) -> Batch:
+def compute(job: WholeJob[ReconstructOptions]) -> Batch:
     """Reconstruct every run with the ball.
 
     A run that cannot be reconstructed is a row with status ``failed``. Each reconstruction is kept as soon as it is
     made, so an interrupted campaign goes on, and a longer one reconstructs the new runs only.
     """
-    options: Any = job.options
+    options = job.options
     runs = kept_runs(job.inputs)
     belongs = ring_downs_of(runs)
     if not belongs:
         raise RigError("none of the ingested runs has the ball in it, so there is nothing to reconstruct")
     needed = sorted({name for names in belongs.values() for name in names})
     decays = dict(zip(needed, job.spread(free_decay, [runs[name][0] for name in needed]), strict=True))
-    code, cache = str(job.provenance["code"]), cache_folder()
+    code, cache = str(job.provenance["code"]), job.cache
     works = [
         wanted(runs[run][0], [decays[name] for name in names], options.seed, code, cache)
         for run, names in belongs.items()

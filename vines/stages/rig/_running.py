@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 
 from vines.errors import FileMissingError, RigError, RunFailed
 from vines.pipeline import Declaration
-from vines.places import find_root
 from vines.rig import find_runs
+from vines.stages.api._home import Home, current
 from vines.stages.api._running import run, status
 
 if TYPE_CHECKING:
@@ -18,27 +18,31 @@ if TYPE_CHECKING:
 __all__ = ["ingest_folder", "pipeline_of"]
 
 
-def pipeline_of(folder: Path) -> str:
+def pipeline_of(folder: Path, root: Path) -> str:
     """Return the name of the pipeline under which a folder's runs are kept: of its path, as other folders may be alike.
 
     Parameters
     ----------
     folder : Path
         Its path below the root of the project counts; elsewhere its name.
+    root : Path
+        That root.
 
     Examples
     --------
-    >>> root = find_root()
-    >>> pipeline_of(root / "march/Run 12"), pipeline_of(root / "rig_a"), pipeline_of(root / "demo/runs")
-    ('rig_march_run_12', 'rig_a', 'rig_demo_runs')
+    >>> root = Path("study")
+    >>> [pipeline_of(root / each, root) for each in ("march/Run 12", "rig_a", "demo/runs")]
+    ['rig_march_run_12', 'rig_a', 'rig_demo_runs']
     """
-    root, place = find_root().resolve(), folder.resolve()
+    root, place = root.resolve(), folder.resolve()
     path = place.relative_to(root).as_posix() if place.is_relative_to(root) else place.name
     name = re.sub(r"[^a-z0-9]+", "_", path.casefold()).strip("_") or "runs"
     return name if name.startswith("rig_") else f"rig_{name}"
 
 
-def ingest_folder(folder: Path, *, log_rate: float = 2048.0) -> tuple[str, tuple[str, ...], RunSummary | None]:
+def ingest_folder(
+    folder: Path, *, log_rate: float = 2048.0, study: Home | None = None
+) -> tuple[str, tuple[str, ...], RunSummary | None]:
     """Ingest the run folders at or directly below a folder.
 
     Parameters
@@ -47,6 +51,8 @@ def ingest_folder(folder: Path, *, log_rate: float = 2048.0) -> tuple[str, tuple
         A run folder, or one with run folders in it.
     log_rate : float
         Samples a second of a channel in the logs at most; 0 keeps all.
+    study : Home, optional
+        Whose; the one that the current folder belongs to if left out.
 
     Returns
     -------
@@ -67,15 +73,16 @@ def ingest_folder(folder: Path, *, log_rate: float = 2048.0) -> tuple[str, tuple
     if not folder.is_dir():
         raise FileMissingError(f"{folder}: there is no such folder; 'vines rig init {folder}' makes a template")
     runs = tuple(path.name for path in find_runs(folder))
-    root, place = find_root().resolve(), folder.resolve()
+    study = study or current()
+    root, place = study.root, folder.resolve()
     told = place.relative_to(root) if place.is_relative_to(root) else place
-    name = pipeline_of(folder)
+    name = pipeline_of(folder, root)
     declared = Declaration(name, title=f"Runs of {folder.resolve().name}", source="docs/rig.md")
     declared.stage("ingest", "ingest", folder=told.as_posix(), log_rate=log_rate)
-    if all(plan.state == "up_to_date" for plan in status(declared)):
+    if all(plan.state == "up_to_date" for plan in status(declared, study=study)):
         return name, runs, None
     try:
-        return name, runs, run(declared)
+        return name, runs, run(declared, study=study)
     except RunFailed as failure:
         # The engine says what a stage of many points needs to hear; here the reason alone is the message.
         reason = str(failure).partition("RigError: ")[2].partition("; the rest is stored")[0]

@@ -1,0 +1,27 @@
+"""Options for the parameters of the model, as it declares them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import click
+
+from vines.model import VI_NES
+
+__all__ = ["parameter_options"]
+
+
+def parameter_options(command: Callable[..., Any]) -> Callable[..., Any]:
+    """Give a command an option for each parameter, called as the parameter is; those without default are required."""
+    for each in reversed(VI_NES.parameters):
+        command = click.option(
+            f"--{each.name}",
+            each.name,
+            type=float,
+            required=each.default is None,
+            default=each.default,
+            show_default=True,
+            help=f"{each.text}.",
+        )(command)
+    return command

@@ -1,0 +1,252 @@
+"""What a system is made of: the form in which parameters, states, contacts and symmetries are declared once."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from vines.errors import ParameterError, nearest
+
+__all__ = ["Body", "Contact", "Coordinate", "Energies", "Parameter", "Range", "Symmetry", "System", "finite"]
+
+
+@dataclass(frozen=True, slots=True)
+class Range:
+    """An interval of numbers.
+
+    Parameters
+    ----------
+    least, most : float
+        Its ends, infinite where it goes on.
+    above, below : bool
+        Whether `least` and `most` themselves are left out.
+
+    Examples
+    --------
+    >>> Range(0, 2, below=True).of("lam"), Range(0, above=True).of("mu")
+    ('0 <= lam < 2', 'mu > 0')
+    """
+
+    least: float = -math.inf
+    most: float = math.inf
+    above: bool = False
+    below: bool = False
+
+    def holds(self, value: Any) -> Any:
+        """Return whether a number lies in the interval, or for an array which do; never for nan."""
+        return (value > self.least if self.above else value >= self.least) & (
+            value < self.most if self.below else value <= self.most
+        )
+
+    def of(self, name: str) -> str:
+        """Return the interval as a condition on a name."""
+        lower, upper = "<" if self.above else "<=", "<" if self.below else "<="
+        if math.isinf(self.least):
+            return f"{name} {upper} {self.most:g}"
+        if math.isinf(self.most):
+            return f"{name} {lower.replace('<', '>')} {self.least:g}"
+        return f"{self.least:g} {lower} {name} {upper} {self.most:g}"
+
+
+@dataclass(frozen=True, slots=True)
+class Parameter:
+    """A number that a system is given.
+
+    Attributes
+    ----------
+    name : str
+        As in Python, TOML, on the command line, in tables and SQL.
+    text : str
+        What it is, with its definition: heads of tables and options.
+    allowed : Range
+    why : str
+        The clause that ends the message about a value out of range.
+    default : float or None
+        None where it must be given.
+    unit : str
+        ``"1"`` if dimensionless.
+    source : str
+        Where in the paper it is defined.
+    symbol, label : str
+        TeX and words for axes of figures.
+    """
+
+    name: str
+    text: str
+    allowed: Range
+    why: str = ""
+    default: float | None = None
+    unit: str = "1"
+    source: str = ""
+    symbol: str = ""
+    label: str = ""
+
+    def check(self, value: object) -> float:
+        """Return a value as a float.
+
+        Raises
+        ------
+        ParameterError
+            If it is not a finite number in the range.
+
+        Examples
+        --------
+        >>> Parameter("r", "Restitution", Range(0, 1), "r is the coefficient of restitution").check(2)
+        Traceback (most recent call last):
+        vines.errors.ParameterError: r is 2, allowed is 0 <= r <= 1: r is the coefficient of restitution
+        """
+        unit = "" if self.unit == "1" else self.unit
+        number = finite(self.name, value, unit)
+        if not self.allowed.holds(number):
+            raise ParameterError(
+                f"{self.name} is {number:g}{unit and f' {unit}'}, allowed is {self.allowed.of(self.name)}"
+                + (self.why and f": {self.why}")
+            )
+        return number
+
+
+@dataclass(frozen=True, slots=True)
+class Coordinate:
+    """A number of the state.
+
+    Attributes
+    ----------
+    name, text, unit, source, symbol
+        As of a `Parameter`.
+    start : float
+        Its value where a start does not say it.
+    allowed : Range
+    """
+
+    name: str
+    text: str
+    symbol: str
+    start: float = 0.0
+    unit: str = "1"
+    source: str = ""
+    allowed: Range = Range()
+
+
+@dataclass(frozen=True, slots=True)
+class Body:
+    """A body that moves along one line: what it is, its position and velocity."""
+
+    name: str
+    position: Coordinate
+    velocity: Coordinate
+
+
+@dataclass(frozen=True, slots=True)
+class Contact:
+    """A wall that a body meets: its letter in words, the sign of the gap there, its name."""
+
+    letter: str
+    sign: int
+    text: str
+
+
+@dataclass(frozen=True, slots=True)
+class Symmetry:
+    """A map of motions onto motions.
+
+    Attributes
+    ----------
+    sign : int
+        Factor of all coordinates of the state.
+    shift : float
+        By how many forcing periods time is shifted.
+    letters : mapping of str to str
+        The contact that each contact becomes.
+    """
+
+    sign: int
+    shift: float
+    letters: Mapping[str, str]
+
+
+@dataclass(frozen=True, slots=True)
+class Energies:
+    """Names of energies: what is stored, what has come in and what has gone since the start of a run."""
+
+    stored: tuple[str, ...]
+    gained: tuple[str, ...]
+    lost: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class System:
+    """A system of bodies, walls and one forcing, declared once for every room.
+
+    Attributes
+    ----------
+    name : str
+    parameters : tuple of Parameter
+        Dimensionless ones, in the order of arrays and kernels.
+    rig, run : tuple of Parameter
+        In SI units: those of a rig, and those of one run on it.
+    bodies : tuple of Body
+    phase : Coordinate
+        The phase of the forcing, which completes a start.
+    contacts : tuple of Contact
+        In the order in which types n:m count them.
+    mirror : Symmetry
+    energies : Energies
+    """
+
+    name: str
+    parameters: tuple[Parameter, ...]
+    rig: tuple[Parameter, ...]
+    run: tuple[Parameter, ...]
+    bodies: tuple[Body, ...]
+    phase: Coordinate
+    contacts: tuple[Contact, ...]
+    mirror: Symmetry
+    energies: Energies
+
+    @property
+    def state(self) -> tuple[Coordinate, ...]:
+        """Position and velocity of each body, in the order of arrays and kernels."""
+        return tuple(each for body in self.bodies for each in (body.position, body.velocity))
+
+    @property
+    def start(self) -> tuple[Coordinate, ...]:
+        """The coordinates of a start: the state and the phase of the forcing."""
+        return (*self.state, self.phase)
+
+    def parameter(self, name: str) -> Parameter:
+        """Return the dimensionless parameter of a name.
+
+        Raises
+        ------
+        ParameterError
+            If there is none; the message names the nearest.
+        """
+        for parameter in self.parameters:
+            if parameter.name == name:
+                return parameter
+        known = [parameter.name for parameter in self.parameters]
+        raise ParameterError(f"unknown parameter {name!r}: {nearest(str(name), known)}")
+
+    @property
+    def alphabet(self) -> str:
+        """The letters of all contacts."""
+        return "".join(contact.letter for contact in self.contacts)
+
+    def letters(self, signs: Iterable[float]) -> str:
+        """Return the letters of contacts, from the sign of the gap at each."""
+        letters = {contact.sign: contact.letter for contact in self.contacts}
+        return "".join(letters[1 if sign > 0 else -1] for sign in signs)
+
+
+def finite(name: str, value: object, unit: str = "") -> float:
+    """Return a value as a float, or raise `ParameterError` if it is not a finite number."""
+    try:
+        number = math.nan if isinstance(value, bool | str) else float(value)  # pyright: ignore[reportArgumentType]
+    except (TypeError, ValueError):
+        number = math.nan
+    if not math.isfinite(number):
+        shown = " ".join(repr(value).split())
+        raise ParameterError(f"{name} is {shown}; give a finite number{unit and f' in {unit}'}")
+    return number
