@@ -78,8 +78,11 @@ class Register(Generic[Thing]):
                 self._modules[module.name] = (f"{package}.{module.name}", attribute)
 
     def names(self) -> tuple[str, ...]:
-        """Return all names: those of vines, then those that installed packages bring."""
-        return tuple(dict.fromkeys([*self._things, *self._modules, *brought(self.group)]))
+        """Return all names: those of vines, registered ones, then those that installed packages bring.
+
+        In an order that does not depend on which was asked for first, since digests are taken of such lists.
+        """
+        return tuple(dict.fromkeys([*self._modules, *self._things, *brought(self.group)]))
 
     def get(self, name: str) -> Thing:
         """Return the thing of that name.
