@@ -10,6 +10,7 @@ import numpy.typing as npt
 from vines.errors import RigError
 from vines.rig.fit import KEEP, U_PULSE, Bins, Fitter, Forced, JumpFit, JumpModel, Push, Train, bins_of, straight
 from vines.rig.impacts._acceleration_alone import search_acceleration
+from vines.rig.impacts._delay import share
 from vines.rig.impacts._pulses import SMOOTH, pulses_of
 from vines.rig.impacts._search import Search, inside
 from vines.rig.impacts._with_displacement import search_displacement
@@ -146,7 +147,7 @@ def measure_response(
         fitter = straight(fitter, train, pushed)
     fit = fitter.fit(train, 32, pushed)
     late, u_late = (
-        _share(delay, found.u_delay, channel.u_time, sensor.u_time) if found.gain is not None else (0.0, channel.u_time)
+        share(delay, found.u_delay, channel.u_time, sensor.u_time) if found.gain is not None else (0.0, channel.u_time)
     )
     return Response(
         channel, order, fitter.bins, fit, pushed, train.dv, found.gain, late, u_late, found.drift, found.candidates,
@@ -213,10 +214,3 @@ def _off_the_wall(fit: JumpFit, b: float) -> Floats:
         share = (t[1:-1] - t[:-2]) / (t[2:] - t[:-2])
         off[1:-1] = np.abs(x2[1:-1] - x2[:-2] - share * (x2[2:] - x2[:-2]))
     return off
-
-
-def _share(delay: float, u_delay: float, u_channel: float, u_sensor: float) -> tuple[float, float]:
-    """Return how late the fitted channel is itself, of the delay between both, and the uncertainty of that."""
-    own, other = max(u_channel, 1e-7), max(u_sensor, 1e-7)
-    share = own**2 / (own**2 + other**2)
-    return share * delay, float(np.hypot(share * u_delay, own * other / np.hypot(own, other)))

@@ -8,6 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from vines.rig.fit import KEEP, LEAST, U_PULSE, Bins, Fitter, JumpFit, Train, bins_of, sine_fit, straight
+from vines.rig.impacts._delay import mean_shift, shrunk
 from vines.rig.impacts._pulses import Pulses, find_pulses, pulses_of, refine_pulses
 from vines.rig.impacts._search import LOOSE, Policy, Search, inside, search, threshold, with_silent
 from vines.rig.recording import Sampled
@@ -25,9 +26,6 @@ _ALIKE = 0.05
 
 _WARMS = 3e-5
 """Relative standard uncertainty of omega0 at any time of the record: a fifth of a kelvin."""
-
-_STEADY = 1.5e-6
-"""Standard uncertainty, at least, of a change of the delay between two sensors [s]."""
 
 _MOVES = 3
 
@@ -108,7 +106,7 @@ def _aligned(found: _Displaced) -> _Displaced:
     found = _with(found, found.train)
     train = found.train
     fit = found.fitter.fit(Train(train.t, train.dv, np.maximum(train.u, LOOSE)))
-    return _with_soft_ones(replace(found, delay=_shrunk(_mean_shift(fit), found.known)[0]), fit)
+    return _with_soft_ones(replace(found, delay=shrunk(mean_shift(fit), found.known)[0]), fit)
 
 
 def _retimed(found: _Displaced) -> _Displaced:
@@ -171,8 +169,8 @@ def _checked(found: _Displaced) -> _Displaced:
         fit = found.fitter.fit(unsure, pushed=pushed)
     u = np.where(_misheard(fit, train.dv), 3 * LOOSE, train.u)
     free = u > U_PULSE
-    late, u_late, drift = _mean_shift(fit)
-    shift, u_delay = _shrunk((delay + late, u_late), found.known)
+    late, u_late, drift = mean_shift(fit)
+    shift, u_delay = shrunk((delay + late, u_late), found.known)
     times = np.where(free, fit.jumps.t - delay + delay - shift, train.t)
     train = Train(times, np.where(free, fit.jumps.dv, train.dv), u)
     return _with(replace(found, delay=shift, u_delay=u_delay, drift=drift), train)
@@ -272,28 +270,6 @@ def _misheard(fit: JumpFit, pulse: Floats) -> npt.NDArray[np.bool_]:
 def _sized(dv: Floats, unsure: npt.NDArray[np.bool_]) -> Floats:
     """Return sizes of jumps by which their times may move, where pulses are not sure no smaller than usual."""
     return np.where(unsure, np.maximum(np.abs(dv), np.median(np.abs(dv))), dv)
-
-
-def _mean_shift(fit: JumpFit) -> tuple[float, float, float]:
-    """Return the mean shift of the times, its standard uncertainty, and its change over the record in units of that."""
-    weight = fit.jumps.dv**2 * (np.abs(fit.jumps.dv) > KEEP * fit.u_dv)
-    if np.count_nonzero(weight) < 8:
-        return 0.0, LOOSE, 0.0
-
-    def mean(part: slice) -> tuple[float, float]:
-        w, shift = weight[part], fit.shift[part]
-        centre = float(np.sum(w * shift) / np.sum(w))
-        return centre, float(np.sqrt(np.sum(w**2 * (shift - centre) ** 2)) / np.sum(w))
-
-    half = len(weight) // 2
-    (early, u_early), (later, u_later) = mean(slice(0, half)), mean(slice(half, None))
-    return *mean(slice(None)), (later - early) / max(float(np.hypot(u_early, u_later)), _STEADY)
-
-
-def _shrunk(seen: tuple[float, ...], known: float) -> tuple[float, float]:
-    """Return the delay between two sensors and its uncertainty: what the impacts say and the alignment, weighted."""
-    weight = known**2 / (known**2 + seen[1] ** 2)
-    return weight * seen[0], known * seen[1] / float(np.hypot(known, seen[1]))
 
 
 def _slope(pulse: Floats, dv: Floats) -> float:
