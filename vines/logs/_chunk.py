@@ -44,10 +44,16 @@ class Packed:
 def packed(parts: Sequence[Rows]) -> Packed:
     """Pack and compress rows as one chunk; free of shared state, so that several can be made at once."""
     blocks = [pack(rows) for rows in parts]
-    messages = [message for block in blocks for message in _split(block)]
-    order = np.argsort(np.concatenate([rows.times for rows in parts]), kind="stable")
+    times = np.concatenate([rows.times for rows in parts])
+    numbers = np.repeat([rows.channel.number for rows in parts], [len(rows) for rows in parts])
+    sizes = np.repeat([rows.width for rows in parts], [len(rows) for rows in parts])
     contents = {rows.channel.number: entries(block).tobytes() for rows, block in zip(parts, blocks, strict=True)}
-    return _closed([messages[place] for place in order.tolist()], contents)
+    if len(parts) == 1:
+        return _closed(blocks[0].tobytes(), numbers, times, sizes, contents)
+    messages = [message for block in blocks for message in _split(block)]
+    order = np.argsort(times, kind="stable")
+    data = b"".join([messages[place] for place in order.tolist()])
+    return _closed(data, numbers[order], times[order], sizes[order], contents)
 
 
 def _split(block: np.ndarray) -> list[bytes]:
@@ -58,24 +64,26 @@ def _split(block: np.ndarray) -> list[bytes]:
 def repacked(messages: Sequence[bytes]) -> Packed:
     """Return message records, whole and with their heads and in the order of time, as one chunk."""
     said: dict[int, list[bytes]] = {}
-    for message in messages:
-        (number,) = struct.unpack_from("<H", message, 9)
+    heads = [struct.unpack_from("<H4xQ", message, 9) for message in messages]
+    for (number, _), message in zip(heads, messages, strict=True):
         said.setdefault(number, []).append(entry(message))
-    return _closed(messages, {number: b"".join(each) for number, each in said.items()})
+    numbers, times = (np.array(each) for each in zip(*heads, strict=True))
+    sizes = np.array([len(message) for message in messages])
+    contents = {number: b"".join(each) for number, each in said.items()}
+    return _closed(b"".join(messages), numbers, times, sizes, contents)
 
 
-def _closed(messages: Sequence[bytes], contents: dict[int, bytes]) -> Packed:
-    """Return messages as a chunk."""
-    data = b"".join(messages)
-    sizes = np.array([len(message) for message in messages], np.int64)
+def _closed(
+    data: bytes, numbers: np.ndarray, times: np.ndarray, sizes: np.ndarray, contents: dict[int, bytes]
+) -> Packed:
+    """Return messages as a chunk, given the channel, log time and length of each in their order."""
     offsets = np.cumsum(sizes) - sizes
-    raw = np.frombuffer(data, np.uint8)
-    numbers = raw[offsets[:, None] + np.arange(9, 11)].view("<u2")[:, 0]
-    times = raw[offsets[:, None] + np.arange(15, 23)].view("<u8")[:, 0]
-    indexes = {
-        int(number): _index(int(number), times[numbers == number], offsets[numbers == number])
-        for number in np.unique(numbers)
-    }
+    indexes: dict[int, bytes] = {}
+    counts: dict[int, int] = {}
+    for number in sorted(contents):
+        own = numbers == number
+        indexes[number] = _index(number, times[own], offsets[own])
+        counts[number] = int(own.sum())
     record = records.Chunk(
         compression="zstd",
         data=zstandard.ZstdCompressor(level=3).compress(data),
@@ -84,7 +92,6 @@ def _closed(messages: Sequence[bytes], contents: dict[int, bytes]) -> Packed:
         uncompressed_crc=zlib.crc32(data),
         uncompressed_size=len(data),
     )
-    counts = {int(number): int(count) for number, count in zip(*np.unique(numbers, return_counts=True), strict=True)}
     return Packed(record, indexes, counts, contents)
 
 

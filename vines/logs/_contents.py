@@ -17,6 +17,7 @@ from vines.logs._digests import description, entries, entry
 __all__ = ["Messages", "Places", "gather", "split"]
 
 _HEAD = struct.Struct("<BQH")
+_MESSAGE = int(Opcode.MESSAGE)
 _NO_MESSAGE = range(Opcode.HEADER, Opcode.DATA_END + 1)
 
 Places = dict[tuple[int, int], list[int]]
@@ -92,18 +93,21 @@ def split(data: bytes) -> tuple[Places, list[tuple[int, bytes]]]:
     places: Places = {}
     described: list[tuple[int, bytes]] = []
     start = 0
-    while start < len(data):
-        if start + 9 > len(data):
-            raise ValueError("a record in a chunk is longer than the chunk")
-        opcode, length = struct.unpack_from("<BQ", data, start)
+    size = len(data)
+    while start < size:
+        # A head and the number of a channel; records that are shorter than that hold nothing.
+        opcode, length, number = _HEAD.unpack_from(data, start) if start + 11 <= size else (0, size, 0)
         end = start + 9 + length
-        if end > len(data):
+        if end > size:
             raise ValueError("a record in a chunk is longer than the chunk")
-        if opcode == Opcode.MESSAGE:
+        if opcode == _MESSAGE:
             if length < 22:
                 raise ValueError("a message record is shorter than its header")
-            (number,) = struct.unpack_from("<H", data, start + 9)
-            places.setdefault((number, length), []).append(start)
+            key = (number, length)
+            if key in places:
+                places[key].append(start)
+            else:
+                places[key] = [start]
         elif opcode in (Opcode.SCHEMA, Opcode.CHANNEL):
             described.append((opcode, data[start + 9 : end]))
         elif opcode in _NO_MESSAGE:
