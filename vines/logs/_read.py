@@ -65,6 +65,8 @@ class Log:
         Samples of each sensor of a rig (``vines.v1.SensorSample``), SI; the table's metadata say what was measured.
     others : dict of str to pyarrow.Table
         Channels that are not of vines, by topic, the log time in nanoseconds first.
+    encodings : dict of str to str
+        Encoding of each channel that is not of vines, by topic, decoded or not.
     provenance : dict of str to str
         Where the numbers come from; what was not text is JSON.
     parameters : dict of str to float
@@ -97,6 +99,7 @@ class Log:
     base: pa.Table
     sensors: dict[str, pa.Table]
     others: dict[str, pa.Table]
+    encodings: dict[str, str]
     provenance: dict[str, str]
     parameters: dict[str, float]
     word: str
@@ -284,6 +287,7 @@ def _log(file: Path, found: Found, data: bytes, verdict: _Verdict, tables: dict[
         remarks=tuple(printable(line) for line in remarks),
         sensors={channel.key: tables[number] for number, channel in known.items() if channel.message == SAMPLE},
         others=others,
+        encodings={topic.topic: topic.message_encoding for topic in verdict.others.values()},
         sha256=hashlib.sha256(data).hexdigest(),
         **{
             channel.key: of_message[message] if message in of_message else table(Messages(), channel)

@@ -7,7 +7,7 @@ import os
 import struct
 from collections import defaultdict
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from io import BytesIO
 from pathlib import Path
 
@@ -127,7 +127,9 @@ def read_damaged(path: str | os.PathLike[str], *, max_chunk: int = CHUNK_LIMIT) 
             raise damaged from None
         if not made.every_message:
             raise
-        return assemble(file, made.data, max_chunk)
+        lost = "; ".join(made.lost) or "nothing but an index or the end mark"
+        remarks = (f"damaged, shown as `vines recover` would save it; lost: {lost}",)
+        return replace(assemble(file, made.data, max_chunk), remarks=remarks)
 
 
 def _target(file: Path) -> Path:

@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from vines.viewer._browse import browse, catalogue_of
     from vines.viewer._cache import cached_rrd
     from vines.viewer._layout import Shown, blueprint
+    from vines.viewer._remarks import remarks
     from vines.viewer._save import save_rrd
     from vines.viewer._show import screenshot, view, web
 
@@ -24,6 +25,7 @@ __all__ = [
     "browse",
     "cached_rrd",
     "catalogue_of",
+    "remarks",
     "save_rrd",
     "screenshot",
     "view",
@@ -37,6 +39,7 @@ _HOME = {
     "browse": "_browse",
     "cached_rrd": "_cache",
     "catalogue_of": "_browse",
+    "remarks": "_remarks",
     "save_rrd": "_save",
     "screenshot": "_show",
     "view": "_show",
