@@ -141,6 +141,9 @@ def _column(values: list[Any]) -> pa.Array:
 
     try:
         return pa.array(values)
-    except OverflowError:
+    except OverflowError as larger:
         # Numbers from 2^63 on, as in fields of type uint64, fit 64 bits too.
-        return pa.array(values, pa.uint64())
+        try:
+            return pa.array(values, pa.uint64())
+        except (pa.ArrowInvalid, pa.ArrowTypeError):
+            raise larger from None
