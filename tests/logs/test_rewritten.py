@@ -229,8 +229,20 @@ def test_older_logs_are_read_and_rewritten_ones_too(name, tmp_path):
     file.write_bytes(rewritten((OLDER / f"{name}.mcap").read_bytes(), library="mcap copy"))
     back = logs.read(file)
     assert back.complete
-    assert back.remarks[0].startswith("rewritten by 'mcap copy', as many messages as written, their content unverified")
+    assert back.remarks == (
+        "rewritten by 'mcap copy', as many messages as written, for whose content only checksums of that program vouch "
+        "(an older log)",
+    )
     equal(back, older)
+
+
+@pytest.mark.parametrize("chunking", [True, False])
+def test_older_log_that_was_rewritten_without_checksums_is_not_called_complete(chunking, tmp_path):
+    file = tmp_path / "none.mcap"
+    file.write_bytes(rewritten((OLDER / "run.mcap").read_bytes(), crcs=False, chunking=chunking))
+    back = logs.read(file)
+    assert (back.status, back.complete) == ("unverified", False)
+    assert "nothing vouches" in back.remarks[0]
 
 
 @pytest.mark.parametrize("cut", [1, 8, 60, 8000])

@@ -46,6 +46,8 @@ class Rewritten:
     ----------
     whole : bool
         Whether nothing is missing.
+    verified : bool
+        Whether a digest vouches for the messages, or at least a checksum of the program that rewrote them.
     remarks : tuple of str
         What a reader should know, a line each.
     channels : frozenset of int
@@ -53,6 +55,7 @@ class Rewritten:
     """
 
     whole: bool
+    verified: bool
     remarks: tuple[str, ...]
     channels: frozenset[int]
 
@@ -97,10 +100,12 @@ def rewritten(file: Path, found: Found) -> Rewritten:
     if others:
         lines.append(f"added to the log and not part of it: {', '.join(others)}")
     by = f"rewritten by {found.library!r}" if found.library else "rewritten by another program"
-    checked = (
-        "content as written" if contents else "as many messages as written, their content unverified (an older log)"
-    )
-    return Rewritten(whole, (f"{by}, {checked if whole else 'in part'}", *lines), frozenset(ours))
+    checked = "content as written"
+    if not contents:
+        by_whom = "only checksums of that program vouch" if found.covered else "nothing vouches"
+        checked = f"as many messages as written, for whose content {by_whom} (an older log)"
+    remarks = (f"{by}, {checked if whole else 'in part'}", *lines)
+    return Rewritten(whole, bool(contents) or found.covered, remarks, frozenset(ours))
 
 
 def _is_record(name: str) -> bool:

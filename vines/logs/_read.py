@@ -79,7 +79,8 @@ class Log:
         The TOML text that declared the run.
     status : str
         ``"complete"`` for a run that its writer finished, ``"recovered"`` for one that ``vines recover`` salvaged,
-        ``"filtered"`` if another program took something out, ``"unknown"`` where vines did not write the file.
+        ``"filtered"`` if another program took something out, ``"unverified"`` if one rewrote it without checksums,
+        ``"unknown"`` where vines did not write the file.
     recovered : dict of str to str
         What was saved and what was lost, for a salvaged log.
     remarks : tuple of str
@@ -231,6 +232,7 @@ def _checked(file: Path, found: Found, known: dict[int, Channel]) -> _Verdict:
         what = rewritten(file, found)
         belonging = {number: channel for number, channel in known.items() if number in what.channels}
         others = {number: topic for number, topic in found.topics.items() if number not in what.channels}
+        status = status if what.verified else "unverified"
         return _Verdict(status if what.whole else "filtered", what.remarks, belonging, others)
     counts = written_counts(found)
     for number in known:

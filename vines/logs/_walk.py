@@ -52,6 +52,8 @@ class Found:
         By the number of their channel.
     sha_fits : bool or None
         Whether the SHA-256 in the status is that of the bytes before it; None if there is none.
+    covered : bool
+        Whether a checksum covers every message: that of its chunk, or that of the whole data.
     """
 
     library: str = ""
@@ -61,6 +63,7 @@ class Found:
     topics: dict[int, records.Channel] = field(default_factory=dict)
     messages: defaultdict[int, Messages] = field(default_factory=lambda: defaultdict(Messages))
     sha_fits: bool | None = None
+    covered: bool = True
 
     def count(self, number: int) -> int:
         """Return how many messages a channel has."""
@@ -103,6 +106,7 @@ def walk(file: Path, data: bytes, unpacker: Unpacker) -> Found:
 def _walk(file: Path, data: bytes, unpacker: Unpacker) -> Found:
     found = Found()
     start, stop = data_section(file, data, AGAIN)
+    crc = 0
     # Before anything is looked at: what damage would look like, such as another version, it must not be called.
     if data[stop - 13 : stop - 4] == struct.pack("<BQ", Opcode.DATA_END, 4):
         (crc,) = struct.unpack_from("<I", data, stop - 4)
@@ -118,13 +122,16 @@ def _walk(file: Path, data: bytes, unpacker: Unpacker) -> Found:
         if opcode == Opcode.MESSAGE:
             if len(body) < 22:
                 raise ValueError("a message record is shorter than its header")
+            found.covered = found.covered and crc != 0
             (number,) = struct.unpack_from("<H", body)
             alone.setdefault((number, len(body)), []).append(place)
             continue
         if opcode == Opcode.CHUNK:
             gather(found.messages, data, alone, before)
             alone, before = {}, before + len(data)
-            inside = unpacker.unpack(records.Chunk.read(ReadDataStream(BytesIO(body))))
+            chunk = records.Chunk.read(ReadDataStream(BytesIO(body)))
+            inside = unpacker.unpack(chunk)
+            found.covered = found.covered and (crc != 0 or chunk.uncompressed_crc != 0)
             places, described = split(inside)
             for kind, content in described:
                 _take(found, kind, content)
