@@ -102,7 +102,7 @@ def check(path: Path, messages: list[bytes], times: list[int]) -> None:
 def compare(folder: Path, rows: Rows) -> dict[str, float]:
     """Return medians and sizes of both writers for the same rows."""
     width, head = rows.width, 31
-    packed = pack(rows)
+    packed = pack(rows).tobytes()
     messages = [packed[place + head : place + width] for place in range(0, len(packed), width)]
     times = rows.times.tolist()
     a, b = folder / "ours.mcap", folder / "theirs.mcap"

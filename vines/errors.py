@@ -11,6 +11,7 @@ import difflib
 from collections.abc import Iterable
 
 __all__ = [
+    "ChunkError",
     "CodeError",
     "DamageError",
     "DamageWarning",
@@ -19,6 +20,7 @@ __all__ = [
     "FileMissingError",
     "KernelError",
     "LogError",
+    "LogVersionError",
     "OrbitNotFound",
     "PackageMissingError",
     "ParameterError",
@@ -33,6 +35,7 @@ __all__ = [
     "ViewerError",
     "VinesError",
     "nearest",
+    "printable",
 ]
 
 
@@ -104,7 +107,21 @@ class PlugInError(VinesError, ImportError):
 
 
 class LogError(VinesError, ValueError):
-    """An MCAP log is damaged, incomplete, or holds what cannot be decoded."""
+    """An MCAP log is damaged, incomplete, or holds what cannot be decoded.
+
+    The message may quote names from the file; what would act on a terminal is escaped.
+    """
+
+    def __init__(self, message: str) -> None:
+        super().__init__(printable(message))
+
+
+class ChunkError(LogError):
+    """A chunk of a log is compressed in an unknown way, or unpacks to more than is allowed."""
+
+
+class LogVersionError(LogError):
+    """A log is intact and of another version of the schema."""
 
 
 class QueryError(VinesError, ValueError):
@@ -129,6 +146,24 @@ class RunFailed(VinesError, RuntimeError):  # noqa: N818 - reads as what happene
     """Some points of a run failed; the rest is stored."""
 
     exit_code: int = 3
+
+
+def printable(text: str) -> str:
+    r"""Return text with everything escaped that acts on a terminal: line ends, escape codes, turns of direction.
+
+    Parameters
+    ----------
+    text : str
+        Such as a name that stood in a file.
+
+    Examples
+    --------
+    >>> printable("/a\n\x1b[31mb\u202e µ")
+    '/a\\n\\x1b[31mb\\u202e µ'
+    """
+    return "".join(
+        each if each.isprintable() else each.encode("unicode_escape", "surrogatepass").decode() for each in text
+    )
 
 
 def nearest(name: str, known: Iterable[str]) -> str:

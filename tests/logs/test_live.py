@@ -1,8 +1,10 @@
 """A log that is written while its run goes on, and what is left of it when its process is killed."""
 
+import os
 import signal
 import subprocess
 import sys
+import threading
 
 import numpy as np
 import pytest
@@ -113,3 +115,22 @@ def test_live_log_of_a_rig(tmp_path):
     log = logs.read(tmp_path / "rig.mcap")
     assert log.kind == "rig"
     np.testing.assert_array_equal(log.sensors["acc"]["value"].to_numpy(), samples["value"])
+
+
+def test_what_is_added_is_synced_to_disk_at_the_stated_interval(run, tmp_path, monkeypatch):
+    """A file that is only flushed is lost with the machine: what the writer's thread wrote, it has synced."""
+    path, synced, real = tmp_path / "live.mcap", threading.Event(), os.fsync
+    sizes: list[int] = []
+
+    def fsync(number):
+        sizes.append(os.fstat(number).st_size)
+        if len(sizes) > 1:
+            synced.set()
+        real(number)
+
+    monkeypatch.setattr(os, "fsync", fsync)
+    with logs.LiveWriter(path, **ABOUT) as live:
+        head = sizes[0]
+        live.add("states", run["states"][:10])
+        assert synced.wait(60)
+        assert sizes[1] > head == sizes[0]

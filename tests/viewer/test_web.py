@@ -2,6 +2,9 @@
 
 import io
 import shutil
+import signal
+import subprocess
+import sys
 from pathlib import Path
 
 import matplotlib.image
@@ -95,3 +98,15 @@ def test_cache_is_made_again_when_log_or_layout_changes(settled, chatter, tmp_pa
 def test_server_that_cannot_start_is_told(tmp_path):
     with pytest.raises(ViewerError, match="ended with status"), served(Path(tmp_path / "none.rrd")):
         pass
+
+
+def test_sigterm_ends_the_server_too(settled):
+    """What a batch system or `timeout` sends must not leave Rerun's server behind."""
+    command = [sys.executable, "-m", "vines.cli", "view", str(settled), "--web"]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as process:
+        assert "open http://127.0.0.1:" in process.stdout.readline()
+        servers = psutil.Process(process.pid).children(recursive=True)
+        assert servers
+        process.send_signal(signal.SIGTERM)
+        assert process.wait(timeout=60) == 0
+    assert psutil.wait_procs(servers, timeout=60)[1] == []

@@ -6,7 +6,9 @@ from pathlib import Path
 
 import click
 
+from vines.cli._max_chunk import max_chunk_option
 from vines.cli._study import the_study
+from vines.errors import printable
 
 _FILE = click.Path(dir_okay=False, path_type=Path)
 
@@ -18,12 +20,20 @@ _FILE = click.Path(dir_okay=False, path_type=Path)
 @click.option("--save", type=_FILE, help="Write a recording (.rrd) with its blueprint.")
 @click.option("--overlay", is_flag=True, help="Curves of all runs in the same views, as of a rig and of the model.")
 @click.option("--at", type=float, help="Simulation time that the picture shows; a moment past the middle if left out.")
+@max_chunk_option
 def command(
-    logs: tuple[str, ...], web: bool, png: Path | None, save: Path | None, overlay: bool, at: float | None
+    logs: tuple[str, ...],
+    web: bool,
+    png: Path | None,
+    save: Path | None,
+    overlay: bool,
+    at: float | None,
+    max_chunk: int,
 ) -> None:
     """Look at logged runs in the Rerun viewer, several side by side or laid over each other.
 
-    LOG is <pipeline>.<stage>, <pipeline>.<stage>/<point>, a log id, or the path of an MCAP file.
+    LOG is <pipeline>.<stage>, <pipeline>.<stage>/<point>, a log id, or the path of an MCAP file. What is missing from a
+    log, or was done to it by another program, is told on stderr.
 
     \b
     vines view quickstart.asymmetric_run
@@ -31,6 +41,7 @@ def command(
     vines view rehearsal.compare/01_up --overlay        measured and modelled
     """  # noqa: D301
     from vines import viewer
+    from vines.logs import read_damaged
     from vines.stages import find_logs, recordings_folder
 
     if web and (png is not None or save is not None):
@@ -38,14 +49,18 @@ def command(
     if at is not None and png is None:
         raise click.UsageError("--at is the time of a picture; give --png FILE too")
     study = the_study()
-    paths = [path for name in logs for path in find_logs(name, study=study)]
+    limit = max_chunk * 2**20
+    runs = [read_damaged(path, max_chunk=limit) for name in logs for path in find_logs(name, study=study)]
+    for run in runs:
+        for line in viewer.remarks(run):
+            click.echo(f"vines: {printable(str(run.path))}: {line}", err=True)
     if save is not None:
-        viewer.save_rrd(paths, save, overlay=overlay)
+        viewer.save_rrd(runs, save, overlay=overlay)
         click.echo(f"wrote {save}")
     if png is not None:
-        viewer.screenshot(paths, png, at=at, overlay=overlay)
+        viewer.screenshot(runs, png, at=at, overlay=overlay)
         click.echo(f"wrote {png}")
     if web:
-        viewer.web(paths, cache=recordings_folder(study=study), tell=click.echo, overlay=overlay)
+        viewer.web(runs, cache=recordings_folder(study=study), tell=click.echo, overlay=overlay)
     elif png is None and save is None:
-        viewer.view(paths, cache=recordings_folder(study=study), overlay=overlay)
+        viewer.view(runs, cache=recordings_folder(study=study), overlay=overlay)

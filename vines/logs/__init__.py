@@ -1,9 +1,20 @@
 """Logs of runs as MCAP files: protobuf messages with their schema, provenance first, completeness last."""
 
 from vines.logs._live import LiveWriter
-from vines.logs._read import Log, read
-from vines.logs._recover import Recovery, recover
+from vines.logs._read import Log, bytes_of_file, read
+from vines.logs._recover import Recovery, read_damaged, recover
 from vines.logs._rig import Sensor, write_rig
 from vines.logs._write import write_run
 
-__all__ = ["LiveWriter", "Log", "Recovery", "Sensor", "read", "recover", "write_rig", "write_run"]
+__all__ = [
+    "LiveWriter",
+    "Log",
+    "Recovery",
+    "Sensor",
+    "bytes_of_file",
+    "read",
+    "read_damaged",
+    "recover",
+    "write_rig",
+    "write_run",
+]

@@ -13,6 +13,7 @@ from vines.schema import WireFormat, numpy_dtype, schema_bytes, wire_format
 __all__ = [
     "BASE",
     "CHANNELS",
+    "CONTENT",
     "DIGESTS",
     "FIRST_SENSOR",
     "KINDS",
@@ -40,6 +41,8 @@ PARAMETERS = "vines.parameters"
 """Metadata record with the parameters of the model."""
 DIGESTS = "vines.digests"
 """Metadata record with the SHA-256 of each record before it, so that damage there can be named."""
+CONTENT = "vines.content"
+"""Metadata record with the SHA-256 of what each channel says, which stays when another program rewrites the log."""
 RECOVERED = "vines.recovered"
 """Metadata record of a salvaged log: what was saved and what was lost."""
 STATUS = "vines.status"

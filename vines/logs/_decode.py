@@ -8,6 +8,7 @@ import numpy as np
 from google.protobuf.descriptor_pb2 import FileDescriptorSet
 
 from vines.logs._channels import Channel
+from vines.logs._contents import Messages
 from vines.schema import field_notes, message_class, numpy_dtype, schema_bytes, wire_format
 
 if TYPE_CHECKING:
@@ -32,12 +33,15 @@ def decode(payloads: np.ndarray, channel: Channel) -> np.ndarray:
     return rows
 
 
-def table(parts: list[np.ndarray], channel: Channel) -> pa.Table:
+def table(messages: Messages, channel: Channel) -> pa.Table:
+    """Return the messages of a channel as a table, in the order of time."""
     import pyarrow as pa
 
+    parts = [decode(block[:, 31:], channel) for block in messages.blocks]
+    order = messages.order()
     dtype, notes = numpy_dtype(channel.message), field_notes(channel.message)
     columns = [
-        np.concatenate([np.empty(0, dtype[name]), *(part[name] for part in parts)]) for name in dtype.names or ()
+        np.concatenate([np.empty(0, dtype[name]), *(part[name] for part in parts)])[order] for name in dtype.names or ()
     ]
     schema = pa.schema(
         [

@@ -11,19 +11,19 @@ import hashlib
 import struct
 import zlib
 from collections import Counter, deque
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
 from typing import BinaryIO
 
 from mcap import records
-from mcap.data_stream import RecordBuilder
 from mcap.opcode import Opcode
 from mcap.writer import MCAP0_MAGIC
 
-from vines.logs._channels import DIGESTS, STATUS, Channel, Rows
+from vines.logs._channels import CONTENT, DIGESTS, STATUS, Channel, Rows
 from vines.logs._chunk import Packed, packed
+from vines.logs._digests import bytes_of, description, digest_of, sealed
 
-__all__ = ["LogFile", "digest_of", "trusted"]
+__all__ = ["LogFile"]
 
 _AT_ONCE = 2
 """Chunks that are packed and compressed at the same time; the bytes of the file do not depend on it."""
@@ -47,6 +47,10 @@ class LogFile:
         self._span: tuple[int, int] | None = None
         self._sha = hashlib.sha256()
         self._digests: dict[str, str] = {}
+        self._schemas: dict[int, records.Schema] = {}
+        self._descriptions: dict[str, str] = {}
+        self._contents: dict[int, hashlib._Hash] = {}
+        self._topics: dict[int, str] = {}
         self._put(MCAP0_MAGIC)
         self._record(records.Header(profile=profile, library="vines"))
 
@@ -61,19 +65,20 @@ class LogFile:
 
     def _record(self, record: records.McapRecord) -> tuple[int, int]:
         """Write a small record; return where it begins and how long it is."""
-        data = _bytes(record)
+        data = bytes_of(record)
         return self._put(data), len(data)
 
     def metadata(self, name: str, values: dict[str, str]) -> None:
-        record = records.Metadata(name=name, metadata=values)
+        # Sorted, as other programs write them: the digest of the record then stays when one rewrites the log.
+        record = records.Metadata(name=name, metadata=dict(sorted(values.items())))
         offset, length = self._record(record)
-        self._digests[name] = digest_of(_bytes(record))
+        self._digests[name] = digest_of(record)
         self._repeated[Opcode.METADATA_INDEX].append(records.MetadataIndex(offset=offset, length=length, name=name))
 
     def attachment(self, name: str, media_type: str, data: bytes) -> None:
         record = records.Attachment(create_time=0, log_time=0, name=name, media_type=media_type, data=data)
         offset, length = self._record(record)
-        self._digests[name] = digest_of(_bytes(record))
+        self._digests[name] = digest_of(record)
         index = records.AttachmentIndex(
             offset=offset,
             length=length,
@@ -100,23 +105,30 @@ class LogFile:
         )
 
     def schema(self, record: records.Schema) -> None:
-        self._describe(Opcode.SCHEMA, record, f"schema {record.name}")
+        self._schemas[record.id] = record
+        self._describe(Opcode.SCHEMA, record, f"schema {record.id} {record.name}")
 
     def topic(self, record: records.Channel) -> None:
         self._counts[record.id] += 0
-        self._describe(Opcode.CHANNEL, record, f"channel {record.topic}")
+        described = description(record, self._schemas.get(record.schema_id))
+        self._topics[record.id] = record.topic
+        self._descriptions[f"description of {record.topic}"] = described
+        self._contents[record.id] = hashlib.sha256(described.encode())
+        self._describe(Opcode.CHANNEL, record, f"channel {record.id} {record.topic}")
 
     def _describe(self, opcode: Opcode, record: records.McapRecord, name: str) -> None:
         self._record(record)
-        self._digests[name] = digest_of(_bytes(record))
+        self._digests[name] = digest_of(record)
         self._repeated[opcode].append(record)
 
     def digests(self) -> None:
         """Write the SHA-256 of each record so far, and one of these."""
-        self.metadata(DIGESTS, {**self._digests, DIGESTS: _of_digests(self._digests)})
+        self.metadata(DIGESTS, sealed(DIGESTS, self._digests))
 
     def status(self, status: str, counts: dict[str, str]) -> None:
-        """Write the status: the last metadata, with the SHA-256 of everything before it."""
+        """Write what the channels say, as digests, and the status: the last, with the SHA-256 of all before it."""
+        contents = {self._topics[number]: sha.hexdigest() for number, sha in self._contents.items()}
+        self.metadata(CONTENT, sealed(CONTENT, {**contents, **self._descriptions}))
         self.metadata(STATUS, {"status": status, **counts, "sha256": self._sha.hexdigest()})
 
     def chunks(self, every: Iterable[Sequence[Rows]]) -> None:
@@ -136,6 +148,8 @@ class LogFile:
         first, last = record.message_start_time, record.message_end_time
         self._span = (first, last) if self._span is None else (min(first, self._span[0]), max(last, self._span[1]))
         self._counts.update(made.counts)
+        for number, content in made.contents.items():
+            self._contents[number].update(content)
         offset, length = self._record(record)
         index_offsets = {number: self._put(index) for number, index in made.indexes.items()}
         self._repeated[Opcode.CHUNK_INDEX].append(
@@ -173,9 +187,9 @@ class LogFile:
         summary = bytearray()
         offsets = bytearray()
         for opcode, group in self._repeated.items():
-            data = b"".join(map(_bytes, group))
+            data = b"".join(map(bytes_of, group))
             if data:
-                offsets += _bytes(
+                offsets += bytes_of(
                     records.SummaryOffset(group_opcode=opcode, group_start=start + len(summary), group_length=len(data))
                 )
             summary += data
@@ -184,24 +198,3 @@ class LogFile:
         # The checksum of the summary covers the footer too, up to the checksum itself.
         summary += struct.pack("<BQQQ", Opcode.FOOTER, 20, start, offset_start)
         self._stream.write(summary + struct.pack("<I", zlib.crc32(summary)) + MCAP0_MAGIC)
-
-
-def digest_of(data: bytes) -> str:
-    """Return the SHA-256 of the bytes of a record."""
-    return hashlib.sha256(data).hexdigest()
-
-
-def _of_digests(digests: Mapping[str, str]) -> str:
-    return digest_of(repr(sorted(digests.items())).encode())
-
-
-def trusted(digests: Mapping[str, str]) -> dict[str, str]:
-    """Return the digests that a log holds of its records if they are intact themselves, else nothing."""
-    rest = {name: digest for name, digest in digests.items() if name != DIGESTS}
-    return rest if digests.get(DIGESTS) == _of_digests(rest) else {}
-
-
-def _bytes(record: records.McapRecord) -> bytes:
-    builder = RecordBuilder()
-    record.write(builder)
-    return builder.end()

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -12,6 +12,8 @@ from google.protobuf.message import DecodeError, Message
 from mcap import records
 
 from vines.errors import LogError
+from vines.logs._contents import Messages
+from vines.logs._walk import Found
 
 if TYPE_CHECKING:
     import pyarrow as pa
@@ -22,64 +24,64 @@ _READABLE = ("protobuf", "json")
 
 
 def foreign_tables(
-    file: Path,
-    topics: Mapping[int, records.Channel],
-    schemas: Mapping[int, records.Schema],
-    messages: Mapping[int, Sequence[tuple[int, bytes]]],
-) -> dict[str, pa.Table]:
+    file: Path, topics: Mapping[int, records.Channel], found: Found
+) -> tuple[dict[str, pa.Table], list[str]]:
     """Return the messages of each channel as a table, the log time in nanoseconds as its first column.
 
     Parameters
     ----------
     file : Path
         Where they come from, for messages.
-    topics, schemas : mapping
-        What the file says about its channels.
-    messages : mapping of int to sequence of (int, bytes)
-        Log time and content of the messages of each channel.
+    topics : mapping of int to mcap.records.Channel
+        The channels to decode, by their numbers.
+    found : Found
+        What is in the file.
+
+    Returns
+    -------
+    tuple of (dict of str to pyarrow.Table, list of str)
+        The tables by topic, and the channels in an encoding that is neither protobuf nor JSON.
 
     Raises
     ------
     LogError
-        If channels are in an encoding that is neither protobuf nor JSON (all are named), or a message does not fit
-        its schema.
+        If a message does not fit its schema, or holds what no table can.
     """
-    unread = [f"{each.topic} ({each.message_encoding})" for each in topics.values() if not _readable(each)]
-    if unread:
-        raise LogError(
-            f"{file} has channels that vines cannot decode: {', '.join(sorted(unread))}; it reads protobuf and JSON, "
-            "so convert them, or leave them out with `mcap filter --exclude-topic-regex`"
-        )
     tables: dict[str, pa.Table] = {}
+    unread = [f"{topic.topic} ({topic.message_encoding})" for topic in topics.values() if not _readable(topic)]
     for number, topic in topics.items():
-        schema = schemas.get(topic.schema_id)
+        if not _readable(topic):
+            continue
         try:
-            rows = _rows(topic, schema, messages.get(number, ()))
-            made = _table(rows)
-        except (DecodeError, ValueError, TypeError, KeyError) as unfit:
+            made = _table(_rows(topic, found.schema(number), found.messages[number]))
+        except OverflowError:
+            raise LogError(f"{file}: the messages on {topic.topic} hold an integer beyond 64 bits") from None
+        except RecursionError:
+            raise LogError(f"{file}: the messages on {topic.topic} are nested too deeply") from None
+        except (DecodeError, ValueError, TypeError, KeyError, NotImplementedError) as unfit:
             said = " ".join(str(unfit).split())
             raise LogError(f"{file}: the messages on {topic.topic} do not fit their schema ({said})") from unfit
         # Two channels may share a topic; their numbers keep them apart.
         tables[topic.topic if topic.topic not in tables else f"{topic.topic}#{number}"] = made
-    return tables
+    return tables, sorted(unread)
 
 
 def _readable(topic: records.Channel) -> bool:
     return topic.message_encoding in _READABLE
 
 
-def _rows(
-    topic: records.Channel, schema: records.Schema | None, messages: Sequence[tuple[int, bytes]]
-) -> list[dict[str, Any]]:
+def _rows(topic: records.Channel, schema: records.Schema | None, messages: Messages) -> list[dict[str, Any]]:
+    payloads = [message[31:] for message in messages.in_order()]
     if topic.message_encoding == "json":
-        decoded = [json.loads(data) for _, data in messages]
+        decoded = [json.loads(data) for data in payloads]
         contents = [each if isinstance(each, dict) else {"value": each} for each in decoded]
     else:
         if schema is None:
             raise KeyError("a protobuf channel needs a schema")
         kind = _class(schema.name, schema.data)
-        contents = [_plain(kind.FromString(data)) for _, data in messages]
-    return [{"log_time": time, **content} for (time, _), content in zip(messages, contents, strict=True)]
+        contents = [_plain(kind.FromString(data)) for data in payloads]
+    times = messages.times[messages.order()].tolist() if payloads else []
+    return [{"log_time": time, **content} for time, content in zip(times, contents, strict=True)]
 
 
 def _class(name: str, descriptors: bytes) -> type[Message]:
@@ -130,5 +132,18 @@ def _table(rows: list[dict[str, Any]]) -> pa.Table:
 
     names = list(dict.fromkeys(["log_time", *(name for row in rows for name in row)]))
     columns = [pa.array([row["log_time"] for row in rows], pa.uint64())]
-    columns += [pa.array([row.get(name) for row in rows]) for name in names[1:]]
+    columns += [_column([row.get(name) for row in rows]) for name in names[1:]]
     return pa.table(columns, names=names)
+
+
+def _column(values: list[Any]) -> pa.Array:
+    import pyarrow as pa
+
+    try:
+        return pa.array(values)
+    except OverflowError as larger:
+        # Numbers from 2^63 on, as in fields of type uint64, fit 64 bits too.
+        try:
+            return pa.array(values, pa.uint64())
+        except (pa.ArrowInvalid, pa.ArrowTypeError):
+            raise larger from None

@@ -26,6 +26,8 @@ def frames(data: bytes, start: int, stop: int) -> Iterator[tuple[int, int, bytes
         If a record is longer than what is left.
     """
     while start < stop:
+        if start + 9 > stop:
+            raise ValueError(f"a record at byte {start} is cut off")
         opcode, length = struct.unpack_from("<BQ", data, start)
         if start + 9 + length > stop:
             raise ValueError(f"a record at byte {start} is longer than the file")
@@ -55,12 +57,18 @@ def data_section(file: Path, data: bytes, remedy: str) -> tuple[int, int]:
     return len(MCAP0_MAGIC), summary or footer
 
 
-def summary_start(data: bytes) -> int | None:
-    """Return where an intact summary begins, or None where there is none whose checksum fits."""
-    tail = len(data) - len(MCAP0_MAGIC)
-    footer = tail - _FOOTER.size
-    if footer < len(MCAP0_MAGIC) or data[tail:] != MCAP0_MAGIC:
-        return None
-    opcode, length, summary, _, crc = _FOOTER.unpack_from(data, footer)
-    fits = (opcode, length) == (Opcode.FOOTER, 20) and 0 < summary <= footer
-    return summary if fits and crc and crc == zlib.crc32(memoryview(data)[summary : tail - 4]) else None
+def summary_start(data: bytes) -> tuple[int, int] | None:
+    """Return where an intact summary begins and ends, or None where there is none whose checksum fits.
+
+    The end mark behind it may be cut off: the checksum alone decides.
+    """
+    for kept in range(len(MCAP0_MAGIC), -1, -1):
+        tail = len(data) - kept
+        footer = tail - _FOOTER.size
+        if footer < len(MCAP0_MAGIC) or data[tail:] != MCAP0_MAGIC[:kept]:
+            continue
+        opcode, length, summary, _, crc = _FOOTER.unpack_from(data, footer)
+        fits = (opcode, length) == (Opcode.FOOTER, 20) and 0 < summary <= footer
+        if fits and crc and crc == zlib.crc32(memoryview(data)[summary : tail - 4]):
+            return summary, footer
+    return None

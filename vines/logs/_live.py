@@ -28,9 +28,9 @@ _EVERY = 0.4
 class LiveWriter:
     """A log that grows while its run goes on.
 
-    Rows are written to ``<path>.part`` every 0.4 s, or when a chunk is full, by a thread of its own; on leaving the
-    context the log is finished and takes its name. If the process is killed, what was added up to a second before is
-    in ``<path>.part``, which ``vines recover`` makes into a log.
+    Rows are written to ``<path>.part`` and synced to disk every 0.4 s, or when a chunk is full, by a thread of its own;
+    on leaving the context the log is finished and takes its name. If the process is killed, or the machine stops, what
+    was added up to a second before is in ``<path>.part``, which ``vines recover`` makes into a log.
 
     Parameters
     ----------
@@ -104,6 +104,7 @@ class LiveWriter:
             self._log.channel(channel)
         self._log.digests()
         self._stream.flush()
+        os.fsync(self._stream.fileno())
         self._thread = threading.Thread(target=self._write_on, name=f"writer of {self._path.name}", daemon=True)
         self._thread.start()
 
@@ -152,24 +153,27 @@ class LiveWriter:
             self._due.wait(_EVERY)
             self._due.clear()
             try:
-                self._flush()
+                # Outside the lock: who adds rows does not wait for the disk.
+                if self._flush():
+                    os.fsync(self._stream.fileno())
             except BaseException as failure:
                 # Told by the next `add`, in the thread of the caller.
                 self._failed = failure
                 return
 
-    def _flush(self) -> None:
-        """Write what is waiting, in chunks of the usual size."""
+    def _flush(self) -> bool:
+        """Hand what is waiting to the system, in chunks of the usual size; return whether there was anything."""
         with self._lock:
             taken = [_joined(parts) for parts in self._waiting.values() if parts]
             self._waiting = {key: [] for key in self._channels}
             self._size = 0
             if not taken:
-                return
+                return False
             # In the lock: a chunk is whole in the file before the next one begins.
             for parts in _shares(taken):
                 self._log.chunk(packed(parts))
             self._stream.flush()
+            return True
 
     def __enter__(self) -> Self:
         return self

@@ -32,8 +32,8 @@ def cut(every: Sequence[Rows]) -> Iterator[list[Rows]]:
         yield [part for part in parts if len(part)]
 
 
-def pack(rows: Rows) -> bytes:
-    """Return rows as MCAP message records, one after the other."""
+def pack(rows: Rows) -> np.ndarray:
+    """Return rows as MCAP message records, one a row of bytes."""
     layout = rows.layout
     header = message_header(len(layout.blank))
     buffer = np.empty((len(rows), header.itemsize), np.uint8)
@@ -48,4 +48,4 @@ def pack(rows: Rows) -> bytes:
     payload = np.ndarray(len(rows), layout.dtype, buffer, offset=31, strides=(header.itemsize,))
     for name in layout.dtype.names or ():
         payload[name] = rows.values[name]
-    return buffer.tobytes()
+    return buffer

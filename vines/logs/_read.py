@@ -1,32 +1,23 @@
 """Read a log: all of it, checked, or a :class:`~vines.errors.LogError`.
 
-Every checksum of the file is compared (data section, chunks, summary, and the SHA-256 in the log's own status), so a
-log that was cut or altered is never half read. Messages are decoded a run of equal ones at a time; what was packed
-otherwise (by another writer of the same schema) goes through protobuf.
+Every checksum of the file is compared (data section, chunks, summary, and the SHA-256 in the log's own status, or else
+the digests of its content), so a log that was cut or altered is never half read. Messages are decoded many equal ones
+at a time; what was packed otherwise (by another writer of the same schema) goes through protobuf.
 """
 
 from __future__ import annotations
 
 import hashlib
 import os
-import struct
-import zlib
-from collections.abc import Mapping
-from dataclasses import dataclass, field
-from io import BytesIO
+import stat
+from collections import Counter
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-import numpy as np
-import zstandard
-from google.protobuf.message import DecodeError
 from mcap import records
-from mcap.data_stream import ReadDataStream
-from mcap.exceptions import McapError
-from mcap.opcode import Opcode
-from mcap.stream_reader import CRCValidationError, get_chunk_data_stream
 
-from vines.errors import FileMissingError, LogError
+from vines.errors import FileMissingError, LogError, LogVersionError, printable
 from vines.logs._channels import (
     CHANNELS,
     KINDS,
@@ -38,24 +29,18 @@ from vines.logs._channels import (
     SENSOR,
     STATUS,
     Channel,
-    message_header,
 )
-from vines.logs._decode import decode, differing_fields, table
+from vines.logs._checked import rewritten, written_counts
+from vines.logs._contents import Messages
+from vines.logs._decode import differing_fields, table
 from vines.logs._foreign import foreign_tables
-from vines.logs._frames import data_section, frames
+from vines.logs._unpack import CHUNK_LIMIT, Unpacker
+from vines.logs._walk import AGAIN, BROKEN, Found, line_of, walk
 
 if TYPE_CHECKING:
     import pyarrow as pa
 
-__all__ = ["BROKEN", "Log", "read"]
-
-_AGAIN = "`vines recover` saves what is intact, or make the run again"
-
-BROKEN = (
-    *(McapError, CRCValidationError, zstandard.ZstdError, DecodeError),
-    *(struct.error, UnicodeDecodeError, ValueError, IndexError, MemoryError, OverflowError),
-)
-"""What the decoders raise on damaged bytes."""
+__all__ = ["Log", "assemble", "bytes_of_file", "read"]
 
 
 @dataclass(frozen=True)
@@ -79,7 +64,9 @@ class Log:
     sensors : dict of str to pyarrow.Table
         Samples of each sensor of a rig (``vines.v1.SensorSample``), SI; the table's metadata say what was measured.
     others : dict of str to pyarrow.Table
-        Channels of a file that vines did not write, by topic, the log time in nanoseconds first.
+        Channels that are not of vines, by topic, the log time in nanoseconds first.
+    encodings : dict of str to str
+        Encoding of each channel that is not of vines, by topic, decoded or not.
     provenance : dict of str to str
         Where the numbers come from; what was not text is JSON.
     parameters : dict of str to float
@@ -92,9 +79,13 @@ class Log:
         The TOML text that declared the run.
     status : str
         ``"complete"`` for a run that its writer finished, ``"recovered"`` for one that ``vines recover`` salvaged,
+        ``"filtered"`` if another program took something out, ``"unverified"`` if one rewrote it without checksums,
         ``"unknown"`` where vines did not write the file.
     recovered : dict of str to str
         What was saved and what was lost, for a salvaged log.
+    remarks : tuple of str
+        What a reader should know, a line each: what another program did to the log, what is missing, which channels
+        could not be decoded. Empty for a log as vines wrote it.
     sha256 : str
         Digest of the file.
     """
@@ -109,6 +100,7 @@ class Log:
     base: pa.Table
     sensors: dict[str, pa.Table]
     others: dict[str, pa.Table]
+    encodings: dict[str, str]
     provenance: dict[str, str]
     parameters: dict[str, float]
     word: str
@@ -116,6 +108,7 @@ class Log:
     declaration: str | None
     status: str
     recovered: dict[str, str]
+    remarks: tuple[str, ...]
     sha256: str
 
     @property
@@ -124,205 +117,182 @@ class Log:
         return self.status == "complete"
 
 
-@dataclass
-class _Found:
-    """What has been met in a file so far."""
-
-    metadata: dict[str, dict[str, str]] = field(default_factory=dict)
-    attachments: dict[str, bytes] = field(default_factory=dict)
-    schemas: dict[int, records.Schema] = field(default_factory=dict)
-    topics: dict[int, records.Channel] = field(default_factory=dict)
-    known: dict[int, Channel] = field(default_factory=dict)
-    rows: dict[int, list[np.ndarray]] = field(default_factory=dict)
-    foreign: dict[int, list[tuple[int, bytes]]] = field(default_factory=dict)
-
-
-def read(path: str | os.PathLike[str]) -> Log:
+def read(path: str | os.PathLike[str], *, max_chunk: int = CHUNK_LIMIT) -> Log:
     """Read a log whole.
 
     Parameters
     ----------
     path : path-like
-        An MCAP file. Of one that vines did not write, the channels in protobuf and JSON become the tables `others`.
+        An MCAP file. Of one that vines did not write, the channels in protobuf and JSON become the tables `others`;
+        what cannot be decoded is named in `remarks`.
+    max_chunk : int
+        Bytes to which a chunk of the file may unpack, and the file if that is more than a hundred times its size.
 
     Raises
     ------
     FileMissingError
         If there is no such file.
     LogError
-        If it is damaged, cut short or unfinished, or has a channel that cannot be decoded.
+        If it is damaged, cut short or unfinished, if a message does not fit its schema, or if it is no regular file.
+    ChunkError
+        If a chunk unpacks to more than `max_chunk`, or is compressed in a way that is not known.
+    LogVersionError
+        If it was written with another version of the schema.
     """
     file = Path(path)
-    if not file.is_file():
-        raise FileMissingError(f'there is no log {file}; `vines query "select path from logs"` lists the known ones')
-    data = file.read_bytes()
+    return assemble(file, bytes_of_file(file), max_chunk)
+
+
+def bytes_of_file(file: Path) -> bytes:
+    """Return the content of a regular file; a folder, a pipe or a link without an end is told as that.
+
+    Raises
+    ------
+    FileMissingError
+        If there is nothing of that name.
+    LogError
+        If it is no regular file, or cannot be read.
+    """
     try:
-        found = _walk(file, data)
+        mode = file.stat().st_mode
+        if stat.S_ISREG(mode):
+            return file.read_bytes()
+    except FileNotFoundError:
+        raise FileMissingError(
+            f"there is no log {printable(str(file))}: there is no such file; "
+            '`vines query "select path from logs"` lists the known ones'
+        ) from None
+    except OSError as refused:
+        raise LogError(f"{file} cannot be read ({refused.strerror}); name an MCAP file") from None
+    kinds = {stat.S_IFDIR: "a folder", stat.S_IFIFO: "a pipe (FIFO)", stat.S_IFSOCK: "a socket"}
+    raise LogError(f"{file} is {kinds.get(stat.S_IFMT(mode), 'a device')} and no MCAP file; name the file itself")
+
+
+def assemble(file: Path, data: bytes, max_chunk: int = CHUNK_LIMIT) -> Log:
+    """Return the log in the bytes of a file, once everything that it should hold has been found; errors as `read`."""
+    found = walk(file, data, Unpacker(len(data), max_chunk))
+    try:
+        known = _known(file, found)
+        tables = {number: table(found.messages[number], channel) for number, channel in known.items()}
+        return _log(file, found, data, _checked(file, found, known), tables)
     except LogError:
         raise
     except BROKEN as broken:
-        raise LogError(f"{file} is damaged ({_line(broken)}); {_AGAIN}") from broken
-    return _assemble(file, found, data)
+        raise LogError(f"{file} is damaged ({line_of(broken)}); {AGAIN}") from broken
 
 
-def _line(error: Exception) -> str:
-    return " ".join(str(error).split()) or type(error).__name__
-
-
-def _walk(file: Path, data: bytes) -> _Found:
-    """Check the frame of the file and go through the records of its data section."""
-    found = _Found()
-    start, stop = data_section(file, data, _AGAIN)
-    # Before anything is looked at: what damage would look like, such as another version, it must not be called.
-    if data[stop - 13 : stop - 4] == struct.pack("<BQ", Opcode.DATA_END, 4):
-        (crc,) = struct.unpack_from("<I", data, stop - 4)
-        if crc and crc != zlib.crc32(memoryview(data)[: stop - 13]):
-            raise LogError(f"{file} is damaged: the checksum of its data does not fit; {_AGAIN}")
-    finished = False
-    ours = True
-    for place, opcode, body in frames(data, start, stop):
-        if finished:
-            raise LogError(f"{file} is damaged: records follow the end of its data section; {_AGAIN}")
-        if opcode == Opcode.METADATA:
-            entry = records.Metadata.read(ReadDataStream(BytesIO(body)))
-            found.metadata[entry.name] = entry.metadata
-            written = entry.metadata.get("sha256")
-            if entry.name == STATUS and written and written != hashlib.sha256(memoryview(data)[:place]).hexdigest():
-                raise LogError(f"{file} is damaged: its SHA-256 does not fit; {_AGAIN}")
-        elif opcode == Opcode.DATA_END:
-            finished = True
-        else:
-            # Provenance comes first in a log of vines: without it the file is somebody else's.
-            ours = ours and (opcode == Opcode.HEADER or PROVENANCE in found.metadata)
-            _take(file, found, opcode, body, keep=not ours)
-    if not finished:
-        raise LogError(f"{file} is cut short: its data section has no end; {_AGAIN}")
-    return found
-
-
-def _take(file: Path, found: _Found, opcode: int, body: bytes, keep: bool) -> None:
-    """Take one record of the data section, or of a chunk, into what was found; ``keep`` messages of any channel."""
-    stream = ReadDataStream(BytesIO(body))
-    if opcode == Opcode.ATTACHMENT:
-        attachment = records.Attachment.read(stream)
-        found.attachments[attachment.name] = attachment.data
-    elif opcode == Opcode.SCHEMA:
-        schema = records.Schema.read(stream)
-        found.schemas[schema.id] = schema
-    elif opcode == Opcode.CHANNEL:
-        topic = records.Channel.read(stream)
-        found.topics[topic.id] = topic
-        _recognise(file, found, topic)
-    elif opcode == Opcode.CHUNK:
-        chunk, size = get_chunk_data_stream(records.Chunk.read(stream), validate_crc=True)
-        _messages(file, found, chunk.read(size), keep)
-    elif opcode == Opcode.MESSAGE:
-        _messages(file, found, struct.pack("<BQ", opcode, len(body)) + body, keep)
-
-
-def _recognise(file: Path, found: _Found, topic: records.Channel) -> None:
-    """Note a channel that carries one of our messages; refuse one whose schema differs from ours."""
-    schema = found.schemas.get(topic.schema_id)
-    if schema is None or topic.message_encoding != "protobuf":
-        return
-    if schema.name == SAMPLE:
-        name = topic.topic.removeprefix(SENSOR)
-        channel = Channel(topic.id, topic.topic, SAMPLE, "t", name, topic.metadata)
-    elif schema.name in KINDS:
-        channel = KINDS[schema.name]
-    else:
-        return
-    differing = differing_fields(schema.data, schema.name)
-    if differing:
-        raise LogError(
-            f"{file} was written with another version of {schema.name} (it lacks or changes {', '.join(differing)}); "
-            "read it with the vines that wrote it"
-        )
-    found.known[topic.id] = channel
-
-
-def _messages(file: Path, found: _Found, data: bytes, keep: bool) -> None:
-    """Decode the records of a chunk, a run of message records of equal channel and length at a time."""
-    start = 0
-    while start < len(data):
-        opcode, length = struct.unpack_from("<BQ", data, start)
-        size = 9 + length
-        if start + size > len(data):
-            raise ValueError("a record in a chunk is longer than the chunk")
-        if opcode != Opcode.MESSAGE:
-            _take(file, found, opcode, data[start + 9 : start + size], keep)
-            start += size
+def _known(file: Path, found: Found) -> dict[int, Channel]:
+    """Return the channels that carry messages of vines; refuse a schema that differs from ours."""
+    known: dict[int, Channel] = {}
+    for number, topic in found.topics.items():
+        schema = found.schema(number)
+        if schema is None or topic.message_encoding != "protobuf":
             continue
-        if length < 22:
-            raise ValueError("a message record is shorter than its header")
-        heads = np.frombuffer(data, message_header(length - 22), (len(data) - start) // size, start)
-        number = int(heads["channel"][0])
-        if number not in found.topics:
-            raise ValueError(f"a message belongs to channel {number}, which is not described")
-        equal = (heads["opcode"] == opcode) & (heads["length"] == length) & (heads["channel"] == number)
-        count = len(equal) if equal.all() else int(np.argmin(equal))
-        channel = found.known.get(number)
-        if channel is not None:
-            raw = np.frombuffer(data, np.uint8, count * size, start).reshape(count, size)
-            found.rows.setdefault(number, []).append(decode(raw[:, 31:], channel))
-        elif keep:
-            found.foreign.setdefault(number, []).extend(
-                (int(heads["log_time"][k]), data[start + k * size + 31 : start + (k + 1) * size]) for k in range(count)
+        if schema.name == SAMPLE:
+            known[number] = Channel(
+                number, topic.topic, SAMPLE, "t", topic.topic.removeprefix(SENSOR), dict(topic.metadata)
             )
-        start += count * size
+        elif schema.name in KINDS:
+            known[number] = KINDS[schema.name]
+        else:
+            continue
+        differing = differing_fields(schema.data, schema.name)
+        if differing:
+            raise LogVersionError(
+                f"{file} was written with another version of {schema.name} (it lacks or changes "
+                f"{', '.join(differing)}); read it with the vines that wrote it"
+            )
+    return known
 
 
-def _check_complete(file: Path, found: _Found, status: Mapping[str, str]) -> None:
-    """Refuse a log of vines that was not finished, or lacks messages that its status counts."""
-    if status.get("status") not in ("complete", "recovered"):
-        raise LogError(f"{file} is incomplete: its writer did not finish it (no {STATUS} = complete); {_AGAIN}")
-    for number in found.known:
+@dataclass(frozen=True)
+class _Verdict:
+    """What checking said: status and remarks of a log, its channels of vines, and those that are decoded as foreign."""
+
+    status: str
+    remarks: tuple[str, ...]
+    known: dict[int, Channel]
+    others: dict[int, records.Channel]
+
+
+def _checked(file: Path, found: Found, known: dict[int, Channel]) -> _Verdict:
+    """Return what a log is, once it is known to be whole or what of it is missing."""
+    if PROVENANCE not in found.metadata and STATUS not in found.metadata:
+        # Of two channels of one kind none is the run's.
+        keys = Counter((channel.message, channel.key) for channel in known.values())
+        alone = {number: each for number, each in known.items() if keys[each.message, each.key] == 1}
+        twice = sorted({found.topics[number].topic for number in known.keys() - alone.keys()})
+        lines = [f"several channels hold the same kind of message, so each is a table of its own: {', '.join(twice)}"]
+        others = {number: topic for number, topic in found.topics.items() if number not in alone}
+        return _Verdict("unknown", tuple(lines if twice else ()), alone, others)
+    status = found.metadata.get(STATUS, {}).get("status", "")
+    if status not in ("complete", "recovered"):
+        raise LogError(f"{file} is incomplete: its writer did not finish it (no {STATUS} = complete); {AGAIN}")
+    if found.sha_fits is False:
+        what = rewritten(file, found)
+        belonging = {number: channel for number, channel in known.items() if number in what.channels}
+        others = {number: topic for number, topic in found.topics.items() if number not in what.channels}
+        status = status if what.verified else "unverified"
+        return _Verdict(status if what.whole else "filtered", what.remarks, belonging, others)
+    counts = written_counts(found)
+    for number in known:
         topic = found.topics[number].topic
-        read_rows, written = sum(map(len, found.rows.get(number, []))), status.get(topic)
-        if written is not None and written != str(read_rows):
-            raise LogError(f"{file} is damaged: {read_rows} of {written} messages on {topic}; {_AGAIN}")
-    if found.metadata.get(RUN, {}).get("kind", "run") != "rig" and status["status"] == "complete":
+        if counts.get(topic, found.count(number)) != found.count(number):
+            raise LogError(f"{file} is damaged: {found.count(number)} of {counts[topic]} messages on {topic}; {AGAIN}")
+    if found.metadata.get(RUN, {}).get("kind", "run") != "rig" and status == "complete":
         for channel in CHANNELS:
-            if channel not in found.known.values():
-                raise LogError(f"{file} has no channel of {channel.message}; {_AGAIN}")
+            if channel not in known.values():
+                raise LogError(f"{file} has no channel of {channel.message}; {AGAIN}")
+    return _Verdict(status, (), known, {})
 
 
-def _assemble(file: Path, found: _Found, data: bytes) -> Log:
-    """Return the log, once everything that it should hold has been found."""
-    ours = PROVENANCE in found.metadata
-    status = found.metadata.get(STATUS, {} if ours else {"status": "unknown"})
-    others: dict[str, pa.Table] = {}
-    if ours:
-        _check_complete(file, found, status)
-    else:
-        topics = {number: topic for number, topic in found.topics.items() if number not in found.known}
-        others = foreign_tables(file, topics, found.schemas, found.foreign)
+def _kind(found: Found, known: dict[int, Channel], about: dict[str, str]) -> str:
+    """Return the kind of a log: as it says, or by its channels where that was lost."""
+    if PROVENANCE not in found.metadata and STATUS not in found.metadata:
+        return "foreign"
+    if "kind" in about:
+        return about["kind"]
+    messages = {channel.message for channel in known.values()}
+    if SAMPLE in messages or "vines.v1.BaseMotion" in messages:
+        return "rig"
+    return "orbit" if "vines.v1.Orbit" in messages else "run"
+
+
+def _log(file: Path, found: Found, data: bytes, verdict: _Verdict, tables: dict[int, pa.Table]) -> Log:
+    """Return the log."""
+    about, known = found.metadata.get(RUN, {}), verdict.known
+    kind = _kind(found, known, about)
+    others, unread = foreign_tables(file, verdict.others, found)
+    salvaged = found.metadata.get(RECOVERED, {})
+    remarks = list(verdict.remarks)
+    if unread:
+        remarks.append(f"channels that vines cannot decode (it reads protobuf and JSON): {', '.join(unread)}")
+    if salvaged:
+        remarks.append(f"recovered; lost: {'; '.join(salvaged.get('lost', '').splitlines())}")
     try:
         parameters = {key: float(text) for key, text in found.metadata.get(PARAMETERS, {}).items()}
     except ValueError as unfit:
-        raise LogError(f"{file} holds a parameter that is no number ({unfit}); {_AGAIN}") from None
-    about = found.metadata.get(RUN, {})
-    declaration = found.attachments.get("declaration.toml") if ours else None
-    parts = {channel.message: [] for channel in KINDS.values()}
-    sensors: dict[str, pa.Table] = {}
-    for number, channel in found.known.items():
-        if channel.message == SAMPLE:
-            sensors[channel.key] = table(found.rows.get(number, []), channel)
-        else:
-            parts[channel.message] += found.rows.get(number, [])
+        raise LogError(f"{file} holds a parameter that is no number ({unfit}); {AGAIN}") from None
+    declaration = found.attachments.get("declaration.toml") if kind != "foreign" else None
+    of_message = {channel.message: tables[number] for number, channel in known.items()}
     return Log(
         path=file,
         name=about.get("name", file.stem),
-        kind=about.get("kind", "run") if ours else "foreign",
+        kind=kind,
         provenance=found.metadata.get(PROVENANCE, {}),
         parameters=parameters,
         word=about.get("word", ""),
         attractor=about.get("attractor", ""),
-        declaration=None if declaration is None else declaration.decode(),
-        status=status["status"],
-        recovered=found.metadata.get(RECOVERED, {}),
-        sensors=sensors,
+        declaration=None if declaration is None else declaration.data.decode(),
+        status=verdict.status,
+        recovered=salvaged,
+        remarks=tuple(printable(line) for line in remarks),
+        sensors={channel.key: tables[number] for number, channel in known.items() if channel.message == SAMPLE},
         others=others,
+        encodings={topic.topic: topic.message_encoding for topic in verdict.others.values()},
         sha256=hashlib.sha256(data).hexdigest(),
-        **{channel.key: table(parts[channel.message], channel) for channel in KINDS.values()},
+        **{
+            channel.key: of_message[message] if message in of_message else table(Messages(), channel)
+            for message, channel in KINDS.items()
+        },
     )

@@ -4,18 +4,18 @@ from __future__ import annotations
 
 import re
 import struct
-from collections.abc import Iterator
 from dataclasses import dataclass, field
 from io import BytesIO
 
 from mcap import records
-from mcap.data_stream import ReadDataStream, RecordBuilder
+from mcap.data_stream import ReadDataStream
 from mcap.opcode import Opcode
-from mcap.stream_reader import get_chunk_data_stream
 from mcap.writer import MCAP0_MAGIC
 
+from vines.logs._contents import split
 from vines.logs._frames import frames, summary_start
-from vines.logs._read import BROKEN
+from vines.logs._unpack import Unpacker
+from vines.logs._walk import BROKEN, line_of
 
 __all__ = ["Piece", "Salvage", "salvage"]
 
@@ -34,12 +34,6 @@ class Piece:
     checked: bool
     """Whether a checksum of a chunk or of the summary covers it."""
 
-    def data(self) -> bytes:
-        """Return the bytes of the record."""
-        builder = RecordBuilder()
-        self.record.write(builder)
-        return builder.end()
-
 
 @dataclass
 class Salvage:
@@ -47,14 +41,14 @@ class Salvage:
 
     Attributes
     ----------
-    profile : str
-        Profile that the header names.
+    profile, library : str
+        Profile and program that the header names.
     pieces : list of Piece
         Metadata, attachments, schemas and channels, in their order.
-    chunks : list of list of bytes
-        The message records of each intact chunk, heads included.
+    checked : list of bytes
+        The message records of intact chunks, heads included.
     loose : list of bytes
-        Message records outside chunks, which have no checksum.
+        Message records that no checksum covers: outside chunks, or in chunks that have none.
     lost : list of (int, int, str)
         First byte, byte after the last, and what was lost there.
     ended : bool
@@ -62,8 +56,9 @@ class Salvage:
     """
 
     profile: str = ""
+    library: str = ""
     pieces: list[Piece] = field(default_factory=list)
-    chunks: list[list[bytes]] = field(default_factory=list)
+    checked: list[bytes] = field(default_factory=list)
     loose: list[bytes] = field(default_factory=list)
     lost: list[tuple[int, int, str]] = field(default_factory=list)
     ended: bool = False
@@ -87,11 +82,11 @@ _NAMES: dict[int, str] = {
 }
 
 
-def salvage(data: bytes) -> Salvage:
+def salvage(data: bytes, unpacker: Unpacker) -> Salvage:
     """Go through the bytes of an MCAP file and take what is intact.
 
-    Damage inside a record costs that record; damage to its head costs what lies before the next place at which
-    records follow each other again.
+    A chunk that the unpacker refuses is lost. Damage inside a record costs that record; damage to its head costs what
+    lies before the next place at which records follow each other again.
     """
     found = Salvage()
     at = len(MCAP0_MAGIC)
@@ -106,10 +101,9 @@ def salvage(data: bytes) -> Salvage:
             continue
         opcode, end = step
         try:
-            _take(found, opcode, data[at + 9 : end])
+            _take(found, opcode, data[at + 9 : end], unpacker)
         except BROKEN as broken:
-            said = " ".join(str(broken).split())
-            found.lost.append((at, end, f"{_NAMES.get(Opcode(opcode), 'a record')} ({said})"))
+            found.lost.append((at, end, f"{_NAMES.get(Opcode(opcode), 'a record')} ({line_of(broken)})"))
         at = end
     _from_summary(found, data)
     return found
@@ -152,19 +146,23 @@ def _next(data: bytes, start: int) -> int | None:
     return None
 
 
-def _take(found: Salvage, opcode: int, body: bytes) -> None:
+def _take(found: Salvage, opcode: int, body: bytes, unpacker: Unpacker) -> None:
     """Take one record of the data section."""
     stream = ReadDataStream(BytesIO(body))
     if opcode == Opcode.HEADER:
-        found.profile = records.Header.read(stream).profile
+        header = records.Header.read(stream)
+        found.profile, found.library = header.profile, header.library
     elif opcode in _KINDS:
-        found.pieces.append(Piece(opcode, _KINDS[Opcode(opcode)].read(stream), checked=False))
+        found.pieces.append(_piece(opcode, body, checked=False))
     elif opcode == Opcode.CHUNK:
-        chunk, size = get_chunk_data_stream(records.Chunk.read(stream), validate_crc=True)
-        pieces, messages = _inside(chunk.read(size))
-        found.pieces += pieces
-        if messages:
-            found.chunks.append(messages)
+        chunk = records.Chunk.read(stream)
+        inside = unpacker.unpack(chunk)
+        places, described = split(inside)
+        checked = chunk.uncompressed_crc != 0
+        found.pieces += [_piece(kind, content, checked) for kind, content in described]
+        starts = sorted((start, length) for (_, length), group in places.items() for start in group)
+        messages = [inside[start : start + 9 + length] for start, length in starts]
+        (found.checked if checked else found.loose).extend(messages)
     elif opcode == Opcode.MESSAGE:
         if len(body) < 22:
             raise ValueError("a message record is shorter than its header")
@@ -173,28 +171,16 @@ def _take(found: Salvage, opcode: int, body: bytes) -> None:
         found.ended = True
 
 
-def _inside(data: bytes) -> tuple[list[Piece], list[bytes]]:
-    """Return the schemas and channels in a chunk, and its messages."""
-    pieces: list[Piece] = []
-    messages: list[bytes] = []
-    for start, opcode, body in frames(data, 0, len(data)):
-        if opcode == Opcode.MESSAGE:
-            if len(body) < 22:
-                raise ValueError("a message record is shorter than its header")
-            messages.append(data[start : start + 9 + len(body)])
-        elif opcode in _KINDS:
-            pieces.append(Piece(opcode, _KINDS[Opcode(opcode)].read(ReadDataStream(BytesIO(body))), checked=True))
-    return pieces, messages
+def _piece(opcode: int, body: bytes, checked: bool) -> Piece:
+    return Piece(opcode, _KINDS[Opcode(opcode)].read(ReadDataStream(BytesIO(body))), checked)
 
 
 def _from_summary(found: Salvage, data: bytes) -> None:
     """Add the schemas and channels that an intact summary repeats."""
-    start = summary_start(data)
-    if start is not None:
-        found.pieces += [piece for piece in _repeated(data, start) if piece.opcode in (Opcode.SCHEMA, Opcode.CHANNEL)]
-
-
-def _repeated(data: bytes, start: int) -> Iterator[Piece]:
-    for _, opcode, body in frames(data, start, len(data) - len(MCAP0_MAGIC)):
-        if opcode in (Opcode.SCHEMA, Opcode.CHANNEL):
-            yield Piece(opcode, _KINDS[Opcode(opcode)].read(ReadDataStream(BytesIO(body))), checked=True)
+    place = summary_start(data)
+    if place is not None:
+        found.pieces += [
+            _piece(opcode, body, checked=True)
+            for _, opcode, body in frames(data, *place)
+            if opcode in (Opcode.SCHEMA, Opcode.CHANNEL)
+        ]

@@ -3,6 +3,7 @@ from ._browse import catalogue_of as catalogue_of
 from ._cache import cached_rrd as cached_rrd
 from ._layout import Shown as Shown
 from ._layout import blueprint as blueprint
+from ._remarks import remarks as remarks
 from ._save import save_rrd as save_rrd
 from ._show import screenshot as screenshot
 from ._show import view as view

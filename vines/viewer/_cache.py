@@ -8,14 +8,13 @@ from collections.abc import Sequence
 from importlib.metadata import version
 from pathlib import Path
 
-from vines.errors import FileMissingError
-from vines.logs import read
+from vines.logs import Log, bytes_of_file
 from vines.viewer._save import save_rrd
 
 __all__ = ["cached_rrd"]
 
 
-def cached_rrd(logs: Sequence[str | os.PathLike[str]], folder: Path) -> Path:
+def cached_rrd(logs: Sequence[str | os.PathLike[str] | Log], folder: Path) -> Path:
     """Return a recording of logs from a folder, made if the logs or the layout have changed since.
 
     A recording is named by the places of its logs and by a digest of their bytes, the modules that draw them and the
@@ -23,7 +22,7 @@ def cached_rrd(logs: Sequence[str | os.PathLike[str]], folder: Path) -> Path:
 
     Parameters
     ----------
-    logs : sequence of path-like
+    logs : sequence of path-like or Log
         One run, or several to be shown side by side.
     folder : Path
         Where recordings are kept; made if it is missing.
@@ -37,19 +36,17 @@ def cached_rrd(logs: Sequence[str | os.PathLike[str]], folder: Path) -> Path:
     ViewerError
         If there is nothing to show.
     """
-    paths = [Path(log).resolve() for log in logs]
-    missing = [path for path in paths if not path.is_file()]
-    if missing:
-        raise FileMissingError(f"{missing[0]}: there is no such file")
-    place = hashlib.sha256("\0".join(map(str, paths)).encode()).hexdigest()[:12]
+    paths = [os.path.realpath(log.path if isinstance(log, Log) else log) for log in logs]
+    place = hashlib.sha256("\0".join(paths).encode()).hexdigest()[:12]
     content = hashlib.sha256(f"{version('rerun-sdk')} {_drawing()}".encode())
-    for path in paths:
-        content.update(hashlib.sha256(path.read_bytes()).digest())
+    for log in logs:
+        sha256 = log.sha256 if isinstance(log, Log) else hashlib.sha256(bytes_of_file(Path(log))).hexdigest()
+        content.update(bytes.fromhex(sha256))
     target = folder / f"{place}-{content.hexdigest()[:20]}.rrd"
     if target.is_file():
         return target
     folder.mkdir(parents=True, exist_ok=True)
-    save_rrd([read(path) for path in paths], target)
+    save_rrd(logs, target)
     for other in folder.glob(f"{place}-*.rrd"):
         if other != target:
             other.unlink(missing_ok=True)

@@ -4,14 +4,17 @@ from __future__ import annotations
 
 import contextlib
 import os
+import signal
 import socket
 import subprocess
 import sys
 import tempfile
+import threading
 import time
 from collections.abc import Callable, Iterator
 from importlib.util import find_spec
 from pathlib import Path
+from types import FrameType
 from typing import IO, TYPE_CHECKING
 from urllib.parse import quote
 
@@ -82,7 +85,7 @@ def _shown(what: Path | str) -> None:
             "the viewer needs a display and none is set (DISPLAY, WAYLAND_DISPLAY); "
             "serve a page with --web, write a picture with --png FILE or a recording with --save FILE.rrd"
         )
-    with tempfile.TemporaryFile() as said:
+    with _sigterm_as_interrupt(), tempfile.TemporaryFile() as said:
         command = _command(what, _free_port())
         status = subprocess.run(command, env=_environment(), stdout=said, stderr=said, check=False).returncode
         if status != 0:
@@ -143,9 +146,27 @@ def catalogue(folder: Path) -> Iterator[str]:
 
 
 @contextlib.contextmanager
+def _sigterm_as_interrupt() -> Iterator[None]:
+    """Let SIGTERM do what Ctrl-C does: by itself it would end Python at once and leave the viewer's server behind."""
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+
+    def stop(number: int, frame: FrameType | None) -> None:
+        del number, frame
+        raise KeyboardInterrupt
+
+    before = signal.signal(signal.SIGTERM, stop)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGTERM, before)
+
+
+@contextlib.contextmanager
 def _running(command: list[str], ports: list[int]) -> Iterator[subprocess.Popen[bytes]]:
     """Start a server, wait until it answers on all ports, and end it with the context."""
-    with tempfile.TemporaryFile() as said:
+    with _sigterm_as_interrupt(), tempfile.TemporaryFile() as said:
         process = subprocess.Popen(command, env=_environment(), stdout=said, stderr=said)
         try:
             deadline = time.monotonic() + _START_SECONDS
@@ -167,7 +188,7 @@ def _answers(port: int) -> bool:
 
 
 def _wait(process: subprocess.Popen[bytes]) -> None:
-    """Wait until a server ends; Ctrl-C ends it."""
+    """Wait until a server ends; Ctrl-C and SIGTERM end it."""
     with contextlib.suppress(KeyboardInterrupt):
         process.wait()
 
@@ -205,7 +226,7 @@ def headless(file: Path, size: tuple[int, int], *, laid_out: bool = True) -> Ite
     arguments = ["--headless", "--window-size", f"{size[0]}x{size[1]}"]
     # The viewer's memory is a folder of its own: a layout that someone saved must not alter a picture. What it
     # logs below an error would show as notices over the views.
-    with tempfile.TemporaryFile() as said, tempfile.TemporaryDirectory() as memory:
+    with _sigterm_as_interrupt(), tempfile.TemporaryFile() as said, tempfile.TemporaryDirectory() as memory:
         environment = _environment(XDG_DATA_HOME=memory, XDG_CONFIG_HOME=memory, RUST_LOG="error")
         command = [*_command(file, port), *arguments]
         process = subprocess.Popen(command, env=environment, stdout=said, stderr=said)

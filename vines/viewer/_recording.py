@@ -17,10 +17,12 @@ from vines.errors import ViewerError
 from vines.logs import Log
 from vines.viewer._clock import Clock
 from vines.viewer._curves import curves
+from vines.viewer._foreign import write_foreign
 from vines.viewer._impacts import dial, lanes
 from vines.viewer._layout import Shown, blueprint
 from vines.viewer._overlay import check_overlay, overlaid, send_overlay
-from vines.viewer._rig import send_rig, shown_rig
+from vines.viewer._remarks import is_foreign
+from vines.viewer._rig import is_rig, send_rig, shown_rig
 from vines.viewer._scene import cavity, phase_plane
 from vines.viewer._text import about, send_impact_log
 
@@ -51,13 +53,16 @@ def write_recording(logs: Sequence[Log], out: Path, *, still: bool = False, over
     """
     if not logs:
         raise ViewerError("no log was named; name one or more, as in `vines view quickstart.up`")
+    if overlay:
+        check_overlay(logs)
+    if any(map(is_foreign, logs)):
+        write_foreign(logs, out)
+        return
     roots = _roots([log.name for log in logs])
     shown: list[Shown] = []
     for root, log in zip(roots, logs, strict=True):
         shown.append(_shown(root, log))
     rec = rr.RecordingStream(APPLICATION, recording_id=_identity(logs), send_properties=False)
-    if overlay:
-        check_overlay(logs)
     rec.save(out, default_blueprint=overlaid(shown, still=still) if overlay else blueprint(shown, still=still))
     rec.send_recording_name(", ".join(log.name for log in logs))
     rec.send_property("vines", _properties(logs))
@@ -71,7 +76,7 @@ def write_recording(logs: Sequence[Log], out: Path, *, still: bool = False, over
 
 def _shown(root: str, log: Log) -> Shown:
     """Return what the layout must know of a log."""
-    if log.kind == "rig":
+    if is_rig(log):
         return shown_rig(root, log)
     if not log.states.num_rows:
         raise ViewerError(f"{log.path} holds no states, so there is nothing to show; record the run with samples")
@@ -88,7 +93,7 @@ def _title(log: Log) -> str:
 def _send(rec: rr.RecordingStream, root: str, log: Log) -> None:
     """Send one run."""
     rec.log(f"{root}/about", rr.TextDocument(about(log), media_type=rr.MediaType.MARKDOWN), static=True)
-    if log.kind == "rig":
+    if is_rig(log):
         send_rig(rec, root, log)
         return
     states, impacts = _columns(log.states), _columns(log.impacts)

@@ -13,9 +13,14 @@ from vines.viewer._clock import Clock
 from vines.viewer._layout import Shown
 from vines.viewer._style import BASE, LINE
 
-__all__ = ["send_rig", "shown_rig"]
+__all__ = ["is_rig", "send_rig", "shown_rig"]
 
 _MOTION = {"displacement": "m", "velocity": "m/s", "acceleration": "m/s²"}
+
+
+def is_rig(log: Log) -> bool:
+    """Return whether a log is drawn as one of a rig: as it says, or by what it holds where nothing says so."""
+    return log.kind == "rig" or (log.kind == "foreign" and not log.states.num_rows)
 
 
 def shown_rig(root: str, log: Log) -> Shown:

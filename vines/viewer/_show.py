@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 from vines.errors import ViewerError
 from vines.logs import Log
 from vines.viewer._cache import cached_rrd
+from vines.viewer._remarks import is_foreign
 from vines.viewer._save import logs_of, record, replacing
 
 if TYPE_CHECKING:
@@ -68,10 +69,12 @@ def screenshot(
     with replacing(Path(out)) as partial, tempfile.TemporaryDirectory() as folder:
         recording = Path(folder) / "still.rrd"
         record(runs, recording, still=True, overlay=overlay)
-        with headless(recording, size) as viewer:
+        ours = not any(map(is_foreign, runs))
+        with headless(recording, size, laid_out=ours) as viewer:
             from vines.viewer._clock import SIM_TIME
 
-            viewer.set_time(SIM_TIME, duration=_moment(runs[0]) if at is None else at, play_state="paused")
+            if ours:
+                viewer.set_time(SIM_TIME, duration=_moment(runs[0]) if at is None else at, play_state="paused")
             picture = _at_rest(viewer)
             reports = [
                 f"{view.name}: {report.summary}"
@@ -93,7 +96,7 @@ def view(logs: Sequence[str | os.PathLike[str] | Log], *, cache: Path | None = N
     logs : sequence of path-like or Log
         One run, or several side by side.
     cache : Path, optional
-        Folder where their recording is kept for the next time; paths are needed then.
+        Folder where their recording is kept for the next time.
     overlay : bool
         Whether the curves of all runs are in the same views; such a recording is not kept.
 
@@ -126,7 +129,7 @@ def web(
     logs : sequence of path-like or Log
         One run, or several side by side.
     cache : Path, optional
-        Folder where their recording is kept for the next time; paths are needed then.
+        Folder where their recording is kept for the next time.
     tell : callable
         Called with the line that names the page.
     overlay : bool
@@ -151,9 +154,8 @@ def web(
 @contextmanager
 def _recorded(logs: Sequence[str | os.PathLike[str] | Log], cache: Path | None, *, overlay: bool) -> Iterator[Path]:
     """Give a recording of runs, from the cache if there is one."""
-    paths = [log for log in logs if not isinstance(log, Log)]
-    if cache is not None and len(paths) == len(logs):
-        yield cached_rrd(paths, cache)
+    if cache is not None:
+        yield cached_rrd(logs, cache)
         return
     with tempfile.TemporaryDirectory() as folder:
         recording = Path(folder) / "vines.rrd"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 
 from vines.errors import FileMissingError, UnknownNameError, nearest
@@ -57,9 +58,10 @@ def find_logs(name: str, *, study: Home | None = None) -> list[Path]:
     UnknownNameError
         If there is no such pipeline, stage or log, or if it has not been run.
     """
-    if name.endswith(".mcap") or Path(name).is_file():
-        path = Path(name)
-        if not path.is_file():
+    path = Path(name)
+    # What is no regular file is told as what it is where it is read.
+    if name.endswith(".mcap") or (os.path.lexists(path) and not path.is_dir()):
+        if not os.path.lexists(path):
             raise FileMissingError(
                 f"{name}: there is no such file; 'vines query \"select * from logs\"' lists the logs"
             )

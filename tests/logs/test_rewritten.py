@@ -1,0 +1,259 @@
+"""Another program rewrites a log: its content is read, or refused; never a wrong channel, never a traceback."""
+
+import random
+from pathlib import Path
+
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+from mcap.writer import CompressionType
+
+from tests.logs.conftest import made_up
+from tests.logs.rewriting import rewritten
+from tests.logs.test_recover import TIMES, is_part
+from tests.logs.test_round_trip import same
+from vines import logs
+from vines.errors import LogError
+
+pytestmark = pytest.mark.long(20)
+
+OLDER = Path(__file__).parent / "older"
+"""Logs that vines wrote before they held digests of their content."""
+TOPICS = ("/state", "/impact", "/stick", "/tf", "/tf_static", "/curves", "/impact_log", "/robot_description")
+KEEP = settings(max_examples=25, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+WRITERS = st.fixed_dictionaries(
+    {
+        "compression": st.sampled_from(list(CompressionType)),
+        "chunk_size": st.sampled_from([500, 5000, 1 << 20]),
+        "chunking": st.booleans(),
+        "crcs": st.booleans(),
+        "metadata_last": st.booleans(),
+        "first": st.permutations(TOPICS),
+        "spared": st.integers(0, 3),
+        "library": st.sampled_from(["another program", "vines", ""]),
+        "sequences": st.booleans(),
+    }
+)
+
+
+@pytest.fixture(scope="module")
+def small(run):
+    """Return the arrays of a short run, among them states at one time: before and after an impact."""
+    states = run["states"][:60].copy()
+    states["t"][20:24] = states["t"][20]
+    return {**run, "states": states, "impacts": run["impacts"][:9], "bare": True}
+
+
+@pytest.fixture(scope="module")
+def log(small, tmp_path_factory):
+    return logs.write_run(tmp_path_factory.mktemp("log") / "run.mcap", **small)
+
+
+def equal(log, other):
+    """Assert that two logs hold the same tables, where numbers may be missing (nan)."""
+    for key in (*TIMES, "base"):
+        assert repr(getattr(log, key).to_pylist()) == repr(getattr(other, key).to_pylist())
+    assert set(log.sensors) == set(other.sensors)
+    for name, table in other.sensors.items():
+        assert repr(log.sensors[name].to_pylist()) == repr(table.to_pylist())
+
+
+@KEEP
+@given(how=WRITERS)
+def test_content_that_was_rewritten_is_as_written(small, log, tmp_path, how):
+    file = tmp_path / "other.mcap"
+    file.write_bytes(rewritten(log.read_bytes(), **how))
+    back = logs.read(file)
+    assert back.complete
+    for key in TIMES:
+        same(getattr(back, key), small[key])
+    assert (back.name, back.parameters, back.declaration) == ("made up", small["parameters"], small["declaration"])
+    if back.remarks:  # else the bytes before the status are the same
+        assert "content as written" in back.remarks[0]
+    with pytest.raises(LogError, match=r"is intact.* nothing to recover"):
+        logs.recover(file, tmp_path / "out.mcap")
+
+
+def test_messages_in_any_order_are_put_in_that_of_time(small, log, tmp_path):
+    def shuffled(messages):
+        random.Random(1).shuffle(messages)
+        return messages
+
+    file = tmp_path / "shuffled.mcap"
+    file.write_bytes(rewritten(log.read_bytes(), order=shuffled))
+    assert logs.read(file).complete
+    same(logs.read(file).states, small["states"])
+
+
+@KEEP
+@given(how=WRITERS, kept=st.sets(st.sampled_from(TOPICS[:3]), min_size=1))
+def test_filtered_log_is_read_and_what_is_missing_is_named(small, log, tmp_path, how, kept):
+    file = tmp_path / "filtered.mcap"
+    file.write_bytes(rewritten(log.read_bytes(), keep=lambda topic: topic in kept, **how))
+    back = logs.read(file)
+    assert (back.status, back.complete) == ("filtered", False)
+    for key, topic in zip(TIMES, TOPICS, strict=False):
+        same(getattr(back, key), small[key] if topic in kept else small[key][:0])
+        assert (topic in kept) != any(line.startswith(f"{topic} is missing") for line in back.remarks)
+
+
+def test_cut_by_time_is_not_taken_for_the_whole(small, log, tmp_path):
+    file = tmp_path / "some.mcap"
+    file.write_bytes(rewritten(log.read_bytes(), order=lambda messages: messages[: len(messages) // 2]))
+    back = logs.read(file)
+    assert back.status == "filtered"
+    assert 0 < back.states.num_rows < 60
+    same(back.states, small["states"][: back.states.num_rows])
+    assert any("of 60 messages" in line for line in back.remarks)
+
+
+def test_without_metadata_what_can_be_decoded_is_read_and_the_rest_named(small, log, tmp_path):
+    file = tmp_path / "bare.mcap"
+    file.write_bytes(rewritten(log.read_bytes(), metadata=lambda name: False))
+    back = logs.read(file)
+    assert (back.kind, back.status) == ("foreign", "unknown")
+    same(back.states, small["states"])
+    assert back.remarks[-1].endswith("/curves (cdr), /robot_description (cdr)")
+    assert set(back.others) == {"/tf", "/tf_static", "/impact_log"}
+
+
+def test_other_content_is_damage(log, tmp_path):
+    def changed(messages):
+        schema, channel, message = messages[30]
+        message.data = message.data[:-1] + bytes([message.data[-1] ^ 1])
+        return [*messages[:30], (schema, channel, message), *messages[31:]]
+
+    file = tmp_path / "changed.mcap"
+    file.write_bytes(rewritten(log.read_bytes(), order=changed))
+    with pytest.raises(LogError, match="are not those that were written"):
+        logs.read(file)
+    file.write_bytes(rewritten(log.read_bytes(), order=lambda messages: [*messages, messages[-1]]))
+    with pytest.raises(LogError, match="are not those that were written"):
+        logs.read(file)
+
+
+def two_runs(log, small, folder):
+    """Return logs of two runs, merged by another program: messages of both on channels of one topic."""
+    other = logs.write_run(folder / "b.mcap", **{**small, "name": "another"})
+    return rewritten(log.read_bytes()), rewritten(other.read_bytes(), metadata=lambda name: name == "vines.run")
+
+
+def test_merged_logs_are_not_mixed(log, small, tmp_path):
+    import io
+
+    from mcap.reader import make_reader
+    from mcap.writer import Writer
+
+    stream = io.BytesIO()
+    writer = Writer(stream)
+    writer.start()
+    for data in two_runs(log, small, tmp_path):
+        reader = make_reader(io.BytesIO(data))
+        for each in reader.iter_metadata():
+            writer.add_metadata(each.name, each.metadata)
+        for schema, channel, message in reader.iter_messages(topics=["/state"]):
+            kind = writer.register_schema(schema.name, schema.encoding, schema.data)
+            number = writer.register_channel(channel.topic, channel.message_encoding, kind)
+            writer.add_message(number, message.log_time, message.data, message.publish_time)
+    writer.finish()
+    file = tmp_path / "merged.mcap"
+    file.write_bytes(stream.getvalue())
+    with pytest.raises(LogError, match=r"two records vines\.run that differ"):
+        logs.read(file)
+
+
+@settings(KEEP, max_examples=60)
+@given(how=WRITERS, place=st.floats(0, 1, exclude_max=True), bit=st.integers(0, 7), cut=st.booleans())
+def test_damage_after_rewriting_is_never_a_wrong_channel(small, log, tmp_path, how, place, bit, cut):
+    data = bytearray(rewritten(log.read_bytes(), **how))
+    at = int(place * len(data))
+    if cut:
+        del data[at:]
+    else:
+        data[at] ^= 1 << bit
+    file, out = tmp_path / "hurt.mcap", tmp_path / "hurt.recovered.mcap"
+    out.unlink(missing_ok=True)
+    file.write_bytes(data)
+    for back in filter(None, (or_refused(lambda: logs.read(file)), or_refused(lambda: recovered(file)))):
+        for key in TIMES:
+            table = getattr(back, key)
+            if back.complete:
+                same(table, small[key])
+            else:
+                written = {repr(row) for row in small[key].tolist()}
+                rows = zip(*(table[name].to_pylist() for name in small[key].dtype.names), strict=True)
+                assert {repr(row) for row in rows} <= written
+
+
+def recovered(file):
+    return logs.read(logs.recover(file).path)
+
+
+def or_refused(attempt):
+    """Return what an attempt gives, or None if it is refused in one line."""
+    try:
+        return attempt()
+    except LogError as error:
+        said = str(error)
+    assert said.isprintable()
+    return None
+
+
+def test_rewritten_rig_keeps_each_sensor_to_its_name(tmp_path):
+    """The repair that once called a sensor's samples the motion of the base."""
+    about = {"quantity": "displacement", "unit": "m", "sign": "positive to the right", "rate": "100"}
+    samples = {name: made_up("vines.v1.SensorSample", 40, "t", k) for k, name in enumerate("abcd")}
+    base = made_up("vines.v1.BaseMotion", 30, "t", 9)
+    path = logs.write_rig(
+        tmp_path / "rig.mcap",
+        sensors={name: logs.Sensor(rows, about) for name, rows in samples.items()},
+        **{"base": base, "provenance": {}, "parameters": {}, "name": "rig"},
+    )
+    first = ["/sensor/c", "/sensor/b", "/sensor/a", "/base", "/sensor/d"]
+    whole = rewritten(path.read_bytes(), first=first, chunk_size=3000)
+    for data in (whole, whole[: len(whole) * 2 // 3]):
+        file = tmp_path / "other.mcap"
+        file.write_bytes(data)
+        back = logs.read(file if data is whole else logs.recover(file).path)
+        assert back.kind == "rig"
+        for name, rows in samples.items():
+            assert is_part(back.sensors[name], rows, "t") > (39 if data is whole else 0)
+        is_part(back.base, base, "t")
+
+
+@pytest.mark.parametrize("name", ["run", "rig"])
+def test_older_logs_are_read_and_rewritten_ones_too(name, tmp_path):
+    older = logs.read(OLDER / f"{name}.mcap")
+    assert (older.complete, older.remarks) == (True, ())
+    file = tmp_path / "lz4.mcap"
+    file.write_bytes(rewritten((OLDER / f"{name}.mcap").read_bytes(), library="mcap copy"))
+    back = logs.read(file)
+    assert back.complete
+    assert back.remarks == (
+        "rewritten by 'mcap copy', as many messages as written, for whose content only checksums of that program vouch "
+        "(an older log)",
+    )
+    equal(back, older)
+
+
+@pytest.mark.parametrize("chunking", [True, False])
+def test_older_log_that_was_rewritten_without_checksums_is_not_called_complete(chunking, tmp_path):
+    file = tmp_path / "none.mcap"
+    file.write_bytes(rewritten((OLDER / "run.mcap").read_bytes(), crcs=False, chunking=chunking))
+    back = logs.read(file)
+    assert (back.status, back.complete) == ("unverified", False)
+    assert "nothing vouches" in back.remarks[0]
+
+
+@pytest.mark.parametrize("cut", [1, 8, 60, 8000])
+@pytest.mark.parametrize("name", ["run", "rig"])
+def test_cut_end_of_an_older_log_loses_no_channel(name, cut, tmp_path):
+    """Older logs hold one digest for all schemas of one name: /tf_static and all sensors but the last were lost."""
+    file = tmp_path / "cut.mcap"
+    file.write_bytes((OLDER / f"{name}.mcap").read_bytes()[:-cut])
+    said = logs.recover(file)
+    assert said.lost == ()
+    older, back = logs.read(OLDER / f"{name}.mcap"), logs.read(said.path)
+    equal(back, older)
+    if name == "run":
+        assert "/tf_static: 1 of 1 messages, t 0 to 0" in said.saved

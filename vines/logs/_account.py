@@ -1,0 +1,89 @@
+"""What a salvaged log holds and what it lacks, in words."""
+
+from __future__ import annotations
+
+import struct
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from vines.errors import printable
+from vines.logs._head import Head
+from vines.logs._salvage import Salvage
+
+__all__ = ["Account", "account"]
+
+
+@dataclass(frozen=True)
+class Account:
+    """What was saved and what was lost, a line each, and whether every message that was counted is there."""
+
+    saved: tuple[str, ...]
+    lost: tuple[str, ...]
+    every_message: bool
+
+
+def account(found: Salvage, head: Head, messages: Sequence[bytes], size: int) -> Account:
+    """Return in words what is saved and what is lost.
+
+    Parameters
+    ----------
+    found : Salvage
+        What is intact in the file.
+    head : Head
+        Its descriptions that can be believed.
+    messages : sequence of bytes
+        The message records that are saved.
+    size : int
+        Bytes of the damaged file.
+    """
+    saved, lost = _channels(head, messages)
+    # Without any count the messages that are missing are not known.
+    every_message = bool(head.status) and found.ended and not lost
+    undescribed = sum(not head.describes(_channel(message)) for message in found.checked)
+    if undescribed:
+        lost.append(f"{undescribed} messages whose channel is no longer described")
+    left = len(found.checked) + len(found.loose) - undescribed - len(messages)
+    if left:
+        lost.append(f"{left} messages for which no checksum and no digest vouches")
+    kept = [*head.metadata, *head.attachments]
+    if kept:
+        doubt = [name for name in kept if name in head.unverified]
+        saved.append(f"records: {', '.join(kept)}" + (f" (unverified: {', '.join(doubt)})" if doubt else ""))
+    lost += [f"record {name}: its SHA-256 does not fit, or it is gone" for name in head.lost]
+    lost += [f"bytes {start} to {end - 1}: {what}" for start, end, what in found.lost]
+    if not found.ended:
+        count = "" if head.status else "; how many messages followed is not known"
+        lost.append(f"the end of the file, after byte {size - 1}{count}")
+    if found.loose and not head.ours:
+        saved.append(f"{len(found.loose)} of the messages have no checksum: they are unverified")
+    return Account(tuple(map(printable, saved)), tuple(map(printable, lost)), every_message)
+
+
+def _channel(message: bytes) -> int:
+    return int.from_bytes(message[9:11], "little")
+
+
+def _channels(head: Head, messages: Sequence[bytes]) -> tuple[list[str], list[str]]:
+    """Return a line a channel of what is saved, and of what is lost."""
+    times: dict[int, list[int]] = {}
+    for message in messages:
+        number, time = struct.unpack_from("<H4xQ", message, 9)
+        times.setdefault(number, []).append(time)
+    saved: list[str] = []
+    lost: list[str] = []
+    for number, channel in head.channels.items():
+        if not head.describes(number):
+            continue
+        own = times.get(number, [])
+        written = head.written(channel.topic)
+        span = f", t {min(own) / 1e9:.6g} to {max(own) / 1e9:.6g}" if own else ""
+        of = f" of {written}" if written is not None else ""
+        saved.append(f"{channel.topic}: {len(own)}{of} messages{span}")
+        if written is not None and len(own) != written:
+            lost.append(f"{channel.topic}: {written - len(own)} of {written} messages")
+    here = {channel.topic for number, channel in head.channels.items() if head.describes(number)}
+    for topic in head.status:
+        written = head.written(topic)
+        if topic.startswith("/") and topic not in here and written:
+            lost.append(f"{topic}: {written} of {written} messages, its description is gone")
+    return saved, lost
