@@ -74,9 +74,8 @@ def files_of(project):
                 same = [each for each in there if each.name == path.name] or twins
                 if path.is_file():
                     found[str(path.relative_to(project.data))] = str(same[-1].relative_to(project.data))
-        seen = f"cache/whole/{pin['result']}.json"
-        found[seen] = f"cache/whole/{others[stage]['result']}.json"
-    found["cache/code.json"] = seen
+        found[f"cache/whole/{pin['result']}.json"] = f"cache/whole/{others[stage]['result']}.json"
+    found["cache/code.json"] = next(each for each in found if each.startswith("cache/whole/"))
     return found
 
 

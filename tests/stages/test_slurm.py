@@ -91,7 +91,9 @@ class Queue:
                 continue  # DependencyNeverSatisfied
             last, most = 1, 1
             if "array" in options:
-                last, most = map(int, re.fullmatch(r"1-(\d+)%(\d+)", options["array"]).groups())
+                found = re.fullmatch(r"1-(\d+)%(\d+)", options["array"])
+                assert found, options["array"]
+                last, most = map(int, found.groups())
             assert most >= 1
             self.codes[number] = [
                 self.task(number, job, i, last, preempted=(number, i) in preempt) for i in range(1, last + 1)
@@ -108,6 +110,7 @@ class Queue:
         if count > 1:
             variables |= {"SLURM_ARRAY_TASK_ID": str(i), "SLURM_ARRAY_TASK_COUNT": str(count)}
         environment = {**os.environ, **self.project.environment, **variables}
+        code = -1
         for start in range(2 if preempted else 1):
             assert start == 0 or "requeue" in options
             mode = "a" if options.get("open-mode") == "append" else "w"

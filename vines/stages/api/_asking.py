@@ -137,7 +137,7 @@ def checks(name: str | None = None, *, study: Home | None = None) -> list[dict[s
     from vines.pipeline import available, members
 
     study = study or current()
-    known = {*available(study.root), *study.store.pinned()}
+    known = {*available(study.root), *study.store.readable_pins()[0]}
     if name is not None and name not in known:
         raise UnknownNameError(f"unknown pipeline {name!r}: {nearest(name, known)}")
     where = ""

@@ -138,7 +138,8 @@ def _result(store: Store, name: str) -> Result:
 
     if (Path(name) / "manifest.json").is_file():
         return read_result(Path(name))
-    pinned = {f"{each}.{stage}": pin["result"] for each, pins in store.pinned().items() for stage, pin in pins.items()}
+    every, _ = store.readable_pins()
+    pinned = {f"{each}.{stage}": pin["result"] for each, pins in every.items() for stage, pin in pins.items()}
     if name in pinned:
         return store.result(pinned[name])
     keys: list[Any] = [path.name for path in store.results.glob("*")] if store.results.is_dir() else []

@@ -43,9 +43,11 @@ def report(name: str, out: Path | None = None, *, study: Home | None = None) -> 
     study = study or current()
     store = study.store
     files = available(study.root)
-    if name not in files and name not in store.pinned():
-        raise UnknownNameError(f"unknown pipeline {name!r}: {nearest(name, {*files, *store.pinned()})}")
-    pipelines = stored_pipelines([name], store.pinned(), study.root)
+    pinned, damaged = store.readable_pins()
+    known = {*pinned, *damaged}
+    if name not in files and name not in known:
+        raise UnknownNameError(f"unknown pipeline {name!r}: {nearest(name, {*files, *known})}")
+    pipelines = stored_pipelines([name], known, study.root)
     path = (out or store.data / "reports" / f"{name}.html").absolute()
     if out is not None and not path.parent.is_dir():
         raise FileMissingError(f"{out}: the folder {path.parent} does not exist; make it first")
