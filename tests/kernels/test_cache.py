@@ -69,6 +69,74 @@ def test_only_what_changed_is_compiled_and_never_stale(tmp_path: Path) -> None:
     assert _run(tmp_path, HELPER) == "32.0 []"
 
 
+BODIES = """
+from typing import NamedTuple
+from vines.kernels import by_type, fused_njit, linked_njit, njit
+
+class One(NamedTuple):
+    x: float
+
+class Other(NamedTuple):
+    y: float
+
+@by_type(One)
+@fused_njit
+def inner(of):
+    return 2.0 * of.x
+
+@njit
+def factor(y):
+    return 3.0 * y
+
+@inner.register(Other)
+@njit
+def _inner(of):
+    return factor(of.y)
+
+@njit
+def copied(of):
+    return inner(of) + 1.0
+
+@linked_njit
+def called(of):
+    return copied(of)
+"""
+CALLERS = """
+from helper import One, Other, called
+from vines.kernels import entry_njit
+
+@entry_njit
+def first(x):
+    return called(One(x))
+
+@entry_njit
+def second(x):
+    return called(Other(x)) + 10.0
+"""
+ASK = """
+from vines.kernels import expected
+expected()
+import kernel, helper
+results = kernel.first(1.0), kernel.second(1.0)
+print(results, sum(helper.called.dispatcher.stats.cache_misses.values()),
+      sum(kernel.first.stats.cache_misses.values()) + sum(kernel.second.stats.cache_misses.values()))
+"""
+
+
+def test_a_body_by_type_compiles_again_what_was_compiled_for_its_type(tmp_path: Path) -> None:
+    def ask(helper: str) -> str:
+        return _run(tmp_path, helper, CALLERS, ASK)
+
+    assert ask(BODIES) == "(3.0, 14.0) 2 2"
+    assert ask(BODIES) == "(3.0, 14.0) 0 0"
+    # A body of the other type, and what is copied into it: nothing of the first is compiled.
+    assert ask(BODIES.replace("return factor(of.y)", "return factor(of.y) + 1.0")) == "(3.0, 15.0) 1 0"
+    assert ask(BODIES.replace("3.0 * y", "5.0 * y")) == "(3.0, 16.0) 1 0"
+    assert ask(BODIES.replace("2.0 * of.x", "4.0 * of.x")) == "(5.0, 14.0) 2 0"
+    # Back again: what was kept is that of the last body.
+    assert ask(BODIES) == "(3.0, 14.0) 1 0"
+
+
 def test_a_callee_whose_result_is_of_another_type_compiles_its_caller(tmp_path: Path) -> None:
     assert _run(tmp_path, HELPER).startswith("32.0")
     whole = HELPER.replace("return inner(x) + 1.0", "return 3 if inner(x) > 0.0 else 4")

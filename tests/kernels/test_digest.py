@@ -115,8 +115,7 @@ called, SHIFT = inner, 1.0
 """
 
 
-def test_every_body_by_type_belongs_to_the_digest(tmp_path: Path) -> None:
+def test_bodies_by_type_belong_to_what_is_compiled_for_their_type(tmp_path: Path) -> None:
+    # Which of them a kernel holds is kept beside its machine code: test_cache.
     before = _digest(tmp_path, BY_TYPE, KERNEL)
-    assert _digest(tmp_path, BY_TYPE.replace("def _inner", "# said\ndef _inner"), KERNEL) == before
-    assert _digest(tmp_path, BY_TYPE.replace("3.0 * of.y", "4.0 * of.y"), KERNEL) != before
-    assert _digest(tmp_path, BY_TYPE.replace("2.0 * of.x", "4.0 * of.x"), KERNEL) != before
+    assert _digest(tmp_path, BY_TYPE.replace("3.0 * of.y", "4.0 * of.y"), KERNEL) == before

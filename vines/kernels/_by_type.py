@@ -13,6 +13,8 @@ from numba import types
 from numba.core.typing.templates import AbstractTemplate, infer, infer_global
 from numba.extending import lower_builtin
 
+from vines.kernels._bodies import Body, note_body
+
 __all__ = ["ByType", "by_type"]
 
 
@@ -65,6 +67,10 @@ class ByType:
             body = self._body(arguments[0]) if arguments else None
             if body is None:
                 return None
+            kind = arguments[0].instance_class
+            note_body(
+                Body(self.__module__, self.__name__, body.py_func.__module__, f"{kind.__module__}.{kind.__qualname__}")
+            )
             return template.context.resolve_value_type(body).get_call_type(template.context, arguments, named)
 
         return generic

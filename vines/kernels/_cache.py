@@ -23,6 +23,7 @@ from filelock import FileLock
 from numba.core.caching import CompileResultCacheImpl, FunctionCache, _CacheLocator
 
 from vines.kernels._announcement import announce
+from vines.kernels._bodies import Body, body_digest, gathered, remember, went_into
 from vines.kernels._digest import digest_of
 from vines.kernels._linked import load_symbols, symbols_in
 from vines.kernels._settings import TARGET
@@ -52,6 +53,7 @@ class _Locator(_CacheLocator):
     """Says where the machine code of a function lies, by its module, name and digest."""
 
     def __init__(self, function: FunctionType) -> None:
+        self.function = function
         self._path = CACHE / function.__module__
         self._digest = _DIGEST[function]
 
@@ -74,25 +76,34 @@ class _Locator(_CacheLocator):
 
 
 class _Impl(CompileResultCacheImpl):
-    """Keeps with the machine code of a kernel the symbols that it calls."""
+    """Keeps with the machine code of a kernel the symbols that it calls, and the bodies by type that went into it."""
 
     _locator_classes = [_Locator]  # noqa: RUF012 - the attribute is numba's
 
     def reduce(self, cres: Any) -> Any:
-        return symbols_in(cres.library), super().reduce(cres)
+        bodies = went_into(self._function(), cres.signature.args)
+        return symbols_in(cres.library), [(*body, body_digest(body)) for body in sorted(bodies)], super().reduce(cres)
 
     def rebuild(self, target_context: Any, payload: Any) -> Any:
-        symbols, rest = payload
-        if not load_symbols(symbols):
+        symbols, bodies, rest = payload
+        known = {Body(*each[:-1]): each[-1] for each in bodies}
+        if any(body_digest(body) != digest for body, digest in known.items()) or not load_symbols(symbols):
             return None
-        return super().rebuild(target_context, rest)
+        found = super().rebuild(target_context, rest)
+        if found is not None:
+            remember(self._function(), found.signature.args, known)
+        return found
+
+    def _function(self) -> FunctionType:
+        locator: Any = self.locator
+        return locator.function
 
 
 class _KernelCache(FunctionCache):
     _impl_class = _Impl
 
 
-_UNREADABLE = (OSError, EOFError, UnpicklingError, ImportError, AttributeError)
+_UNREADABLE = (OSError, EOFError, UnpicklingError, ImportError, AttributeError, ValueError)
 """What reading ends in where a file is damaged or forbidden, or holds types that the sources no longer have; the kernel
 is then compiled again."""
 
@@ -166,7 +177,8 @@ class LazyCache:
                 target_context.insert_user_function(found.entry_point, found.fndesc, [found.library])
             else:
                 announce(CACHE)
-                found = compile_it()
+                with gathered(self._function, sig):
+                    found = compile_it()
                 # That it can't be written does no harm.
                 with contextlib.suppress(OSError):
                     self._keep(sig, found)

@@ -10,6 +10,7 @@ from numba import types
 from numba.core.config import _OptLevel
 from numba.core.registry import CPUDispatcher
 
+from vines.kernels._bodies import inherit
 from vines.kernels._cache import LazyCache
 from vines.kernels._linked import Linked
 from vines.kernels._operators import remember_operators
@@ -71,7 +72,10 @@ class _Dispatcher(CPUDispatcher):
     def get_call_template(self, args: Any, kws: Any) -> Any:
         """Return the signature for a call, the same for an argument and for one whose value is known; numba's name."""
         plain = {name: types.unliteral(each) for name, each in dict(kws).items()}
-        return super().get_call_template(tuple(types.unliteral(each) for each in args), plain)
+        found = super().get_call_template(tuple(types.unliteral(each) for each in args), plain)
+        # Compiled or loaded by now; the third of them are the types of its arguments, in their order.
+        inherit(self.py_func, found[2])
+        return found
 
     def __call__(self, *arguments: Any) -> Any:  # pyright: ignore[reportIncompatibleMethodOverride]
         return self.from_python(*arguments)

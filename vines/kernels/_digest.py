@@ -3,7 +3,7 @@
 It is taken from the functions themselves: bytecode, constants, and the values of the globals that they use, through
 every function that is copied into them. A comment, a docstring or a line moved elsewhere changes none of it; a helper
 or a constant changed in another file does. What is called by its symbol (`vines.kernels._linked`) is not followed: its
-code is not in the caller.
+code is not in the caller. Neither are bodies picked by a type, which depend on the call (`vines.kernels._bodies`).
 """
 
 from __future__ import annotations
@@ -82,12 +82,11 @@ def _code(code: types.CodeType, doc: str | None) -> Iterator[str]:
 def _value(name: str, value: Any, code: types.CodeType, seen: dict[int, int]) -> Iterator[str]:
     """Yield what a global stands for: numba freezes it into the machine code."""
     compiled = getattr(value, "py_func", None)
-    bodies = getattr(value, "bodies", None)
     if getattr(value, "by_symbol", False):
         yield f"{name} by symbol {value.symbol_base}"
-    elif isinstance(bodies, dict):
-        for kind in sorted(bodies, key=str):
-            yield from _value(f"{name} of {kind.__module__}.{kind.__qualname__}", bodies[kind], code, seen)
+    elif isinstance(getattr(value, "bodies", None), dict):
+        # Which body goes in, the types of the call say: `vines.kernels._bodies`.
+        yield f"{name} by type {value.__module__}.{value.__name__}"
     elif compiled is not None:
         yield f"{name} with {_stable(value.targetoptions)}"
         yield from _once(compiled, seen)

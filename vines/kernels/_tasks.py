@@ -25,6 +25,7 @@ from typing import Any
 from vines.cores import cores
 from vines.errors import KernelError
 from vines.kernels._announcement import expected
+from vines.kernels._bodies import Body, all_bodies, body_digest
 from vines.kernels._cache import CACHE, asked_for, is_there
 from vines.kernels._settings import numba
 
@@ -58,8 +59,11 @@ def is_warm(task: Task) -> bool:
     """Say whether every kernel that a task needs is compiled for the sources as they are."""
     try:
         needed = json.loads(_record(task).read_text("utf-8"))
-        return all(is_there(module, name) for module, name in needed)
-    except (OSError, ValueError, TypeError):
+        bodies = [(Body(*each[:-1]), each[-1]) for each in needed["bodies"]]
+        return all(is_there(module, name) for module, name in needed["kernels"]) and all(
+            body_digest(body) == digest for body, digest in bodies
+        )
+    except (OSError, ValueError, TypeError, KeyError):
         return False
 
 
@@ -150,5 +154,6 @@ def _do(task: Task) -> None:
     path = _record(task)
     path.parent.mkdir(parents=True, exist_ok=True)
     part = path.with_suffix(f".{os.getpid()}")
-    part.write_text(json.dumps(sorted(asked_for())), "utf-8")
+    bodies = [(*body, body_digest(body)) for body in sorted(all_bodies())]
+    part.write_text(json.dumps({"kernels": sorted(asked_for()), "bodies": bodies}), "utf-8")
     part.replace(path)
