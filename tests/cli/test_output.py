@@ -123,7 +123,7 @@ SENSELESS = {
     "an unknown panel": ('kind = "figure"\nplot = "bifurcation"\nneeds = ["up"]\npanels = ["w_dott"]\n', "'w_dot'"),
     "an unknown claim": ('kind = "check"\nneeds = ["up"]\nclaims = ["fig2_x"]\n', "'fig2_"),
     "a branch of nothing": ('kind = "branch"\nword = "LR"\nparams.A = 0.02\n', "vary.X"),
-    "a record too short": ('kind = "sweep"\nvary.A = [0.015]\nrecord = 1\n', "record is 1, allowed is >= 2"),
+    "a record too short": ('kind = "sweep"\nvary.A = [0.015]\nrecord = 1\n', "record is 1, allowed is record >= 2"),
 }
 
 

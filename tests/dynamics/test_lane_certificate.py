@@ -136,7 +136,11 @@ def test_short_and_smooth_moves_are_certified() -> None:
     assert not stays_inside(1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, math.inf, 1.0)
 
 
-@given(a=st.floats(-1e3, 1e3), b=st.one_of(st.just(0.0), st.floats(-1e3, 1e3)))
+normal = st.floats(-1e3, 1e3, allow_subnormal=False)
+"""The bound of relative error is far above rounding of these, and the margin of the certificate above the others."""
+
+
+@given(a=normal, b=st.one_of(st.just(0.0), normal))
 def test_the_octagon_holds_the_circle(a: float, b: float) -> None:
     with mp.workdps(40):
         length = mp.sqrt(mp.mpf(a) ** 2 + mp.mpf(b) ** 2)

@@ -4,7 +4,7 @@ import pytest
 
 import vines
 from vines.errors import DeclarationError
-from vines.stages import load_pipeline, open_store
+from vines.stages import current, load_pipeline
 
 STUDY = """
 title = "a small study"
@@ -29,7 +29,7 @@ def root(tmp_path, monkeypatch):
 
 
 def page_of(name):
-    store = open_store()
+    store = current().store
     return store.result(store.pins(name)["page"]["result"]).folder / "report.html"
 
 

@@ -25,7 +25,7 @@ from vines.dynamics._flight import (
 )
 from vines.dynamics._impact_law import impact_law_kernel
 from vines.dynamics._random import normal
-from vines.dynamics._scatter_constants import ScatterConstants, ScatterOscillator, added
+from vines.dynamics._scatter_constants import Piece, ScatterConstants, ScatterOscillator, added
 from vines.dynamics._sincos import sincos
 from vines.dynamics._sticking import UNRESOLVED, holds_for, next_release, release_within
 from vines.kernels import fused_njit, linked_njit, loop_njit, njit
@@ -84,7 +84,8 @@ def _turn(o, Omega, ur, ui, pr, pi, qr, qi, held, left, index, tau):
         dr, di = (tr - er) * o.second.er - (ti - ei) * o.second.ei, (tr - er) * o.second.ei + (ti - ei) * o.second.er
     else:
         er, ei, br, bi, dr, di = _factors(o.first.half, o.first.gamma, Omega, tau)
-    return _by_factors((er, ei, fr, fi, br, bi, tr, ti, dr, di), ur, ui, pr, pi, qr, qi, held, left - tau, index)
+    piece = Piece(er, ei, fr, fi, br, bi, tr, ti, dr, di)
+    return _by_factors(piece, ur, ui, pr, pi, qr, qi, held, left - tau, index)
 
 
 @fused_njit
