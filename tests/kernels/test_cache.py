@@ -80,6 +80,16 @@ class Other(NamedTuple):
     y: float
 
 @by_type(One)
+@linked_njit
+def across(of):
+    return 0.0 * of.x
+
+@across.register(Other)
+@linked_njit
+def _across(of):
+    return 0.0 * of.y
+
+@by_type(One)
 @fused_njit
 def inner(of):
     return 2.0 * of.x
@@ -99,7 +109,7 @@ def copied(of):
 
 @linked_njit
 def called(of):
-    return copied(of)
+    return copied(of) + across(of)
 """
 CALLERS = """
 from helper import One, Other, called

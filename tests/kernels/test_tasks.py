@@ -14,11 +14,20 @@ from vines.kernels import Task, compile_tasks
 from vines.stages import load_pipeline, status
 
 WORK = """
-from vines.kernels import entry_njit
+from typing import NamedTuple
+from vines.kernels import by_type, entry_njit, linked_njit
+
+class Number(NamedTuple):
+    value: float
+
+@by_type(Number)
+@linked_njit
+def part(of):
+    return 0.5 * of.value
 
 @entry_njit
 def half(x):
-    return 0.5 * x
+    return part(Number(x))
 
 def work():
     assert half(2.0) == 1.0
@@ -50,7 +59,7 @@ def test_a_task_is_warm_until_one_of_its_kernels_changes(tmp_path: Path) -> None
     assert run()[0] == "True"
     path.write_text(WORK.replace("def half", "# A comment.\ndef half"))
     assert run()[0] == "True"
-    path.write_text(WORK.replace("0.5 * x", "x * 0.5"))
+    path.write_text(WORK.replace("0.5 * of.value", "of.value * 0.5"))
     assert run() == ["False", "halving", "True"]
     # What was recorded by other sources, of a module that has been removed since, is compiled anew.
     (record,) = (tmp_path / "cache").rglob("tasks/half.json")

@@ -8,7 +8,7 @@ import pytest
 
 from tests.project import Project
 
-pytestmark = pytest.mark.long(120)
+pytestmark = pytest.mark.long(50)
 
 DECLARED = """
 [params]
@@ -94,22 +94,33 @@ def named(said):
     return said.returncode in (1, 2, 3) and "vines: " in said.stderr and "Traceback" not in said.stderr
 
 
+def test_every_file_of_the_store_has_a_fault(whole, tmp_path):
+    """Each file one of the faults, each fault some of the files; the full tests give every file every fault."""
+    inject(whole, tmp_path, lambda number: FAULTS[number % len(FAULTS)])
+
+
+@pytest.mark.full
 @pytest.mark.parametrize("fault", FAULTS, ids=lambda each: each.__name__)
-def test_every_file_of_the_store(whole, tmp_path, fault):
+def test_every_file_of_the_store_has_every_fault(whole, tmp_path, fault):
+    inject(whole, tmp_path, lambda number: fault)
+
+
+def inject(whole, tmp_path, fault_of):
     right, answers = (
         contents(whole),
         {sql: whole.vines("query", sql, "--format", "json").stdout for sql in (SQL, OTHER)},
     )
     table = []
     for number, (name, twin) in enumerate(files_of(whole).items()):
+        fault = fault_of(number)
         project = Project(tmp_path / f"{number}")
         shutil.copytree(whole.root, project.root)
         before = (project.data / name).read_bytes()
         fault(project.data / name, project.data / twin)
         if not (project.data / name).exists() or (project.data / name).read_bytes() != before:
-            table.append(f"{name}: {outcome(project, name, right, answers)}")
+            table.append(f"{fault.__name__} {name}: {outcome(project, name, right, answers)}")
         shutil.rmtree(project.root)
-    print("\n".join([fault.__name__, *table]))
+    print("\n".join(table))
 
 
 def outcome(project, name, right, answers):

@@ -31,6 +31,7 @@ class ByType:
 
     def __init__(self, kind: type, kernel: Any) -> None:
         self.bodies: dict[type, Any] = {kind: kernel}
+        self.first = kernel
         self.__name__: str = kernel.__name__
         self.__module__ = kernel.__module__
         self.__doc__ = kernel.__doc__

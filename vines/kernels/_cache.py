@@ -12,7 +12,6 @@ import functools
 import os
 import time
 from collections.abc import Callable, Iterator, Mapping
-from importlib import import_module
 from pathlib import Path
 from pickle import UnpicklingError
 from types import FunctionType
@@ -25,7 +24,7 @@ from numba.core.caching import CompileResultCacheImpl, FunctionCache, _CacheLoca
 from vines.kernels._announcement import announce
 from vines.kernels._bodies import Body, body_digest, gathered, remember, went_into
 from vines.kernels._digest import digest_of
-from vines.kernels._linked import load_symbols, symbols_in
+from vines.kernels._linked import kernel_of, load_symbols, symbols_in
 from vines.kernels._settings import TARGET
 from vines.places import cache_folder
 
@@ -119,7 +118,7 @@ def asked_for() -> set[tuple[str, str]]:
 def is_there(module: str, name: str) -> bool:
     """Say whether a kernel is kept for the sources as they are; one whose module was moved or removed is not."""
     try:
-        kernel = getattr(import_module(module), name, None)
+        kernel = kernel_of(module, name)
     except ModuleNotFoundError:
         return False
     cache = getattr(getattr(kernel, "dispatcher", kernel), "_cache", None)

@@ -22,7 +22,7 @@ from numba.core import cgutils
 from numba.core.typing.templates import signature
 from numba.extending import lower_builtin, type_callable
 
-__all__ = ["Linked", "load_symbols", "symbols_in"]
+__all__ = ["Linked", "kernel_of", "load_symbols", "symbols_in"]
 
 _PREFIX = "vines_kernel_"
 _NAME = re.compile(rf"{_PREFIX}[A-Za-z0-9_]+")
@@ -123,10 +123,16 @@ def load_symbols(symbols: list[tuple[str, str, str, tuple[Any, ...]]]) -> bool:
     if any(_outdated(each) for *_, arguments in symbols for each in arguments):
         return False
     for symbol, module, name, arguments in symbols:
-        kernel = getattr(importlib.import_module(module), name, None)
+        kernel = kernel_of(module, name)
         if not isinstance(kernel, Linked) or kernel.load(arguments)[0] != symbol:
             return False
     return True
+
+
+def kernel_of(module: str, name: str) -> Any:
+    """Return the kernel that a module has under the name of its function; the first body of a name by type."""
+    found = getattr(importlib.import_module(module), name, None)
+    return getattr(found, "first", found)
 
 
 def _outdated(kind: Any) -> bool:
