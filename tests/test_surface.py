@@ -20,6 +20,7 @@ NAMES = [
     "Params",
     "PhysicalParams",
     "Scatter",
+    "Study",
     "Trajectory",
     "VinesError",
     "Word",
@@ -34,6 +35,7 @@ NAMES = [
     "run",
     "settle",
     "simulate",
+    "study",
     "switch_branch",
     "table",
 ]
@@ -103,7 +105,7 @@ KINDS = [
 VIEWS = ["bifurcations", "branches", "checks", "comparisons", "impacts", "logs", "orbits", "points"]
 
 DESIGN = Path(__file__).resolve().parents[2] / "shared" / "DESIGN.md"
-TO_COME = {"figure", "next", "report", "split", "study", "systems", "watch"}
+TO_COME = {"figure", "next", "report", "split", "systems", "watch"}
 """What the design has for the capabilities after this release."""
 
 

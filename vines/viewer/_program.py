@@ -93,7 +93,7 @@ def _shown(what: Path | str) -> None:
 
 
 @contextlib.contextmanager
-def served(what: Path | str) -> Iterator[tuple[str, Callable[[], None]]]:
+def served(what: Path | str) -> Iterator[tuple[str, Callable[[], object]]]:
     """Serve the web viewer on 127.0.0.1, offline; it ends with the context.
 
     Parameters
@@ -104,7 +104,7 @@ def served(what: Path | str) -> Iterator[tuple[str, Callable[[], None]]]:
     Yields
     ------
     tuple of (str, callable)
-        The page to open, and a function that waits until the server ends or is interrupted.
+        The page to open, and a function that waits until the server ends.
 
     Raises
     ------
@@ -116,7 +116,9 @@ def served(what: Path | str) -> Iterator[tuple[str, Callable[[], None]]]:
     recording = isinstance(what, Path)
     with _running(command, [page, data] if recording else [page]) as process, guarded(page) as port:
         source = f"rerun+http://127.0.0.1:{data}/proxy" if recording else what
-        yield f"http://127.0.0.1:{port}/?url={quote(str(source), safe='')}&theme=dark", lambda: _wait(process)
+        # From here on Ctrl-C and SIGTERM are how it is meant to end, also before somebody waits.
+        with contextlib.suppress(KeyboardInterrupt):
+            yield f"http://127.0.0.1:{port}/?url={quote(str(source), safe='')}&theme=dark", process.wait
 
 
 @contextlib.contextmanager
@@ -185,12 +187,6 @@ def _answers(port: int) -> bool:
     with socket.socket() as probe:
         probe.settimeout(1.0)
         return probe.connect_ex(("127.0.0.1", port)) == 0
-
-
-def _wait(process: subprocess.Popen[bytes]) -> None:
-    """Wait until a server ends; Ctrl-C and SIGTERM end it."""
-    with contextlib.suppress(KeyboardInterrupt):
-        process.wait()
 
 
 def _end(process: subprocess.Popen[bytes]) -> None:
