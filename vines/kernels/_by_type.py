@@ -31,7 +31,6 @@ class ByType:
 
     def __init__(self, kind: type, kernel: Any) -> None:
         self.bodies: dict[type, Any] = {kind: kernel}
-        self.first = kernel
         self.__name__: str = kernel.__name__
         self.__module__ = kernel.__module__
         self.__doc__ = kernel.__doc__
@@ -40,6 +39,11 @@ class ByType:
         infer(template)
         infer_global(self, types.Function(template))
         lower_builtin(self, types.VarArg(types.Any))(self._lower)
+
+    @property
+    def first(self) -> Any:
+        """The body that the name was made of, whose function is called as it is."""
+        return next(iter(self.bodies.values()))
 
     def register(self, kind: type) -> Callable[[Any], Any]:
         """Return a decorator that takes a kernel as the body for named tuples of a class.

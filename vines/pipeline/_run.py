@@ -19,7 +19,6 @@ if TYPE_CHECKING:
     from vines.pipeline._engine import Engine
     from vines.pipeline._kinds import Kind
     from vines.pipeline._shard import Shard
-    from vines.store import Pool
 
 __all__ = ["run_pipeline"]
 
@@ -251,18 +250,14 @@ class _Run:
         """Compute what is missing and put the result together; again without the parts that turn out to be damaged."""
         pool = self.store.pool(prepared.pool_key)
         if force and pool.examine():
-            self._discard(pool)
+            self.store.discard_damaged(pool)
         while True:
             try:
                 return self._once(prepared, each, force=force)
             except DamageError:
                 if not pool.examine():
                     raise
-            self._discard(pool)
-
-    def _discard(self, pool: Pool) -> None:
-        with self.store.staging() as trash:
-            pool.discard_damaged(trash)
+            self.store.discard_damaged(pool)
 
     def _once(self, prepared: Prepared, each: StagePlan, *, force: bool) -> StageOutcome:
         from vines.pipeline._gather import put_together

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from functools import partial
+from functools import cached_property, partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from vines.pipeline._demand import demand
+from vines.pipeline._demand import Demand, demand
 from vines.pipeline._engine import Engine
 from vines.pipeline._events import Event, Report
 from vines.pipeline._grid import Grid
@@ -83,7 +83,7 @@ class Sweep:
         self.pool.describe(self.prepared.ingredients.form)
         self.pool.parts()
         if self.pool.damaged:
-            self.mend()
+            self.store.discard_damaged(self.pool)
         settled: Ids | None = None
         while True:
             self._round(settled)
@@ -96,11 +96,6 @@ class Sweep:
             if grid is self.grid:
                 return self._failed
             self.grid = grid
-
-    def mend(self) -> None:
-        """Put away the parts of the pool that are known to be damaged, so that their points are computed again."""
-        with self.store.staging() as trash:
-            self.pool.discard_damaged(trash)
 
     def look(self) -> None:
         """Find out what is missing, as :meth:`compute` does, but compute nothing."""
@@ -157,6 +152,11 @@ class Sweep:
             mine[chain.places] = own
         return mine
 
+    @cached_property
+    def _demand(self) -> Demand:
+        """What is demanded of whoever computes; the same for all tasks."""
+        return demand(self.prepared.ingredients, self.store, self.engine.token)
+
     def _task(self, chunk: Chunk) -> Task:
         stage = self.prepared.stage
         grid = self.grid
@@ -172,7 +172,7 @@ class Sweep:
             broken="a point before it in the carried chain failed" if chunk.broken else "",
             data=self.store.data,
             pool=self.pool.folder,
-            demand=demand(self.prepared.ingredients, self.store, self.engine.token),
+            demand=self._demand,
         )
 
     def _stored(self, done: Done, processes: int) -> None:

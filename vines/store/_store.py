@@ -199,6 +199,11 @@ class Store:
 
         return Pool(self.pools / key)
 
+    def discard_damaged(self, pool: Pool) -> None:
+        """Put away the parts of a pool that are known to be damaged, so that their points are computed again."""
+        with self.staging() as trash:
+            pool.discard_damaged(trash)
+
     def pins(self, pipeline: str) -> dict[str, dict[str, Any]]:
         """Return the pin of each stage of a pipeline; empty if it was never run.
 
