@@ -41,9 +41,11 @@ def linear_kernel(c, span, flip, side, tau, R):
     N = tau.size
     gamma = c.free.gamma
     s = complex(-c.free.half, gamma)
-    weight = 1.0 / (1.0 - flip * cmath.exp(s * span))
-    x = new_matrix(N + 1, N + 3)
-    v = new_matrix(N, N + 3)
+    around = cmath.exp(s * span)
+    weight = 1.0 / (1.0 - flip * around)
+    # Rows over the kicks and (a, b, 1): oscillator, its velocity, and the ball after each impact.
+    rows = new_matrix(3 * N + 1, N + 3)
+    x, v, ball = rows[: N + 1], rows[N + 1 : 2 * N + 1], rows[2 * N + 1 :]
     t = 0.0
     times = new_vector(N)
     for j in range(N):
@@ -55,7 +57,9 @@ def linear_kernel(c, span, flip, side, tau, R):
         x[j, N], x[j, N + 1], x[j, N + 2] = cosine, -sine, 0.0
         v[j, N], v[j, N + 1], v[j, N + 2] = -c.Omega * sine, -c.Omega * cosine, 0.0
         for k in range(N):
-            if j > k:
+            if j == k:
+                kernel = flip * weight * around
+            elif j > k:
                 kernel = weight * cmath.exp(s * (times[j] - times[k]))
             else:
                 kernel = flip * weight * cmath.exp(s * (times[j] - times[k] + span))
@@ -63,8 +67,6 @@ def linear_kernel(c, span, flip, side, tau, R):
             v[j, k] = (s * kernel).imag / gamma
     for k in range(N + 3):
         x[N, k] = flip * x[0, k]
-    # The ball after each impact, as a row over the kicks and (a, b, 1).
-    ball = new_matrix(N, N + 3)
     factor = 1.0
     for j in range(N):
         step = (flip * side[0] if j == N - 1 else side[j + 1]) - side[j]
