@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from functools import lru_cache
 
 import numpy as np
 
@@ -147,6 +148,7 @@ KINDS = {channel.message: channel for channel in (*CHANNELS, ORBIT, BASE)}
 """Messages of which a log has one channel at most."""
 
 
+@lru_cache(64)
 def message_header(payload: int) -> np.dtype:
     """Return the dtype of an MCAP message record with a payload of so many bytes, which is left as a gap.
 
@@ -194,7 +196,7 @@ def as_messages(array: np.ndarray, channel: Channel) -> np.ndarray:
     for name in dtype.names or ():
         values = array[name]
         try:
-            fitting[name] = values.astype(dtype[name], casting="same_kind")
+            fitting[name] = values.astype(dtype[name], casting="same_kind", copy=False)
         except TypeError:
             raise SchemaError(
                 f"field {name!r} of {channel.key} has type {values.dtype}; {dtype[name]} is needed"

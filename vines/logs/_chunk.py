@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import struct
+import threading
 import zlib
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -17,6 +18,8 @@ from vines.logs._digests import entries, entry
 from vines.logs._pack import pack
 
 __all__ = ["Packed", "packed", "repacked"]
+
+_own = threading.local()
 
 
 @dataclass(frozen=True)
@@ -31,68 +34,77 @@ class Packed:
         The message index record of each channel.
     counts : dict of int to int
         Messages of each channel.
-    contents : dict of int to bytes
+    contents : mapping of int to bytes or memoryview
         What the messages of each channel say, for the digest of its content.
     """
 
     record: records.Chunk
     indexes: dict[int, bytes]
     counts: dict[int, int]
-    contents: dict[int, bytes]
+    contents: Mapping[int, bytes | memoryview]
 
 
 def packed(parts: Sequence[Rows]) -> Packed:
     """Pack and compress rows as one chunk; free of shared state, so that several can be made at once."""
-    blocks = [pack(rows) for rows in parts]
     times = np.concatenate([rows.times for rows in parts])
-    numbers = np.repeat([rows.channel.number for rows in parts], [len(rows) for rows in parts])
     sizes = np.repeat([rows.width for rows in parts], [len(rows) for rows in parts])
-    contents = {rows.channel.number: entries(block).tobytes() for rows, block in zip(parts, blocks, strict=True)}
-    if len(parts) == 1:
-        return _closed(blocks[0].tobytes(), numbers, times, sizes, contents)
-    messages = [message for block in blocks for message in _split(block)]
     order = np.argsort(times, kind="stable")
-    data = b"".join([messages[place] for place in order.tolist()])
-    return _closed(data, numbers[order], times[order], sizes[order], contents)
-
-
-def _split(block: np.ndarray) -> list[bytes]:
-    data, width = block.tobytes(), block.shape[1]
-    return [data[start : start + width] for start in range(0, len(data), width)]
+    offsets = np.empty(len(times), np.int64)
+    offsets[order] = np.cumsum(sizes[order]) - sizes[order]
+    data = np.empty(int(sizes.sum()), np.uint8)
+    contents: dict[int, bytes | memoryview] = {}
+    places: dict[int, tuple[np.ndarray, np.ndarray]] = {}
+    start = 0
+    for rows in parts:
+        block, number = pack(rows), rows.channel.number
+        at = offsets[start : start + len(rows)]
+        # Whole records as the items of an array that begins one at each byte: put down many at a time.
+        record = np.dtype(f"V{rows.width}")
+        np.ndarray(len(data) - rows.width + 1, record, data, strides=(1,))[at] = block.view(record)[:, 0]
+        contents[number], places[number] = entries(block).data, (rows.times, at)
+        start += len(rows)
+    return _closed(data.data, places, contents)
 
 
 def repacked(messages: Sequence[bytes]) -> Packed:
     """Return message records, whole and with their heads and in the order of time, as one chunk."""
     said: dict[int, list[bytes]] = {}
-    heads = [struct.unpack_from("<H4xQ", message, 9) for message in messages]
-    for (number, _), message in zip(heads, messages, strict=True):
+    places: dict[int, list[tuple[int, int]]] = {}
+    offset = 0
+    for message in messages:
+        number, time = struct.unpack_from("<H4xQ", message, 9)
         said.setdefault(number, []).append(entry(message))
-    numbers, times = (np.array(each) for each in zip(*heads, strict=True))
-    sizes = np.array([len(message) for message in messages])
+        places.setdefault(number, []).append((time, offset))
+        offset += len(message)
     contents = {number: b"".join(each) for number, each in said.items()}
-    return _closed(b"".join(messages), numbers, times, sizes, contents)
+    indexed = {number: np.array(each, np.uint64) for number, each in places.items()}
+    return _closed(b"".join(messages), {number: (each[:, 0], each[:, 1]) for number, each in indexed.items()}, contents)
 
 
 def _closed(
-    data: bytes, numbers: np.ndarray, times: np.ndarray, sizes: np.ndarray, contents: dict[int, bytes]
+    data: bytes | memoryview,
+    places: Mapping[int, tuple[np.ndarray, np.ndarray]],
+    contents: Mapping[int, bytes | memoryview],
 ) -> Packed:
-    """Return messages as a chunk, given the channel, log time and length of each in their order."""
-    offsets = np.cumsum(sizes) - sizes
-    indexes: dict[int, bytes] = {}
-    counts: dict[int, int] = {}
-    for number in sorted(contents):
-        own = numbers == number
-        indexes[number] = _index(number, times[own], offsets[own])
-        counts[number] = int(own.sum())
+    """Return messages as a chunk, given log times and offsets of those of each channel in their order."""
     record = records.Chunk(
         compression="zstd",
-        data=zstandard.ZstdCompressor(level=3).compress(data),
-        message_start_time=int(times.min()),
-        message_end_time=int(times.max()),
+        data=_compressed(data),
+        message_start_time=min(int(times[0]) for times, _ in places.values()),
+        message_end_time=max(int(times[-1]) for times, _ in places.values()),
         uncompressed_crc=zlib.crc32(data),
         uncompressed_size=len(data),
     )
+    indexes = {number: _index(number, *places[number]) for number in sorted(places)}
+    counts = {number: len(times) for number, (times, _) in places.items()}
     return Packed(record, indexes, counts, contents)
+
+
+def _compressed(data: bytes | memoryview) -> bytes:
+    """Compress with the compressor of this thread: making one takes about as long as compressing a chunk."""
+    if not hasattr(_own, "compressor"):
+        _own.compressor = zstandard.ZstdCompressor(level=3)
+    return _own.compressor.compress(data)
 
 
 def _index(number: int, times: np.ndarray, offsets: np.ndarray) -> bytes:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import struct
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -20,7 +20,7 @@ _HEAD = struct.Struct("<BQH")
 _MESSAGE = int(Opcode.MESSAGE)
 _NO_MESSAGE = range(Opcode.HEADER, Opcode.DATA_END + 1)
 
-Places = dict[tuple[int, int], list[int]]
+Places = Mapping[tuple[int, int], Sequence[int] | np.ndarray]
 """Where messages begin, by channel and length."""
 
 
@@ -74,23 +74,26 @@ class Messages:
         return sha.hexdigest()
 
 
-def split(data: bytes) -> tuple[Places, list[tuple[int, bytes]]]:
+def split(data: bytes, indexed: Sequence[np.ndarray] = ()) -> tuple[Places, list[tuple[int, bytes]]]:
     """Return where the messages of a chunk begin, and its schemas and channels as opcode and content.
+
+    Parameters
+    ----------
+    data : bytes
+        The records of a chunk.
+    indexed : sequence of numpy.ndarray of uint64
+        Where each of its indexes says that messages begin. They are not believed: only if the messages there are of one
+        channel and length for each, and fill the chunk without a gap, need it not be gone through record by record.
 
     Raises
     ------
     ValueError
         If a record is longer than the chunk, or of a kind that a chunk cannot hold, such as a chunk.
     """
-    if len(data) >= 31:
-        opcode, length, number = _HEAD.unpack_from(data)
-        size = 9 + length
-        # Most chunks of a rig hold messages of one channel and length in a row.
-        if opcode == Opcode.MESSAGE and length >= 22 and len(data) % size == 0:
-            heads = np.frombuffer(data, message_header(length - 22))
-            if ((heads["opcode"] == opcode) & (heads["length"] == length) & (heads["channel"] == number)).all():
-                return {(number, length): list(range(0, len(data), size))}, []
-    places: Places = {}
+    filling = _filling(data, indexed)
+    if filling is not None:
+        return filling, []
+    places: dict[tuple[int, int], list[int]] = {}
     described: list[tuple[int, bytes]] = []
     start = 0
     size = len(data)
@@ -103,11 +106,7 @@ def split(data: bytes) -> tuple[Places, list[tuple[int, bytes]]]:
         if opcode == _MESSAGE:
             if length < 22:
                 raise ValueError("a message record is shorter than its header")
-            key = (number, length)
-            if key in places:
-                places[key].append(start)
-            else:
-                places[key] = [start]
+            places.setdefault((number, length), []).append(start)
         elif opcode in (Opcode.SCHEMA, Opcode.CHANNEL):
             described.append((opcode, data[start + 9 : end]))
         elif opcode in _NO_MESSAGE:
@@ -116,15 +115,43 @@ def split(data: bytes) -> tuple[Places, list[tuple[int, bytes]]]:
     return places, described
 
 
+def _filling(data: bytes, indexed: Sequence[np.ndarray]) -> Places | None:
+    """Return where messages begin if those that are indexed are alike in each index, and all that is in a chunk."""
+    places: dict[tuple[int, int], np.ndarray] = {}
+    for starts in indexed:
+        if not len(starts) or int(starts.max()) + 31 > len(data):
+            return None
+        opcode, length, number = _HEAD.unpack_from(data, int(starts[0]))
+        if opcode != _MESSAGE or length < 22 or (number, length) in places:
+            return None
+        # The 11 bytes of opcode, length and channel as two numbers that overlap.
+        for offset in (0, 3):
+            heads = np.ndarray(len(data) - 10, "<u8", data, offset, strides=(1,))[starts]
+            if (heads != heads[0]).any():
+                return None
+        places[number, length] = starts.astype(np.int64)
+    if not places:
+        return None
+    begin = np.concatenate(list(places.values()))
+    end = begin + np.repeat([9 + length for _, length in places], [len(starts) for starts in places.values()])
+    order = np.argsort(begin, kind="stable")
+    begin, end = begin[order], end[order]
+    return places if begin[0] == 0 and end[-1] == len(data) and (end[:-1] == begin[1:]).all() else None
+
+
 def gather(into: Mapping[int, Messages], data: bytes, places: Places, before: int) -> None:
     """Add messages of a piece of a file to those of their channels."""
     raw = np.frombuffer(data, np.uint8)
     for (number, length), starts in places.items():
-        at = np.array(starts, np.int64)
+        at = np.asarray(starts, np.int64)
         size = 9 + length
         if len(at) * size == len(data):
             block = raw.reshape(-1, size)
+        elif len(at) == 1:
+            block = raw[at[0] : at[0] + size].copy().reshape(1, size)
         else:
-            block = np.lib.stride_tricks.sliding_window_view(raw, size)[at]
+            # Whole records as the items of an array that begins one at each byte: taken many at a time.
+            taken = np.ndarray(len(data) - size + 1, f"V{size}", data, strides=(1,))[at]
+            block = taken.view(np.uint8).reshape(-1, size)
         into[number].blocks.append(block)
         into[number].places.append(before + at)

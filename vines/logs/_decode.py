@@ -17,18 +17,18 @@ if TYPE_CHECKING:
 __all__ = ["decode", "differing_fields", "table"]
 
 
-def decode(payloads: np.ndarray, channel: Channel) -> np.ndarray:
-    """Return messages of equal length, one a row of bytes, as a structured array."""
+def decode(messages: np.ndarray, channel: Channel) -> np.ndarray:
+    """Return message records of equal length, one a row of bytes, as a structured array."""
     layout = wire_format(channel.message)
-    count, size = payloads.shape
-    if size == len(layout.blank):
-        blank = np.frombuffer(layout.blank, np.uint8)
-        if (payloads[:, layout.tags] == blank[layout.tags]).all():
-            return np.ascontiguousarray(payloads).view(layout.dtype)[:, 0]
+    count, size = messages.shape
+    if size == 31 + len(layout.blank):
+        tags = 31 + layout.tags
+        if (messages[:, tags] == np.frombuffer(layout.blank, np.uint8)[layout.tags]).all():
+            return np.ndarray(count, layout.dtype, messages, offset=31, strides=(size,))
     kind = message_class(channel.message)
     rows = np.empty(count, numpy_dtype(channel.message))
     for place in range(count):
-        message = kind.FromString(payloads[place].tobytes())
+        message = kind.FromString(messages[place, 31:].tobytes())
         rows[place] = tuple(getattr(message, name) for name in rows.dtype.names or ())
     return rows
 
@@ -37,7 +37,7 @@ def table(messages: Messages, channel: Channel) -> pa.Table:
     """Return the messages of a channel as a table, in the order of time."""
     import pyarrow as pa
 
-    parts = [decode(block[:, 31:], channel) for block in messages.blocks]
+    parts = [decode(block, channel) for block in messages.blocks]
     order = messages.order()
     dtype, notes = numpy_dtype(channel.message), field_notes(channel.message)
     columns = [

@@ -7,12 +7,13 @@ import zlib
 from collections.abc import Iterator
 from pathlib import Path
 
+import numpy as np
 from mcap.opcode import Opcode
 from mcap.writer import MCAP0_MAGIC
 
 from vines.errors import LogError
 
-__all__ = ["data_section", "frames", "summary_start"]
+__all__ = ["data_section", "frames", "indexed", "summary_start"]
 
 _FOOTER = struct.Struct("<BQQQI")
 
@@ -33,6 +34,18 @@ def frames(data: bytes, start: int, stop: int) -> Iterator[tuple[int, int, bytes
             raise ValueError(f"a record at byte {start} is longer than the file")
         yield start, opcode, data[start + 9 : start + 9 + length]
         start += 9 + length
+
+
+def indexed(data: bytes, start: int, stop: int) -> list[np.ndarray]:
+    """Return where each of the message indexes at a place, behind a chunk, says that messages begin in it."""
+    offsets: list[np.ndarray] = []
+    while start + 15 <= stop and data[start] == Opcode.MESSAGE_INDEX:
+        (length,) = struct.unpack_from("<Q", data, start + 1)
+        if start + 9 + length > stop:
+            break
+        offsets.append(np.frombuffer(data, "<u8", 2 * (max(0, length - 6) // 16), start + 15)[1::2])
+        start += 9 + length
+    return offsets
 
 
 def data_section(file: Path, data: bytes, remedy: str) -> tuple[int, int]:

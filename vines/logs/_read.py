@@ -7,7 +7,6 @@ at a time; what was packed otherwise (by another writer of the same schema) goes
 
 from __future__ import annotations
 
-import hashlib
 import os
 import stat
 from collections import Counter
@@ -174,7 +173,7 @@ def assemble(file: Path, data: bytes, max_chunk: int = CHUNK_LIMIT) -> Log:
     try:
         known = _known(file, found)
         tables = {number: table(found.messages[number], channel) for number, channel in known.items()}
-        return _log(file, found, data, _checked(file, found, known), tables)
+        return _log(file, found, _checked(file, found, known), tables)
     except LogError:
         raise
     except BROKEN as broken:
@@ -258,7 +257,7 @@ def _kind(found: Found, known: dict[int, Channel], about: dict[str, str]) -> str
     return "orbit" if "vines.v1.Orbit" in messages else "run"
 
 
-def _log(file: Path, found: Found, data: bytes, verdict: _Verdict, tables: dict[int, pa.Table]) -> Log:
+def _log(file: Path, found: Found, verdict: _Verdict, tables: dict[int, pa.Table]) -> Log:
     """Return the log."""
     about, known = found.metadata.get(RUN, {}), verdict.known
     kind = _kind(found, known, about)
@@ -290,7 +289,7 @@ def _log(file: Path, found: Found, data: bytes, verdict: _Verdict, tables: dict[
         sensors={channel.key: tables[number] for number, channel in known.items() if channel.message == SAMPLE},
         others=others,
         encodings={topic.topic: topic.message_encoding for topic in verdict.others.values()},
-        sha256=hashlib.sha256(data).hexdigest(),
+        sha256=found.sha256,
         **{
             channel.key: of_message[message] if message in of_message else table(Messages(), channel)
             for message, channel in KINDS.items()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import zlib
+from contextlib import suppress
 
 import lz4.frame
 import zstandard
@@ -33,6 +34,7 @@ class Unpacker:
     def __init__(self, size: int, limit: int = CHUNK_LIMIT):
         self._limit = limit
         self._left = max(limit, _RATIO * size)
+        self._zstd = zstandard.ZstdDecompressor()
 
     def unpack(self, chunk: records.Chunk) -> bytes:
         """Return the records of a chunk.
@@ -51,7 +53,7 @@ class Unpacker:
                 f"{what} to more than the {min(self._limit, self._left) / _MIB:.0f} MiB that are allowed "
                 f"({size / _MIB:.0f} MiB are declared); if you trust the file, allow more with --max-chunk MIB"
             )
-        data = _decompressed(chunk, size)
+        data = self._decompressed(chunk, size)
         if len(data) != size:
             more = "more than" if len(data) > size else f"{len(data)} bytes instead of"
             raise ValueError(f"a chunk unpacks to {more} the {size} bytes that it declares")
@@ -60,17 +62,19 @@ class Unpacker:
         self._left -= size
         return data
 
-
-def _decompressed(chunk: records.Chunk, size: int) -> bytes:
-    """Return a chunk unpacked, or one byte more than was declared if there is more."""
-    if chunk.compression == "":
-        return chunk.data
-    if chunk.compression == "zstd":
-        with zstandard.ZstdDecompressor().stream_reader(chunk.data, read_across_frames=True) as stream:
-            return stream.read(size + 1)
-    if chunk.compression == "lz4":
-        return lz4.frame.LZ4FrameDecompressor().decompress(chunk.data, max_length=size + 1)
-    raise ChunkError(
-        f"its chunks are compressed as {chunk.compression!r}, which vines does not know (it reads zstd, lz4 and none); "
-        "rewrite the file with one of these, as with `mcap compress`"
-    )
+    def _decompressed(self, chunk: records.Chunk, size: int) -> bytes:
+        """Return a chunk unpacked, or one byte more than was declared if there is more."""
+        if chunk.compression == "":
+            return chunk.data
+        if chunk.compression == "zstd":
+            if chunk.data and zstandard.frame_content_size(chunk.data) == size:
+                with suppress(zstandard.ZstdError):  # of several frames, which a stream reads
+                    return self._zstd.decompress(chunk.data, allow_extra_data=False)
+            with self._zstd.stream_reader(chunk.data, read_across_frames=True) as stream:
+                return stream.read(size + 1)
+        if chunk.compression == "lz4":
+            return lz4.frame.LZ4FrameDecompressor().decompress(chunk.data, max_length=size + 1)
+        raise ChunkError(
+            f"its chunks are compressed as {chunk.compression!r}, which vines does not know (it reads zstd, lz4 and "
+            "none); rewrite the file with one of these, as with `mcap compress`"
+        )

@@ -19,8 +19,8 @@ from mcap.opcode import Opcode
 
 from vines.errors import ChunkError, LogError
 from vines.logs._channels import STATUS
-from vines.logs._contents import Messages, Places, gather, split
-from vines.logs._frames import data_section, frames
+from vines.logs._contents import Messages, gather, split
+from vines.logs._frames import data_section, frames, indexed
 from vines.logs._unpack import Unpacker
 
 __all__ = ["AGAIN", "BROKEN", "Found", "line_of", "walk"]
@@ -50,6 +50,8 @@ class Found:
         By their numbers in the file.
     messages : dict of int to Messages
         By the number of their channel.
+    sha256 : str
+        Digest of the file.
     sha_fits : bool or None
         Whether the SHA-256 in the status is that of the bytes before it; None if there is none.
     covered : bool
@@ -62,6 +64,7 @@ class Found:
     schemas: dict[int, records.Schema] = field(default_factory=dict)
     topics: dict[int, records.Channel] = field(default_factory=dict)
     messages: defaultdict[int, Messages] = field(default_factory=lambda: defaultdict(Messages))
+    sha256: str = ""
     sha_fits: bool | None = None
     covered: bool = True
 
@@ -112,8 +115,9 @@ def _walk(file: Path, data: bytes, unpacker: Unpacker) -> Found:
         (crc,) = struct.unpack_from("<I", data, stop - 4)
         if crc and crc != zlib.crc32(memoryview(data)[: stop - 13]):
             raise LogError(f"{file} is damaged: the checksum of its data does not fit; {AGAIN}")
+    sha, hashed = hashlib.sha256(), 0
     finished = False
-    alone: Places = {}
+    alone: dict[tuple[int, int], list[int]] = {}
     # Grows with every piece, so that places in chunks and outside of them follow each other.
     before = 0
     for place, opcode, body in frames(data, start, stop):
@@ -132,13 +136,15 @@ def _walk(file: Path, data: bytes, unpacker: Unpacker) -> Found:
             chunk = records.Chunk.read(ReadDataStream(BytesIO(body)))
             inside = unpacker.unpack(chunk)
             found.covered = found.covered and (crc != 0 or chunk.uncompressed_crc != 0)
-            places, described = split(inside)
+            places, described = split(inside, indexed(data, place + 9 + len(body), stop))
             for kind, content in described:
                 _take(found, kind, content)
             gather(found.messages, inside, places, before)
             before += len(inside)
         elif opcode == Opcode.METADATA:
-            _metadata(file, found, data, place, body)
+            sha.update(memoryview(data)[hashed:place])
+            hashed = place
+            _metadata(file, found, body, sha.hexdigest())
         elif opcode == Opcode.DATA_END:
             finished = True
         else:
@@ -146,13 +152,16 @@ def _walk(file: Path, data: bytes, unpacker: Unpacker) -> Found:
     if not finished:
         raise LogError(f"{file} is cut short: its data section has no end; {AGAIN}")
     gather(found.messages, data, alone, before)
+    sha.update(memoryview(data)[hashed:])
+    found.sha256 = sha.hexdigest()
     undescribed = sorted(set(found.messages) - set(found.topics))
     if undescribed:
         raise ValueError(f"a message belongs to channel {undescribed[0]}, which is not described")
     return found
 
 
-def _metadata(file: Path, found: Found, data: bytes, place: int, body: bytes) -> None:
+def _metadata(file: Path, found: Found, body: bytes, sha256: str) -> None:
+    """Take a metadata record, given the SHA-256 of what stands before it."""
     entry = records.Metadata.read(ReadDataStream(BytesIO(body)))
     if entry.name.startswith("vines.") and found.metadata.get(entry.name, entry.metadata) != entry.metadata:
         raise LogError(
@@ -162,7 +171,7 @@ def _metadata(file: Path, found: Found, data: bytes, place: int, body: bytes) ->
     found.metadata[entry.name] = entry.metadata
     written = entry.metadata.get("sha256")
     if entry.name == STATUS and written:
-        found.sha_fits = written == hashlib.sha256(memoryview(data)[:place]).hexdigest()
+        found.sha_fits = written == sha256
 
 
 def _take(found: Found, opcode: int, body: bytes) -> None:
