@@ -21,8 +21,10 @@ __all__ = [
     "flown",
     "forced_fifth",
     "fourth_bound",
+    "free_ball",
     "modulus",
     "phasors",
+    "pull",
     "sixth",
     "slow_growth",
     "terms",
@@ -185,6 +187,20 @@ def forced_fifth(c, ur, ui, gr, gi):
 def terms(o, ur, ui, gr, gi):
     """Return the size of the terms of which a gap is the sum, the half-width of the cavity among them."""
     return 1.0 + abs(ur) + abs(ui) + abs(gr) + abs(gi)
+
+
+@by_type(Constants)
+@fused_njit
+def free_ball(c, v2, tau):
+    """Return how far a free ball comes in a time tau that begins with the velocity v2, and its velocity then."""
+    return v2 * tau, v2
+
+
+@by_type(Constants)
+@fused_njit
+def pull(c, a):
+    """Return the acceleration of a wall that moves with x1'' = a, against a free ball: w''."""
+    return a
 
 
 @fused_njit

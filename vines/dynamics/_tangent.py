@@ -13,16 +13,17 @@ import numpy as np
 import numpy.typing as npt
 
 from vines.dynamics._advance import IMPACT, KIND, MODE, PHASE, STICK, TAU, TIME, V1, V2, X1
-from vines.dynamics._constants import constants
+from vines.dynamics._constants import Constants, constants
 from vines.dynamics._flight import decay, derivatives, phasors
 from vines.dynamics._impact_law import after_impact_kernel
 from vines.dynamics._sincos import sincos
 from vines.dynamics._trajectory import Trajectory
 from vines.errors import StateError
-from vines.kernels import fused_njit, identity, linked_njit, zero_matrix, zero_vector
+from vines.kernels import by_type, fused_njit, identity, linked_njit, njit, zero_matrix, zero_vector
 
 __all__ = [
     "DEAD",
+    "directions",
     "flow_basis",
     "jump_basis",
     "log_growth",
@@ -38,9 +39,17 @@ DEAD = 1e-150
 """Growth below which a direction counts as gone: sticking removes it exactly."""
 
 
+@by_type(Constants)
+@njit
+def directions(c):
+    """Return a tuple as long as a disturbance: the numbers of the state that are not given by the time."""
+    return 0, 0, 0, 0
+
+
+@by_type(Constants)
 @fused_njit
 def flow_basis(c, mode, tau, Y):
-    """Carry four disturbances, the columns of Y, over a time tau between events."""
+    """Carry the disturbances that are the columns of Y over a time tau between events."""
     o = c.stuck if mode != 0.0 else c.free
     size = decay(o.half * tau)
     sine, cosine = sincos(o.gamma * tau)
@@ -58,6 +67,7 @@ def flow_basis(c, mode, tau, Y):
             Y[2, j] += tau * Y[3, j]
 
 
+@by_type(Constants)
 @fused_njit
 def jump_basis(c, row, Y):
     """Apply the effect of an event to the disturbances."""
@@ -92,8 +102,8 @@ def jump_basis(c, row, Y):
 
 @linked_njit
 def tangent_product(c, rows, first, last):
-    """Return the 4x4 tangent map from just after row `first` to just after row `last`."""
-    Y = identity(4)
+    """Return the tangent map, square, from just after row `first` to just after row `last`."""
+    Y = identity(len(directions(c)))
     for i in range(first + 1, last + 1):
         flow_basis(c, rows[i - 1, MODE], rows[i, TAU], Y)
         jump_basis(c, rows[i], Y)
@@ -101,41 +111,47 @@ def tangent_product(c, rows, first, last):
 
 
 @fused_njit
-def orthonormalise(Y, gains):
-    """Gram–Schmidt in place; the lengths before normalisation go to `gains` (0 where a direction has died)."""
-    for j in range(4):
+def orthonormalise(directions, Y, gains):
+    """Gram–Schmidt in place; the lengths before normalisation go to `gains` (0 where a direction has died).
+
+    `directions` is a tuple as long as there are columns, so that the loops are of a length that the compiler knows.
+    """
+    n = len(directions)
+    for j in range(n):
         for k in range(j):
             dot = 0.0
-            for i in range(4):
+            for i in range(n):
                 dot += Y[i, k] * Y[i, j]
-            for i in range(4):
+            for i in range(n):
                 Y[i, j] -= dot * Y[i, k]
         square = 0.0
-        for i in range(4):
+        for i in range(n):
             square += Y[i, j] * Y[i, j]
         length = math.sqrt(square)
         gains[j] = length
         scale = 1.0 / length if length > DEAD else 0.0
-        for i in range(4):
+        for i in range(n):
             Y[i, j] *= scale
 
 
 @linked_njit
 def lyapunov_blocks(c, rows, n, start, stop, blocks, Y):
-    """Return (blocks, 5): logarithmic growth of the four directions in equal blocks of time, and each block's length.
+    """Return logarithmic growth of the d directions in equal blocks of time, and each block's length: (blocks, d + 1).
 
     The columns of Y, orthonormal at the first row, are carried on in place; growth before `start` is not counted.
     """
-    out = zero_matrix(blocks, 5)
-    gains, factors = zero_vector(4), zero_vector(4)
-    for j in range(4):
+    every = directions(c)
+    d = len(every)
+    out = zero_matrix(blocks, d + 1)
+    gains, factors = zero_vector(d), zero_vector(d)
+    for j in range(d):
         factors[j] = 1.0
     width = (stop - start) / blocks
     block = -1
     for i in range(1, n):
         flow_basis(c, rows[i - 1, MODE], rows[i, TAU], Y)
         jump_basis(c, rows[i], Y)
-        orthonormalise(Y, gains)
+        orthonormalise(every, Y, gains)
         t = rows[i, TIME]
         if t > start:
             b = min(int((t - start) / width), blocks - 1)
@@ -144,12 +160,12 @@ def lyapunov_blocks(c, rows, n, start, stop, blocks, Y):
                     log_growth(factors, out[block])
                 block = b
             full = False
-            for j in range(4):
+            for j in range(d):
                 factors[j] *= gains[j] if gains[j] > DEAD else 0.0
                 full |= not DEAD < factors[j] < 1.0 / DEAD
             if full:
                 log_growth(factors, out[block])
-            out[b, 4] += min(rows[i, TAU], t - start)
+            out[b, d] += min(rows[i, TAU], t - start)
     if block >= 0:
         log_growth(factors, out[block])
     return out
@@ -158,7 +174,7 @@ def lyapunov_blocks(c, rows, n, start, stop, blocks, Y):
 @linked_njit
 def log_growth(factors, growth):
     """Move growth from factors to logarithms: one logarithm for many events."""
-    for k in range(4):
+    for k in range(factors.shape[0]):
         growth[k] += math.log(factors[k]) if factors[k] > 0.0 else -math.inf
         factors[k] = 1.0
 
