@@ -1,16 +1,20 @@
 """What is stored was computed with the code of its key, and is where the run finds it."""
 
 import json
+import os
 import shutil
 import subprocess
+from types import SimpleNamespace
 
 import pytest
 
 from tests.pipeline.test_machines import SWEEP, Cluster, end, start
 from vines.errors import CodeError, StoreError
 from vines.pipeline import load, plan, run_pipeline
+from vines.pipeline._demand import Demand
 from vines.pipeline._gather import put_together
 from vines.pipeline._plan import Planner
+from vines.pipeline._worker import compute_apart
 
 pytestmark = pytest.mark.long(40)
 
@@ -131,3 +135,15 @@ def test_a_dask_worker_without_the_folder_is_refused_by_name(lab, one_good_worke
     assert said.startswith("vines: the dask worker at tcp://127.0.0.1:")
     assert f"does not see the folder {lab.store.data} of this run, so nothing was given to it" in said
     assert not lab.store.pins("toys")
+
+
+def test_tasks_in_the_users_own_process_set_no_variable(tmp_path, monkeypatch):
+    import numba
+
+    import vines.kernels  # noqa: F401 - then they have their place
+
+    monkeypatch.setattr(numba, "set_num_threads", lambda _: None)
+    before = dict(os.environ)
+    work = SimpleNamespace(demand=Demand("", {}, {}, tmp_path), data=tmp_path)
+    assert compute_apart(lambda each: each.data, work) == tmp_path
+    assert os.environ == before

@@ -44,6 +44,9 @@ DAYS = 30.0
 """A kernel of other sources that was not asked for so long is deleted when a new one is kept."""
 
 
+_WAY = 2
+"""Raised when the same sources come to other machine code: 2, subroutines of numba apart by rounding."""
+
 _DIGEST: dict[FunctionType, str] = {}
 """The digest of a kernel whose cache is being made; numba's interface has no room for it."""
 
@@ -146,7 +149,7 @@ class LazyCache:
     @functools.cached_property
     def digest(self) -> str:
         """Digest of the kernel as it is loaded in this process, for the processor that it runs on."""
-        return digest_of(self._function, {**self._options, "target": TARGET})
+        return digest_of(self._function, {**self._options, "target": TARGET, "way": _WAY})
 
     def _cache(self) -> _KernelCache:
         if self._made is None:

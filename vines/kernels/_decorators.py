@@ -15,12 +15,14 @@ from vines.kernels._cache import LazyCache
 from vines.kernels._linked import Linked
 from vines.kernels._operators import remember_operators
 from vines.kernels._settings import numba
+from vines.kernels._subroutines import keep_subroutines_apart
 
 __all__ = ["cold_njit", "entry_njit", "fused_njit", "linked_njit", "loop_njit", "njit"]
 
 _Function = TypeVar("_Function", bound=Callable[..., Any])
 
 remember_operators()
+keep_subroutines_apart()
 
 _FUSED = {"contract", "nsz"}
 _FULL = _OptLevel(3)

@@ -205,7 +205,8 @@ def compute_apart(function: Callable[[Any], Any], work: Any) -> Any:
 
     if isinstance(demanded := getattr(work, "demand", None), Demand):
         demanded.check_store()
-        os.environ.setdefault("VINES_DATA", str(work.data))
+        if "vines.kernels" not in sys.modules:  # else kernels have their place, and this process may be the user's
+            os.environ.setdefault("NUMBA_CACHE_DIR", str(work.data / "cache"))
     if "numba" in sys.modules:
         sys.modules["numba"].set_num_threads(1)
     else:

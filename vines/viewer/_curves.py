@@ -47,16 +47,7 @@ def curves(
 ) -> None:
     """Send all curves and the marks of the impacts on them.
 
-    Parameters
-    ----------
-    rec : rerun.RecordingStream
-        Where they go.
-    root : str
-        Path of the entities.
-    states, impacts : dict of str to numpy.ndarray
-        Columns of ``vines.v1.State`` (n > 0 rows) and ``vines.v1.Impact``.
-    clock : Clock
-        Gives rows their times.
+    Parameters are those of `vines.viewer._scene.cavity`; `impacts` has the columns of ``vines.v1.Impact``.
     """
     x1, x2 = states["x1"], states["x2"]
     indexes = clock.columns(states["t"])

@@ -26,18 +26,9 @@ def dial(
     impacts: dict[str, np.ndarray],
     clock: Clock,
 ) -> None:
-    """Draw the phase of the forcing as a hand, and that of each impact as a mark; the latest ones are large.
+    """Draw the phase of the forcing as a hand, that of each impact as a mark, counter-clockwise from the right.
 
-    Parameters
-    ----------
-    rec : rerun.RecordingStream
-        Where it goes.
-    root : str
-        Path of the entities; phases run counter-clockwise from the right.
-    states, impacts : dict of str to numpy.ndarray
-        Columns of ``vines.v1.State`` (n > 0 rows) and ``vines.v1.Impact``.
-    clock : Clock
-        Gives rows their times.
+    Parameters are those of `vines.viewer._scene.cavity`; `impacts` has the columns of ``vines.v1.Impact``.
     """
     # Beneath the origin of the view, whose own transform would not show; y points down in Rerun.
     root = f"{root}/face"
@@ -94,16 +85,7 @@ def lanes(
 ) -> None:
     """Draw impacts as marks on two lanes, and spells on which the ball sticks as bars.
 
-    Parameters
-    ----------
-    rec : rerun.RecordingStream
-        Where it goes.
-    root : str
-        Path of the entities.
-    states, impacts : dict of str to numpy.ndarray
-        Columns of ``vines.v1.State`` (n > 0 rows) and ``vines.v1.Impact``.
-    clock : Clock
-        Gives rows their times.
+    Parameters are those of `vines.viewer._scene.cavity`; `impacts` has the columns of ``vines.v1.Impact``.
     """
     # Thin lines through the lanes; they also keep the span of time the same as in the other views.
     rows = np.tile([1.0, -1.0], (len(states["t"]), 1))

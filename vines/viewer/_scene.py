@@ -105,16 +105,7 @@ def phase_plane(
 ) -> None:
     """Draw the orbit in the plane of w and w', its recent part as a trail, where it is now, and its impacts.
 
-    Parameters
-    ----------
-    rec : rerun.RecordingStream
-        Where it goes.
-    root : str
-        Path of the entities; their positions are (w, w').
-    states, impacts : dict of str to numpy.ndarray
-        Columns of ``vines.v1.State`` (n > 0 rows) and ``vines.v1.Impact``.
-    clock : Clock
-        Gives rows their times.
+    Parameters are those of `vines.viewer._scene.cavity`; `impacts` has the columns of ``vines.v1.Impact``.
     """
     indexes = clock.columns(states["t"])
     path = np.column_stack([states["w"], states["w_dot"]])

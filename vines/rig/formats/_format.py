@@ -36,7 +36,9 @@ class Format:
     begins : callable, optional
         ``begins(head, suffix)`` says whether a file with these first 1024 bytes and that suffix is of the format.
     write : callable, optional
-        ``write(path, channels, started=...)``, by which a synthetic rig writes such a file.
+        ``write(path, channels, started=...)``, by which a synthetic rig writes such a file: a tuple of
+        :class:`RawChannel`, with floating samples or the steps of a converter (int32, the value of one step as
+        ``slope`` in `about`); `started` is ISO 8601 in UTC.
 
     Examples
     --------

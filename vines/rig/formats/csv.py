@@ -89,17 +89,7 @@ def _is_number(cell: str) -> bool:
 
 
 def write(path: Path, channels: tuple[RawChannel, ...], *, started: str) -> None:
-    """Write channels of one rate and start with their units in the head and the rate in a note above.
-
-    Parameters
-    ----------
-    path : Path
-        Where.
-    channels : tuple of RawChannel
-        What; ``slope`` in ``about`` is applied.
-    started : str
-        ISO 8601 in UTC.
-    """
+    """Write channels of one rate and start with their units in the head and the rate in a note above, see `Format`."""
     import pyarrow as pa
     import pyarrow.csv as pc
 

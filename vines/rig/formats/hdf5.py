@@ -80,17 +80,7 @@ def read(path: Path) -> RawFile:
 
 
 def write(path: Path, channels: tuple[RawChannel, ...], *, started: str) -> None:
-    """Write channels as datasets with the attributes unit, sampling_rate, start and, of converter steps, slope.
-
-    Parameters
-    ----------
-    path : Path
-        Where.
-    channels : tuple of RawChannel
-        What.
-    started : str
-        ISO 8601 in UTC.
-    """
+    """Write channels as datasets with the attributes unit, sampling_rate, start, slope, see `Format`."""
     need("h5py")
     import h5py
 

@@ -74,17 +74,7 @@ def _structure(name: str, value: Mapping[str, Any]) -> RawChannel:
 
 
 def write(path: Path, channels: tuple[RawChannel, ...], *, started: str) -> None:
-    """Write a v5 file with a structure a channel.
-
-    Parameters
-    ----------
-    path : Path
-        Where.
-    channels : tuple of RawChannel
-        What.
-    started : str
-        ISO 8601 in UTC.
-    """
+    """Write a v5 file with a structure a channel, see `Format`."""
     from scipy.io import savemat
 
     form: dict[str, Any] = {"started": started}

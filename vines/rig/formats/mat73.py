@@ -20,17 +20,7 @@ _USERBLOCK = 512
 
 
 def write(path: Path, channels: tuple[RawChannel, ...], *, started: str) -> None:
-    """Write a v7.3 file as MATLAB lays it out: HDF5 behind a block of 512 bytes, arrays transposed, text as UTF-16.
-
-    Parameters
-    ----------
-    path : Path
-        Where.
-    channels : tuple of RawChannel
-        What.
-    started : str
-        ISO 8601 in UTC.
-    """
+    """Write a v7.3 file as MATLAB lays it out, see `Format`: arrays are transposed, text is UTF-16."""
     need("h5py")
     import h5py
 

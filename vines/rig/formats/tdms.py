@@ -79,16 +79,7 @@ def _later(channel: RawChannel, nanoseconds: float) -> RawChannel:
 
 
 def write(path: Path, channels: tuple[RawChannel, ...], *, started: str) -> None:
-    """Write channels named ``group/channel``; whole numbers are kept with a linear scale in ``about``.
-
-    Parameters
-    ----------
-    path : Path
-        Where.
-    channels : tuple of RawChannel
-        Float samples, or int32 with ``slope`` in ``about`` (the value of one step in `unit`).
-    started : str
-        ISO 8601 in UTC.
+    """Write channels named ``group/channel``, see `Format`; steps are kept as they are, with their scale.
 
     Raises
     ------

@@ -68,17 +68,7 @@ def read(path: Path) -> RawFile:
 
 
 def write(path: Path, channels: tuple[RawChannel, ...], *, started: str) -> None:
-    """Write channels as binary datasets 58 in double precision; converter steps become volts.
-
-    Parameters
-    ----------
-    path : Path
-        Where.
-    channels : tuple of RawChannel
-        With rates; ``slope`` in ``about`` is the value of one step.
-    started : str
-        ISO 8601 in UTC.
-    """
+    """Write channels with rates as binary datasets 58 in double precision, see `Format`."""
     need("pyuff")
     import pyuff
 

@@ -73,17 +73,7 @@ def _told(path: Path, count: int) -> tuple[list[dict[str, Any]], str | None]:
 
 
 def write(path: Path, channels: tuple[RawChannel, ...], *, started: str) -> None:
-    """Write converter steps as 24 bit, and the sidecar.
-
-    Parameters
-    ----------
-    path : Path
-        Where.
-    channels : tuple of RawChannel
-        int32 samples of at most 24 bit, equally many, with ``slope`` in ``about``.
-    started : str
-        ISO 8601 in UTC.
-    """
+    """Write int32 steps of at most 24 bit, of channels equally long, and the sidecar, see `Format`."""
     need("soundfile")
     import soundfile
 

@@ -16,8 +16,9 @@ import math
 import numpy as np
 
 from vines.kernels import njit
+from vines.model import V1, V2, X1, X2
 
-__all__ = ["IMPACT", "NAMES", "advance"]
+__all__ = ["IMPACT", "NAMES", "NUMBER", "PHASE", "ROW", "advance"]
 
 NAMES = (
     *("M", "m", "c", "k", "E", "omega", "phi", "h2", "phi2", "h3", "phi3"),
@@ -34,6 +35,14 @@ r (v/reference)^-exponent; `pause` the length of a step in contact."""
 IMPACT = ("t", "side", "x1", "v1", "x2", "v2", "w_dot", "w_dot_after", "v1_after", "v2_after", "r", "t_end", "t_mid")
 """Columns of the impacts: SI, state when contact begins and velocities when it ends; `r` is the restitution set,
 `t_mid` the centroid of the force."""
+
+_W_DOT_AFTER, _V1_AFTER, _V2_AFTER, _T_END, _T_MID = map(
+    IMPACT.index, ("w_dot_after", "v1_after", "v2_after", "t_end", "t_mid")
+)
+
+_SIDE, _CHI, ROW, NUMBER, PHASE = range(4, 9)
+"""Places in the state of a run behind those of oscillator and ball: the contact that the ball is in (0 if none), its
+chi, its row among the impacts, contacts so far; then the phase of the base, which the kernel leaves alone."""
 
 _SLOW = 1e-3
 """[m/s] Below this speed of approach the loss stays what it is there: the law would else damp without bound."""
@@ -142,9 +151,8 @@ def advance(state, first, count, h, p, draws, quiet, table_r, table_a, modes, ga
 
     Parameters
     ----------
-    state : ndarray, shape (8,)
-        x1, v1, x2, v2, side of the contact that the ball is in (0 if none), its chi, its row and the number of contacts
-        so far; overwritten with the end state.
+    state : ndarray, shape (9,)
+        Overwritten with the end state.
     first, count : int
         Number of the first step since the clock began, and of steps.
     h : float
@@ -174,9 +182,9 @@ def advance(state, first, count, h, p, draws, quiet, table_r, table_a, modes, ga
     int
         Number of impacts recorded.
     """
-    x1, v1, x2, v2, side, chi = state[0], state[1], state[2], state[3], state[4], state[5]
-    row = int(state[6])
-    number = int(state[7])
+    x1, v1, x2, v2, side, chi = state[X1], state[V1], state[X2], state[V2], state[_SIDE], state[_CHI]
+    row = int(state[ROW])
+    number = int(state[NUMBER])
     found = 0
     pushed = 0.0
     rings = gains[1]
@@ -247,22 +255,22 @@ def advance(state, first, count, h, p, draws, quiet, table_r, table_a, modes, ga
             struck = -(p[_m] / p[_M]) * (u2 - v2) * (0.02 if quiet[(number - 1) % len(quiet)] else 1.0)
             pushed += u2 - v2
             if row >= 0:
-                rows[row, 12] += (u2 - v2) * (t + 0.5 * part)
+                rows[row, _T_MID] += (u2 - v2) * (t + 0.5 * part)
             for i in range(len(rings)):
                 rings[i] += struck * gains[0, i]
             x1, v1, x2, v2 = y1, u1, y2, u2
             done += part
             if leaves and side * (v1 - v2) <= 0.0:
                 if row >= 0:
-                    rows[row, 7], rows[row, 8], rows[row, 9], rows[row, 11] = v1 - v2, v1, v2, start + done
-                    rows[row, 12] /= pushed
+                    rows[row, _W_DOT_AFTER], rows[row, _V1_AFTER], rows[row, _V2_AFTER] = v1 - v2, v1, v2
+                    rows[row, _T_END] = start + done
+                    rows[row, _T_MID] /= pushed
                 side = 0.0
         if record:
             now = v1 + _modal_velocity(rings, modes)
             out[0, k + 1], out[1, k + 1], out[2, k + 1], out[3, k + 1] = x1, v1, x2, v2
             out[4, k + 1] = (now - seen) / h
             seen = now
-    state[0], state[1], state[2], state[3], state[4], state[5], state[6], state[7] = (
-        x1, v1, x2, v2, side, chi, float(row), float(number),
-    )  # fmt: skip
+    state[X1], state[V1], state[X2], state[V2] = x1, v1, x2, v2
+    state[_SIDE], state[_CHI], state[ROW], state[NUMBER] = side, chi, float(row), float(number)
     return found

@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from vines.rig.synth._contact import damping_table, stiffness
-from vines.rig.synth._kernel import IMPACT, NAMES, advance
+from vines.rig.synth._kernel import IMPACT, NAMES, NUMBER, PHASE, ROW, advance
 from vines.rig.synth._settings import RigSettings
 
 __all__ = ["Motion", "move"]
@@ -109,7 +109,7 @@ def move(s: RigSettings, rng: np.random.Generator, step: float, extra: int, stat
     p = kernel_parameters(s, rng)
     if state is not None:
         # The generator runs on from the run before.
-        p["phi"] = float(state[8])
+        p["phi"] = float(state[PHASE])
     values = np.array([p[name] for name in NAMES])
     modes = np.array([complex(-z, np.sqrt(1 - z * z)) * 2 * np.pi * f for f, z, _ in s.modes], np.complex128)
     gains = np.zeros((2, len(modes)), np.complex128)
@@ -117,8 +117,8 @@ def move(s: RigSettings, rng: np.random.Generator, step: float, extra: int, stat
     draws = rng.normal(0.0, s.sigma_r, _MANY) if s.sigma_r else np.zeros(1)
     quiet = rng.random(_MANY) < s.missed
     state = np.array([*s.start, 0.0, 0.0, -1.0, 0.0, 0.0]) if state is None else state.copy()
-    state[6] = -1.0
-    state[7] = 0.0
+    state[ROW] = -1.0
+    state[NUMBER] = 0.0
     tables = damping_table()
     before = round(s.settle / step / _COARSE)
     count = round(s.duration / step) + extra
@@ -127,11 +127,11 @@ def move(s: RigSettings, rng: np.random.Generator, step: float, extra: int, stat
     advance(state, 0, before, _COARSE * step, values, draws, quiet, *tables, modes, gains, s.ball, nothing, none)
     out = np.empty((5, count + 1))
     rows = np.full((min(_MANY, 2000 * int(s.duration + 10)), len(IMPACT)), np.nan)
-    first = int(state[7])
+    first = int(state[NUMBER])
     found = advance(
         state, _COARSE * before, count, step, values, draws, quiet, *tables, modes, gains, s.ball, out, rows
     )
-    state[8] = (p["omega"] * (_COARSE * before + count) * step + p["phi"]) % (2 * np.pi)
+    state[PHASE] = (p["omega"] * (_COARSE * before + count) * step + p["phi"]) % (2 * np.pi)
     impacts = np.rec.fromarrays(rows[:found].T.copy(), dtype=np.dtype([(name, np.float64) for name in IMPACT]))
     start = _COARSE * before * step
     impacts["t"] -= start

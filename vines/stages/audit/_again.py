@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from vines import schema
-from vines.model import START_NAMES
+from vines.model import PARAMETER_NAMES, START_NAMES
 from vines.pipeline import kind
 from vines.stages.audit._compare import (
     TOLERANCE,
@@ -73,7 +73,7 @@ class PointsAgain:
 
 
 _ROUGH = tuple(
-    c.name for c in schema.table("attractors").columns if c.dtype == "float64" and c.name not in ("mu", "A", "Omega")
+    c.name for c in schema.table("attractors").columns if c.dtype == "float64" and c.name not in PARAMETER_NAMES
 )
 
 
