@@ -51,13 +51,15 @@ rooms: $(INSTALLED_DEV)  ## import-linter: the rooms of the house
 acceptance: $(INSTALLED_DEV)  ## everything in full; writes docs/acceptance.md
 	@"$(BIN)/python" -m benchmarks.acceptance
 
-system:          ## Debian packages for the viewer's pictures in tests: software Vulkan, and Chromium for the web page
+system:          ## Debian packages for tests: software Vulkan and Chromium for pictures, SLURM for job arrays
 	@if ldconfig -p | grep -q libvulkan.so.1 && ls /usr/share/vulkan/icd.d/lvp_icd*.json >/dev/null 2>&1 \
-	  && command -v chromium >/dev/null; then \
-	  echo "software Vulkan and Chromium are there"; \
+	  && command -v chromium >/dev/null && command -v slurmctld >/dev/null && command -v slurmd >/dev/null \
+	  && command -v munged >/dev/null && command -v sbatch >/dev/null; then \
+	  echo "software Vulkan, Chromium and SLURM are there"; \
 	else \
 	  apt-get update -qq && \
-	  apt-get install -y -qq --no-install-recommends mesa-vulkan-drivers libvulkan1 chromium; \
+	  apt-get install -y -qq --no-install-recommends \
+	    mesa-vulkan-drivers libvulkan1 chromium slurmctld slurmd slurm-client munge; \
 	fi
 
 # The widest first: the others take its versions.

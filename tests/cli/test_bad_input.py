@@ -27,6 +27,12 @@ BAD = {
     "mu not positive": ("mu = 0.01", "mu = 0.0", "mu > 0"),
     "lam too large": ("Omega = 1.0", "lam = 2.0", "0 <= lam < 2"),
     "a point of years": ("settle = 10", "settle = 99999999999999", "settle <= 10000000 periods a point; VINES_LONG"),
+    "starts of years": ("settle = 10", "settle = 1000\nrandom = 100000", "(settle + record) (1 + random) <= 10000000"),
+    "too many points": (
+        "count = 3 }",
+        "count = 9000000 }\nvary.mu = { from = 0.01, to = 0.02, count = 9000000 }",
+        "at most",
+    ),
     "ball outside": ("settle = 10", "settle = 10\nstart = { x1 = 1.5 }", "|w| <= 1"),
     "wrong type": ("settle = 10", 'settle = "ten"', "settle"),
     "no TOML": ("[params]", "[params", "line"),

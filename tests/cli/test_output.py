@@ -3,8 +3,10 @@
 import csv
 import io
 import json
+import os
 import signal
 import subprocess
+import sys
 import time
 from pathlib import Path
 
@@ -183,6 +185,53 @@ def test_a_signal_ends_a_run_that_is_inside_a_kernel_for_years(project, number, 
         assert not any(project.data.glob("points/*/0*"))
 
 
+ENDLESS = "select count(*) from range(10000000) a, range(10000000) b where hash(a.range + b.range) = 1"
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_a_signal_ends_a_query_that_takes_for_ever(quickstart, number, tmp_path):
+    running = quickstart.start("query", ENDLESS, "--out", tmp_path / "answer.csv", stderr=subprocess.PIPE)
+    while not any(tmp_path.iterdir()) and running.poll() is None:
+        time.sleep(0.01)
+    time.sleep(1.0)  # DuckDB is at it
+    running.send_signal(number)
+    _, told = running.communicate(timeout=60)
+    assert (running.returncode, told) == (130, "vines: stopped\n")
+    assert not any(tmp_path.iterdir())
+
+
+def test_ctrl_c_ends_a_query_in_python_and_the_session_goes_on(quickstart):
+    script = (
+        "import os, signal, threading, time, vines\n"
+        "def stop():\n    time.sleep(2)\n    os.kill(os.getpid(), signal.SIGINT)\n"
+        "signal.signal(signal.SIGINT, signal.default_int_handler)\n"
+        "threading.Thread(target=stop).start()\n"
+        f"try:\n    vines.query({ENDLESS!r})\nexcept KeyboardInterrupt:\n"
+        "    print(vines.query('select 1 as one').to_pylist())\n"
+    )
+    environment = {**os.environ, **quickstart.environment}
+    said = subprocess.run(
+        [sys.executable, "-c", script], env=environment, capture_output=True, text=True, timeout=120, check=False
+    )
+    assert (said.stdout, said.stderr) == ("[{'one': 1}]\n", "")
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_a_signal_ends_a_command_that_waits_for_another(project, number):
+    from filelock import FileLock
+
+    project.data.mkdir()
+    with FileLock(project.data / "store.lock"):
+        running = project.start("gc", "--yes", stderr=subprocess.PIPE, stdout=subprocess.DEVNULL)
+        children = Path(f"/proc/{running.pid}/task/{running.pid}/children")
+        while not children.read_text() and running.poll() is None:
+            time.sleep(0.01)
+        time.sleep(2.0)
+        running.send_signal(number)
+        _, told = running.communicate(timeout=60)
+    assert (running.returncode, told) == (130, "vines: stopped\n")
+
+
 def test_sql_that_begins_with_a_comment_is_sql(quickstart):
     for sql in ("-- how many\nselect 3 as n", "--how many\nselect 3 as n"):
         assert json.loads(quickstart.vines("query", sql, "--format", "json").stdout) == [{"n": 3}]
@@ -196,10 +245,6 @@ def test_two_columns_of_one_name_are_both_in_json(quickstart):
 
 
 def test_a_letter_that_the_locale_does_not_have_is_no_traceback(quickstart):
-    import os
-    import subprocess
-    import sys
-
     said = subprocess.run(
         [sys.executable, "-X", "utf8=0", "-m", "vines.cli", "query", "select 'ü' as letter"],
         env={**os.environ, **quickstart.environment, "LC_ALL": "C", "PYTHONIOENCODING": "ascii", "PYTHONUTF8": "0"},

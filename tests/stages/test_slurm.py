@@ -15,20 +15,9 @@ import sys
 
 import pytest
 
-from tests.project import REPOSITORY
+from tests.stages.recipe import assert_as_one_run, write_recipe
 
 pytestmark = pytest.mark.long(60)
-
-DECLARED = """
-[params]
-mu = 0.01
-[stages.up]
-kind = "sweep"
-vary.A = { from = 0.015, to = 0.017, count = 5 }
-settle = 50
-record = 16
-refine = { on = ["kinetic_ratio"], tolerance = 0.0003, jump = 0.0001 }
-"""
 
 SBATCH = r'''#!PYTHON
 """Queue a job and print its number; the test runs the queue."""
@@ -127,32 +116,16 @@ class Queue:
         return (self.folder / f"slurm-{number}_{i}.out").read_text()
 
 
-def recipe():
-    """Return the two scripts of the page."""
-    page = (REPOSITORY / "docs" / "clusters.md").read_text("utf-8").partition("## A job array")[2]
-    return re.findall(r"```sh\n(#!/bin/bash\n.*?)```", page, flags=re.DOTALL)[:2]
-
-
 @pytest.fixture
 def queue(project):
     """Give the queue of a project with the scripts of the page, for a small pipeline and an array of two."""
-    (project.root / "pipelines" / "fig5.toml").write_text(DECLARED)
-    (project.root / ".venv" / "bin").mkdir(parents=True)
-    program = project.root / ".venv" / "bin" / "vines"
-    # warm-up compiles what these tests have compiled already
-    program.write_text(f'#!/bin/sh\n[ "$1" = warm-up ] || exec {sys.executable} -m vines.cli "$@"\n')
-    program.chmod(0o755)
-    job, submit = recipe()
-    (project.root / "fig5.sbatch").write_text(
-        job.replace("1-16%8", "1-2%1").replace("cpus-per-task=8", "cpus-per-task=1")
-    )
-    (project.root / "submit.sh").write_text(submit)
+    write_recipe(project)
     made = Queue(project)
     subprocess.run(["/bin/bash", "submit.sh"], cwd=project.root, env=made.environment, check=True)
     return made
 
 
-def test_the_recipe_ends_with_the_result_of_one_run_though_a_share_fails_and_one_is_preempted(queue, tmp_path):
+def test_the_recipe_ends_with_the_result_of_one_run_though_a_share_fails_and_one_is_preempted(queue):
     assert queue.jobs() == [1, 2, 3, 4, 5, 6, 7]
     first = queue.job(2)
     for option in ("array", "mem", "time", "requeue", "signal", "open-mode"):
@@ -166,10 +139,4 @@ def test_the_recipe_ends_with_the_result_of_one_run_though_a_share_fails_and_one
     assert "points are missing; run the shards again" in queue.said(3)
     assert queue.codes[4] == [0, 0], queue.said(4)
     assert queue.codes[7] == [0], queue.said(7)
-    pins = json.loads((queue.project.data / "pipelines" / "fig5.pins.json").read_text())
-    table = (queue.project.data / "results" / pins["up"]["result"] / "points.parquet").read_bytes()
-    (queue.project.data).rename(queue.project.root / "of the array")
-    queue.project.vines("run", "fig5", "--quiet", "--jobs", "1")
-    alone = json.loads((queue.project.data / "pipelines" / "fig5.pins.json").read_text())
-    assert alone["up"]["result"] == pins["up"]["result"]
-    assert (queue.project.data / "results" / alone["up"]["result"] / "points.parquet").read_bytes() == table
+    assert_as_one_run(queue.project)

@@ -13,6 +13,7 @@ from vines.attractors._attractor import Attractor
 from vines.attractors._look import look_at_block
 from vines.attractors._naming import attractor_from, word_of
 from vines.attractors._waiting import next_wait
+from vines.bounds import check_periods
 from vines.dynamics.kernels import constants, pass_over, set_state, shift_time
 from vines.dynamics.kernels import rows as col
 from vines.dynamics.kernels import totals as entry
@@ -55,6 +56,7 @@ class Patience:
         ):
             if not (isinstance(value, int | float) and math.isfinite(value) and value >= least):
                 raise StateError(f"{name} is {value!r} periods; give a finite number >= {least}")
+            check_periods(name, value)
         if not self.tolerance > 0:
             raise StateError(f"tolerance is {self.tolerance!r}; give a number > 0")
         if self.cap < 1:

@@ -6,6 +6,7 @@ import contextlib
 import re
 import warnings
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from types import TracebackType
 from typing import TYPE_CHECKING, Any, Literal
@@ -152,9 +153,19 @@ class Catalogue:
                 shown = " ".join(sql.split())[:60]
                 raise QueryError(f"{shown!r} is not one query; the catalogue is read only, ask with a single select")
             self._make(sql)
-            return take(self._connection.sql(sql))
+            return self._interruptible(lambda: take(self._connection.sql(sql)))
         except duckdb.Error as error:
             raise QueryError(self._say(str(error))) from None
+
+    def _interruptible(self, call: Callable[[], Any]) -> Any:
+        """Call what DuckDB may take long for; Ctrl-C ends it, which DuckDB does not hear by itself."""
+        with ThreadPoolExecutor(max_workers=1) as other:
+            answer = other.submit(call)
+            try:
+                return answer.result()
+            except BaseException:
+                self._connection.interrupt()
+                raise
 
     def _make(self, sql: str) -> None:
         """Make the views that a query may use: those whose names stand in it, or all if it asks what there is."""

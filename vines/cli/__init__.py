@@ -9,6 +9,7 @@ import gc
 import importlib
 import io
 import os
+import shlex
 import sys
 import warnings
 from pathlib import Path
@@ -17,7 +18,8 @@ from typing import Any
 import click
 
 from vines import __version__
-from vines.cli._supervised import STOPPED, go_on_in_a_child, is_supervised
+from vines.cli._interrupt import stoppable
+from vines.cli._supervised import go_on_in_a_child, is_supervised
 from vines.errors import DamageWarning, VinesError, nearest
 
 __all__ = ["app", "main"]
@@ -50,10 +52,8 @@ COMMANDS = {
 }
 
 
-_COMPUTING = frozenset({"check", "merge", "report", "rig", "run", "solve", "verify", "warm-up"})
-"""Commands that may be inside a kernel for long."""
 _KEEPING = frozenset({"merge", "run"})
-"""Those of them that keep what they have computed."""
+"""Commands that keep what they have computed."""
 _THRESHOLDS = (100_000, 50, 100)
 """New objects, and rounds, after which Python looks for cycles; its own are 700, 10, 10."""
 
@@ -89,6 +89,13 @@ class LazyGroup(click.Group):
             raise click.UsageError(f"no command {args[0]!r}: {nearest(args[0], self.known)}", ctx)
         return super().resolve_command(ctx, args)
 
+    def invoke(self, ctx: click.Context) -> Any:
+        """Call the command; of an interruption nothing is printed here, where click would print an empty line."""
+        try:
+            return super().invoke(ctx)
+        except KeyboardInterrupt:
+            raise click.exceptions.Abort from None
+
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
         """Write the list of commands without importing them."""
         del ctx
@@ -120,12 +127,12 @@ def main(*, supervised: bool = True) -> None:
     Parameters
     ----------
     supervised : bool
-        Whether a command that computes goes on in a child process, which a signal ends even inside a kernel.
+        Whether it goes on in a child process, which a signal ends even inside a kernel or a query.
     """
     command = next((each for each in sys.argv[1:] if each in COMMANDS), "")
-    if supervised and command in _COMPUTING:
-        again = " ".join(["vines", *sys.argv[1:]])
-        go_on_in_a_child(f"; what is finished is kept, '{again}' goes on" if command in _KEEPING else "")
+    remedy = f"'{shlex.join(['vines', *sys.argv[1:]])}' goes on" if command in _KEEPING else ""
+    if supervised:
+        go_on_in_a_child(remedy)
     os.environ.setdefault("RERUN_ANALYTICS", "0")
     # What libraries make at their import lives to the end; to look for cycles there takes a twelfth of a first run.
     gc.set_threshold(*_THRESHOLDS)
@@ -134,11 +141,8 @@ def main(*, supervised: bool = True) -> None:
             stream.reconfigure(errors="backslashreplace")
     warnings.showwarning = _show
     try:
-        code = app.main(standalone_mode=False)
-    except click.exceptions.Abort:
-        if not is_supervised():
-            click.echo("vines: stopped", err=True)
-        code = STOPPED
+        with stoppable(remedy, silent=is_supervised()):
+            code = app.main(standalone_mode=False)
     except click.exceptions.NoArgsIsHelpError as error:
         click.echo(error.format_message())
         code = 0
@@ -156,6 +160,9 @@ def main(*, supervised: bool = True) -> None:
         # A folder that cannot be made, a full disk, a time-out: ours to tell in a line, not to trace.
         place = f"{error.filename}: " if error.filename else ""
         click.echo(f"vines: {place}{error.strerror or error}{_named(error)}", err=True)
+        code = 2
+    except MemoryError as error:
+        click.echo(f"vines: not enough memory{f': {error}' if str(error) else ''}", err=True)
         code = 2
     sys.exit(code if isinstance(code, int) else 0)
 

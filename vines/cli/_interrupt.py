@@ -1,4 +1,4 @@
-"""Ctrl-C, and the SIGTERM of a batch system, end a run at once and say how to go on."""
+"""Ctrl-C, and the SIGTERM of a batch system, end a command at once, in one line that says how to go on."""
 
 from __future__ import annotations
 
@@ -12,11 +12,24 @@ from types import FrameType
 
 import click
 
-from vines.cli._supervised import STOPPED, is_supervised
+__all__ = ["STOPPED", "stoppable", "stopped"]
 
-__all__ = ["stoppable"]
-
+STOPPED = 130
+"""Exit code of a shell command that SIGINT ended."""
 _PATIENCE = 0.6
+
+
+def stopped(remedy: str) -> str:
+    """Return the line that tells of a stop.
+
+    Examples
+    --------
+    >>> stopped("'vines run fig4' goes on")
+    "vines: stopped; what is finished is kept, 'vines run fig4' goes on"
+    >>> stopped("")
+    'vines: stopped'
+    """
+    return f"vines: stopped; what is finished is kept, {remedy}" if remedy else "vines: stopped"
 
 
 def _leave_soon() -> None:
@@ -30,13 +43,15 @@ def _leave_soon() -> None:
 
 
 @contextlib.contextmanager
-def stoppable(remedy: str) -> Iterator[None]:
+def stoppable(remedy: str, *, silent: bool = False) -> Iterator[None]:
     """Turn SIGTERM into the same as Ctrl-C, and end with one line instead of a traceback.
 
     Parameters
     ----------
     remedy : str
-        How to go on.
+        How to go on; see `stopped`.
+    silent : bool
+        Whether another process tells of the stop.
     """
 
     def stop(number: int, frame: FrameType | None) -> None:
@@ -46,9 +61,9 @@ def stoppable(remedy: str) -> Iterator[None]:
     before = signal.signal(signal.SIGTERM, stop)
     try:
         yield
-    except KeyboardInterrupt:
-        if not is_supervised():
-            click.echo(f"vines: stopped; what is finished is kept, {remedy}", err=True)
+    except (KeyboardInterrupt, click.exceptions.Abort):
+        if not silent:
+            click.echo(stopped(remedy), err=True)
         _leave_soon()
         raise SystemExit(STOPPED) from None
     finally:

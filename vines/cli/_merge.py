@@ -17,11 +17,10 @@ def command(name: str, settings: tuple[str, ...], quiet: bool) -> None:
     Computes no point; stages that take whole results, such as figures and checks, are run. Says what is missing if
     shards are not finished.
     """
-    from vines.cli._interrupt import stoppable
     from vines.cli._progress import progress
     from vines.cli._run import read_setting
     from vines.stages import run
 
     overrides = dict(read_setting(text) for text in settings)
-    with stoppable(f"'vines merge {name}' goes on"), progress(quiet) as report:
+    with progress(quiet) as report:
         run(name, overrides=overrides, merge=True, report=report, study=the_study())

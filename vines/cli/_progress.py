@@ -11,10 +11,12 @@ import click
 if TYPE_CHECKING:
     from vines.pipeline import Event
 
-__all__ = ["Lines", "Quiet", "progress"]
+__all__ = ["Lines", "Quiet", "duration", "progress"]
 
 PAUSE = 2.0
 """Seconds between two plain lines of the same stage."""
+SOON = 0.5
+"""Seconds of points, without the first, from which the first line tells how long the others take."""
 
 
 class Quiet:
@@ -37,6 +39,7 @@ class Lines(Quiet):
     def __init__(self) -> None:
         self._started: dict[str, tuple[float, int]] = {}
         self._measured: dict[str, tuple[float, int]] = {}
+        self._told: set[str] = set()
         self._said = 0.0
 
     def __call__(self, event: Event) -> None:
@@ -51,8 +54,11 @@ class Lines(Quiet):
                 if event.wanted > 1:
                     click.echo(f"{event.stage}: {event.text}")
             case "progress":
-                if now - self._said >= PAUSE:
+                soon = event.stage in self._measured and event.stage not in self._told
+                if now - (self._measured[event.stage][0] if soon else self._said) >= (SOON if soon else PAUSE):
                     self._said = now
+                    if soon:
+                        self._told.add(event.stage)
                     click.echo(f"{event.stage}: {event.done} of {event.wanted}{self._pace(event, now)}")
                 if event.stage not in self._measured:  # the first points took what was imported and compiled as well
                     self._measured[event.stage] = (now, event.done)
@@ -69,7 +75,7 @@ class Lines(Quiet):
         if fresh <= 0 or now <= start:
             return _failures(event)
         rate = fresh / (now - start)
-        return f", {rate:.3g} points/s, {(event.wanted - event.done) / rate:.0f} s left{_failures(event)}"
+        return f", {rate:.3g} points/s, {duration((event.wanted - event.done) / rate)} left{_failures(event)}"
 
     def _took(self, event: Event, now: float) -> str:
         start, _ = self._started.get(event.stage, (now, 0))
@@ -134,6 +140,20 @@ def progress(quiet: bool) -> Quiet:
     if quiet:
         return Quiet()
     return Bars() if sys.stdout.isatty() else Lines()
+
+
+def duration(seconds: float) -> str:
+    """Return a time in the unit in which it is read.
+
+    Examples
+    --------
+    >>> duration(0.2), duration(18.4), duration(400.0), duration(89099.0), duration(4e6)
+    ('0.2 s', '18 s', '6.7 min', '25 h', '46 days')
+    """
+    for size, unit in ((86400.0, "days"), (3600.0, "h"), (60.0, "min")):
+        if seconds >= 2 * size:
+            return f"{seconds / size:.2g} {unit}"
+    return f"{seconds:.0f} s" if seconds >= 1 else f"{seconds:.1g} s"
 
 
 def _failures(event: Event) -> str:

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     help="A dask scheduler, e.g. tcp://node1:8786; else dask starts a cluster of its own here.",
 )
 @click.option("--shard", metavar="I/N", help="Compute one of N shares of the points; 'vines merge' puts all together.")
-@click.option("--dry-run", is_flag=True, help="Say what would be computed, and why; compute nothing.")
+@click.option("--dry-run", is_flag=True, help="Say what would be computed, why, and how long it takes; keep nothing.")
 @click.option("--force", is_flag=True, help="Compute everything again.")
 @click.option("--retry-failed", is_flag=True, help="Try the points again that failed.")
 @click.option("--quiet", is_flag=True, help="Show no progress.")
@@ -52,8 +52,7 @@ def command(
     What is computed is kept by point: a second run computes nothing, a finer grid only what is new, and after an
     interruption the same command goes on.
     """
-    from vines.cli._interrupt import stoppable
-    from vines.stages import compile_if_cold, run, status
+    from vines.stages import compile_if_cold, estimate, run, status
 
     if scheduler is not None and engine != "dask":
         raise DeclarationError(f"--scheduler {scheduler} needs --engine dask")
@@ -69,7 +68,10 @@ def command(
     study = the_study()
     plans = status(name, stages=chosen, overrides=overrides, study=study)
     if dry_run:
-        _print_plans(plans, force=force, retry_failed=retry_failed)
+        compile_if_cold(plans, click.echo)
+        told = {"overrides": overrides, "jobs": jobs, "force": force, "retry_failed": retry_failed, "study": study}
+        seconds = estimate(name, stages=chosen, **told)
+        _print_plans(plans, seconds, force=force, retry_failed=retry_failed)
         return
     if not force and not retry_failed and all(p.state == "up_to_date" for p in plans):
         if not quiet:
@@ -84,7 +86,7 @@ def command(
 
     compile_if_cold(plans, (lambda line: None) if quiet else click.echo)
     failure: RunFailed | None = None
-    with stoppable(f"'vines run {name}' goes on"), progress(quiet) as report:
+    with progress(quiet) as report:
         try:
             run(
                 name,
@@ -116,15 +118,17 @@ def read_setting(text: str) -> tuple[str, str]:
     return key.strip(), value.strip()
 
 
-def _print_plans(plans: list[StagePlan], *, force: bool, retry_failed: bool) -> None:
+def _print_plans(plans: list[StagePlan], seconds: dict[str, float], *, force: bool, retry_failed: bool) -> None:
     from vines.cli._layout import print_rows
+    from vines.cli._progress import duration
 
     rows = []
     for p in plans:
         count = p.wanted if force else p.wanted - p.done + (p.failed if retry_failed else 0)
         why = "forced" if force else p.reason or ("failed before" if count else "up to date")
-        rows.append([p.name, p.kind, f"{count} of {p.wanted}", why])
-    print_rows(["stage", "kind", "would compute", "why"], rows, wrap=3)
+        takes = duration(seconds[p.name]) if p.name in seconds else ""
+        rows.append([p.name, p.kind, f"{count} of {p.wanted}", takes, why])
+    print_rows(["stage", "kind", "would compute", "takes about", "why"], rows, wrap=4)
 
 
 def _say_what_was_found(name: str) -> None:

@@ -1,7 +1,7 @@
 """A command in a child process, so that signals end it within a second.
 
-Python runs the handler of a signal between two of its own instructions, and a kernel may go on for hours. So the
-process that a user started only waits, passes signals on, and ends what does not end by itself.
+Python runs the handler of a signal between two of its own instructions, and a kernel or a query may go on for hours. So
+the process that a user started only waits, passes signals on, and ends what does not end by itself.
 """
 
 from __future__ import annotations
@@ -10,12 +10,13 @@ import os
 import signal
 import sys
 import time
+from pathlib import Path
 from types import FrameType
 
-__all__ = ["STOPPED", "go_on_in_a_child", "is_supervised"]
+from vines.cli._interrupt import STOPPED, stopped
 
-STOPPED = 130
-"""Exit code of a shell command that SIGINT ended."""
+__all__ = ["go_on_in_a_child", "is_supervised"]
+
 _PATIENCE = 0.8
 """Seconds that a command has after a signal; those that Python hears end in less."""
 _SET_DEATH_SIGNAL = 1
@@ -35,7 +36,7 @@ def go_on_in_a_child(remedy: str) -> None:
     Parameters
     ----------
     remedy : str
-        What the line that tells of a stop says beside that.
+        What the line that tells of a stop says beside that; see `stopped`.
 
     Notes
     -----
@@ -51,7 +52,7 @@ def go_on_in_a_child(remedy: str) -> None:
         code = _wait(child, heard)
         if code == STOPPED:
             shown = "\x1b[?25h" if sys.stderr.isatty() else ""  # a progress bar hides the cursor
-            os.write(2, os.fsencode(f"{shown}vines: stopped{remedy}\n"))
+            os.write(2, os.fsencode(f"{shown}{stopped(remedy)}\n"))
         os._exit(code)
     _WAITING.add(parent)
     _die_with(parent)
@@ -81,7 +82,7 @@ def _wait(child: int, heard: set[signal.Signals]) -> int:
     while True:
         told = signal.sigtimedwait(heard, max(0.0, min(end - time.monotonic(), 3600.0)))
         if told is None and time.monotonic() >= end:
-            os.kill(child, signal.SIGKILL)
+            _kill(child)
             os.waitpid(child, 0)
             return STOPPED
         if told is None:
@@ -94,3 +95,14 @@ def _wait(child: int, heard: set[signal.Signals]) -> int:
         elif end == float("inf"):
             end = time.monotonic() + _PATIENCE
             os.kill(child, told.si_signo)
+
+
+def _kill(process: int) -> None:
+    """Kill a process and what it has started, such as the server of a viewer."""
+    try:
+        children = Path(f"/proc/{process}/task/{process}/children").read_text("ascii").split()
+    except OSError:  # it has just ended
+        children = []
+    os.kill(process, signal.SIGKILL)
+    for child in map(int, children):
+        _kill(child)

@@ -13,6 +13,7 @@ from typing import Literal
 import numpy as np
 import numpy.typing as npt
 
+from vines.bounds import check_periods
 from vines.cores import cores
 from vines.dynamics import _advance as col
 from vines.dynamics import _lane_run as lanes
@@ -225,6 +226,7 @@ def ensemble(
     for name, value, positive in (("periods", periods, True), ("settle", settle, False)):
         if not (math.isfinite(value) and (value > 0 if positive else value >= 0)):
             raise StateError(f"{name} is {value!r}; give a finite number {'> 0' if positive else '>= 0'}")
+        check_periods(name, value)
     if max_impacts_per_period < 1:
         raise StateError(f"max_impacts_per_period is {max_impacts_per_period!r}; give an integer >= 1")
     if record not in ("final", "measures", "impacts"):

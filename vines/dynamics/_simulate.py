@@ -7,6 +7,7 @@ import math
 import numpy as np
 import numpy.typing as npt
 
+from vines.bounds import check_periods
 from vines.dynamics import _advance as col
 from vines.dynamics._advance import begin, new_state, set_state
 from vines.dynamics._constants import Constants, constants
@@ -90,6 +91,7 @@ def simulate(
     check_start(x1=x1, v1=v1, x2=x2, v2=v2, t=t, phi=phi)
     if not (isinstance(periods, int | float) and math.isfinite(periods) and periods > 0):
         raise StateError(f"periods is {periods!r}; give a finite number > 0")
+    check_periods("periods", periods)
     if max_impacts_per_period < 1:
         raise StateError(f"max_impacts_per_period is {max_impacts_per_period!r}; give an integer >= 1")
     c = constants(p)

@@ -10,6 +10,7 @@ from ._declaration import Carry as Carry
 from ._declaration import Pipeline as Pipeline
 from ._declaration import Refine as Refine
 from ._declaration import Stage as Stage
+from ._estimate import estimate as estimate
 from ._events import Event as Event
 from ._events import RunSummary as RunSummary
 from ._events import StageOutcome as StageOutcome

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import copy
 import itertools
+import math
 import tomllib
 from collections.abc import Iterable, Mapping
 from decimal import Decimal
@@ -24,6 +25,8 @@ from vines.places import find_root
 __all__ = ["GENERAL", "TOP", "load", "read_form"]
 
 TOP = ("include", "params", "source", "stages", "title")
+MOST_POINTS = 100_000_000
+"""Points of a stage; their ids take a gigabyte."""
 GENERAL = ("carry", "kind", "needs", "params", "refine", "vary", "zip")
 
 
@@ -144,6 +147,7 @@ def _stage(name: str, table: dict[str, Any], spec: Kind, common: dict[str, Any],
     zipped = read_zipped(shared["zip"], shared.get("vary", {}), f"{where}.zip") if "zip" in shared else ()
     axes = _axes(shared.get("vary", {}), spec, where, {name for names in zipped for name in names})
     _check_zipped(zipped, axes, where)
+    _check_count(zipped, axes, where)
     params = _params(shared.get("params", {}), spec, common, axes, path, where)
     own = {key: value for key, value in table.items() if key not in general}
     plain = {key: _plain(value, f"{where}.{key}") for key, value in own.items()}
@@ -196,6 +200,14 @@ def _check_zipped(zipped: tuple[tuple[str, ...], ...], axes: tuple[Axis, ...], w
         rows = list(zip(*(axis.values() for axis in axes if axis.name in names), strict=True))
         if len(set(rows)) < len(rows):
             raise DeclarationError(f"{where}.zip: {', '.join(names)} take the same values twice; each point is once")
+
+
+def _check_count(zipped: tuple[tuple[str, ...], ...], axes: tuple[Axis, ...], where: str) -> None:
+    """Refuse a grid whose ids alone would not fit into memory; an interval has no values and counts as one."""
+    together = {name for names in zipped for name in names[1:]}
+    points = math.prod(max(1, axis.count) for axis in axes if axis.name not in together)
+    if points > MOST_POINTS:
+        raise DeclarationError(f"{where}.vary: the axes make {points} points; at most {MOST_POINTS} are in one stage")
 
 
 def _params(

@@ -27,6 +27,7 @@ from .api._parts import load_pipeline as load_pipeline
 from .api._parts import members_of as members_of
 from .api._reference import reference_kinds as reference_kinds
 from .api._reference import reference_plots as reference_plots
+from .api._running import estimate as estimate
 from .api._running import list_pipelines as list_pipelines
 from .api._running import run as run
 from .api._running import status as status

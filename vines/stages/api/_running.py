@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 from vines.errors import EngineError, PackageMissingError, VinesError
 from vines.pipeline import available, code_digests, plan
+from vines.pipeline import estimate as estimate_points
 from vines.stages.api._home import Home, current
 from vines.stages.api._parts import Part, load_parts, members_of
 
@@ -15,7 +16,7 @@ if TYPE_CHECKING:
     from vines.pipeline import CodeDigests, Declaration, Event, RunSummary, StageOutcome, StagePlan
     from vines.store import Store
 
-__all__ = ["list_pipelines", "run", "status", "status_of_each"]
+__all__ = ["estimate", "list_pipelines", "run", "status", "status_of_each"]
 
 
 def run(
@@ -164,6 +165,29 @@ def status(
     """
     study = study or current()
     return _plans(load_parts(name, stages, overrides, study=study), study.store, code_digests(study.store))
+
+
+def estimate(
+    name: str | Declaration,
+    *,
+    stages: Iterable[str] | None = None,
+    overrides: Mapping[str, Any] | None = None,
+    jobs: int | None = None,
+    force: bool = False,
+    retry_failed: bool = False,
+    study: Home | None = None,
+) -> dict[str, float]:
+    """Return how many seconds the points would take that :func:`run` would compute with the same arguments, by stage.
+
+    Some points of each stage are computed for it and not kept. Stages that are not made of points are left out.
+    """
+    study = study or current()
+    asked: dict[str, Any] = {"jobs": jobs, "force": force, "retry_failed": retry_failed}
+    return {
+        part.prefix + stage: seconds
+        for part in load_parts(name, stages, overrides, study=study)
+        for stage, seconds in estimate_points(part.pipeline, study.store, part.stages, **asked).items()
+    }
 
 
 def status_of_each(

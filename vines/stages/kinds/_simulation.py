@@ -2,23 +2,16 @@
 
 from __future__ import annotations
 
-import os
-from collections.abc import Mapping
 from typing import Annotated, Any
 
 import msgspec
 from msgspec import Meta
 
-from vines.errors import ParameterError, StateError
+from vines.bounds import check_periods
+from vines.errors import StateError
 from vines.model import VI_NES, Params
 
 __all__ = ["Start", "check_simulation"]
-
-MOST_PERIODS = 10_000_000
-"""Forcing periods of one point that nobody computes by mistake: it takes a minute, and a sweep has hundreds."""
-ALLOWED_BY = "VINES_LONG_POINTS"
-"""Variable of the environment that allows more; no option, since it changes no result and belongs to no key."""
-
 
 _State = msgspec.defstruct(
     "_State", [(each.name, Annotated[float, Meta(description=each.text)], each.start) for each in VI_NES.state]
@@ -32,7 +25,7 @@ class Start(_State, frozen=True, forbid_unknown_fields=True):
 def check_simulation(params: dict[str, float], options: Any) -> None:
     """Refuse parameters that the model cannot have, and a start outside the cavity."""
     Params(**params)
-    _check_length(msgspec.structs.asdict(options))
+    check_length(options)
     if options.start == "random":
         return
     gap = options.start.x1 - options.start.x2
@@ -42,10 +35,12 @@ def check_simulation(params: dict[str, float], options: Any) -> None:
         )
 
 
-def _check_length(values: Mapping[str, Any]) -> None:
-    for name in ("settle", "record", "watch"):
-        if values.get(name, 0) > MOST_PERIODS and not os.environ.get(ALLOWED_BY):
-            raise ParameterError(
-                f"{name} is {values[name]}, allowed is {name} <= {MOST_PERIODS} periods a point; "
-                f"{ALLOWED_BY}=1 in the environment allows more"
-            )
+def check_length(options: msgspec.Struct) -> None:
+    """Refuse runs of years, and random starts that take years together."""
+    values: dict[str, Any] = msgspec.structs.asdict(options)
+    runs = {name: values[name] for name in ("settle", "record", "watch", "patience") if name in values}
+    for name, periods in runs.items():
+        check_periods(name, periods)
+    starts = values.get("random", 0)
+    if starts:
+        check_periods("(settle + record) (1 + random)", (runs["settle"] + runs["record"]) * (1 + starts))

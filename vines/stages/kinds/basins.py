@@ -11,6 +11,7 @@ from vines.errors import ParameterError, nearest
 from vines.model import START_NAMES, Params
 from vines.pipeline import Kind
 from vines.stages.kinds._parameters import PARAMETERS
+from vines.stages.kinds._simulation import check_length
 
 __all__ = ["KIND", "BasinsOptions", "Grid"]
 
@@ -19,6 +20,10 @@ if TYPE_CHECKING:
     _Coordinate = str
 else:
     _Coordinate = Literal[START_NAMES]
+
+
+MOST_CELLS = 10_000_000
+"""Cells of a grid: days of computing, and as much memory as a machine has."""
 
 
 class Grid(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -54,6 +59,10 @@ class BasinsOptions(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 def _check(params: dict[str, float], options: BasinsOptions) -> None:
     Params(**params)
+    check_length(options)
+    cells = options.x.count * options.y.count
+    if cells > MOST_CELLS:
+        raise ParameterError(f"x and y make {cells} cells, allowed are {MOST_CELLS} before they are halved")
     names = {options.x.name, options.y.name}
     if len(names) < 2 or names & set(options.start):
         raise ParameterError(f"x is {options.x.name}, y is {options.y.name}: give two coordinates, not again in start")
