@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import logging
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -75,7 +76,7 @@ def read(path: Path) -> RawFile:
 
 def _later(channel: RawChannel, nanoseconds: float) -> RawChannel:
     start = (channel.start or 0.0) + 1e-9 * float(nanoseconds)
-    return RawChannel(channel.name, channel.values, channel.unit, channel.rate, start, channel.times, channel.about)
+    return replace(channel, start=start)
 
 
 def write(path: Path, channels: tuple[RawChannel, ...], *, started: str) -> None:

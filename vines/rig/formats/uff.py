@@ -117,7 +117,9 @@ def write(path: Path, channels: tuple[RawChannel, ...], *, started: str) -> None
 
 def _begins(head: bytes, suffix: str) -> bool:
     del suffix
-    return head.lstrip(b" \r\n").startswith(b"-1")
+    # A line of -1 and nothing else: text may begin with a negative number, too.
+    lines = head.split(b"\n", 4)
+    return next((line.strip() for line in lines if line.strip()), b"") == b"-1"
 
 
 FORMAT = Format(
