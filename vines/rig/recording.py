@@ -77,6 +77,12 @@ class Sampled:
         """Times of the samples on the clock of the run [s]."""
         return self.start + np.arange(len(self.values)) / self.rate
 
+    @property
+    def where(self) -> str:
+        """How messages call it: its name, with file and field where they are known."""
+        file = self.about.get("file")
+        return f"{self.name} (raw/{file}, {self.about['field']})" if file else self.name
+
 
 @dataclass(frozen=True, slots=True)
 class RunInfo:

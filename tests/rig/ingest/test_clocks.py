@@ -66,7 +66,7 @@ def test_a_ring_down_is_aligned_by_the_oscillator():
     ("change", "max_offset", "reason"),
     [
         ({"pace": 1.0005}, 0.05, "ppm apart, allowed are 300; one sampling rate is wrong"),
-        ({"offset": 0.03}, 0.02, r"is 30 ms off base_acc_a, allowed are 20 ms \(max_offset in run.json\)"),
+        ({"offset": 0.03}, 0.02, r"is 30 ms off base_acc_a \(raw/a, a\), allowed are 20 ms \(max_offset in run.json\)"),
         ({"offset": 0.03}, 0.06, "tells offsets apart only below half its period"),
     ],
 )

@@ -11,8 +11,9 @@ from vines.errors import FileMissingError, RigError, StoreError
 from vines.places import shipped
 from vines.rig import read_folder, read_run, write_template
 from vines.rig.formats import RawChannel
-from vines.rig.ingest._calibrate import calibrate, even_rate
+from vines.rig.ingest._calibrate import calibrate
 from vines.rig.ingest._run_form import schemas
+from vines.rig.ingest._sampling import even_rate
 from vines.rig.synth import RigSettings, simulate_rig
 from vines.rig.units import volts_per_unit
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
 from vines.doors import Register
@@ -35,6 +34,8 @@ class Format:
         :class:`vines.errors.RigError` says a reason of its own.
     begins : callable, optional
         ``begins(head, suffix)`` says whether a file with these first 1024 bytes and that suffix is of the format.
+    dialects : bool
+        Whether it is text of many layouts: ``read(path, dialect)`` then takes what ``channels.tsv`` states of one.
     write : callable, optional
         ``write(path, channels, started=...)``, by which a synthetic rig writes such a file: a tuple of
         :class:`RawChannel`, with floating samples or the steps of a converter (int32, the value of one step as
@@ -50,9 +51,10 @@ class Format:
     label: str
     summary: str
     suffixes: tuple[str, ...]
-    read: Callable[[Path], RawFile]
+    read: Callable[..., RawFile]
     begins: Callable[[bytes, str], bool] | None = None
     write: Callable[..., None] | None = None
+    dialects: bool = False
 
 
 FORMATS: Register[Format] = Register("format", "vines.formats", Format, RigError)

@@ -30,7 +30,9 @@ class RawChannel:
     start : float or None
         Seconds from the earliest first sample of the file to that of this channel.
     times : ndarray of float64 or None, shape (n,)
-        Times of the samples [s], where the file gives one for each.
+        Times of the samples, where the file gives one for each: seconds, or in what unit the file does not say.
+    tick : float or None
+        Seconds of one unit of `times`: 1, or ``None`` where the file does not say.
     about : mapping of str to str
         Anything else that the file says of it.
     """
@@ -41,6 +43,7 @@ class RawChannel:
     rate: float | None = None
     start: float | None = None
     times: npt.NDArray[np.float64] | None = None
+    tick: float | None = 1.0
     about: Mapping[str, str] = field(default_factory=dict)
 
 
@@ -58,12 +61,18 @@ class RawFile:
         When it was started, ISO 8601, if it says so.
     other : tuple of str
         What else is in it and is no channel, each in a few words.
+    dialect : str
+        How a file of text was read, as ``channels.tsv`` would state it.
+    remarks : tuple of str
+        What was found and has to be known: that its end is missing, say.
     """
 
     form: str
     channels: tuple[RawChannel, ...]
     started: str | None = None
     other: tuple[str, ...] = ()
+    dialect: str = ""
+    remarks: tuple[str, ...] = ()
 
     def channel(self, name: str) -> RawChannel:
         """Return a channel by name.

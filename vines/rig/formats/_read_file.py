@@ -12,13 +12,15 @@ from vines.rig.formats._raw import RawFile
 __all__ = ["read_file"]
 
 
-def read_file(path: Path) -> RawFile:
+def read_file(path: Path, dialect: str = "") -> RawFile:
     """Read a file of a recorder.
 
     Parameters
     ----------
     path : Path
         NI TDMS, UFF dataset 58, MATLAB v4 to v7.3, CSV, HDF5, WAV, or what another package reads.
+    dialect : str
+        How a file of text is laid out, as far as that is stated, such as ``separator=semicolon time_unit=ms``.
 
     Raises
     ------
@@ -34,11 +36,13 @@ def read_file(path: Path) -> RawFile:
     if not path.is_file():
         raise FileMissingError(f"{path}: there is no such file")
     form = _format_of(path)
+    if dialect and not form.dialects:
+        raise RigError(f"{path.name}: a dialect is stated, but it is {form.label}, which has none")
     try:
         with warnings.catch_warnings():
             # What the libraries warn about is either refused below or harmless, such as a missing index file.
             warnings.simplefilter("ignore")
-            found = form.read(path)
+            found = form.read(path, dialect) if form.dialects else form.read(path)
     except RigError as error:
         raise RigError(f"{path.name}: {error}") from None
     except PackageMissingError as error:

@@ -1,4 +1,4 @@
-"""HDF5: every one-dimensional dataset of numbers is a channel; unit, rate and start are taken from its attributes."""
+"""HDF5: vectors, columns of long matrices and fields of compound types; attributes say unit, rate and start."""
 
 from __future__ import annotations
 
@@ -32,8 +32,32 @@ def first_of(attributes: Mapping[str, Any], names: tuple[str, ...]) -> Any:
         if name in attributes:
             value = attributes[name]
             value = value.item() if isinstance(value, np.ndarray) and value.size == 1 else value
-            return value.decode("utf-8", "replace") if isinstance(value, bytes) else value
+            return _text(value)
     return None
+
+
+def _text(value: Any) -> Any:
+    return value.decode("utf-8", "replace") if isinstance(value, bytes) else value
+
+
+def _columns(name: str, each: Any) -> dict[str, np.ndarray]:
+    """Return the channels of a dataset: a vector, the columns ``name[1]`` of a long matrix, fields ``name.field``."""
+    kinds = each.dtype
+    if each.ndim == 1 and len(each) > 1 and kinds.names:
+        values = each[()]
+        return {f"{name}.{field}": np.ascontiguousarray(values[field]) for field in kinds.names if _plain(kinds[field])}
+    if not _plain(kinds) or each.size < 2:
+        return {}
+    if each.ndim == 1:
+        return {name: each[()]}
+    if each.ndim != 2 or max(each.shape) < 16 * min(each.shape):
+        return {}
+    values = each[()] if each.shape[0] > each.shape[1] else each[()].T
+    return {f"{name}[{k + 1}]": np.ascontiguousarray(values[:, k]) for k in range(values.shape[1])}
+
+
+def _plain(kind: np.dtype) -> bool:
+    return kind.kind in "iuf" and not kind.shape
 
 
 def _number(value: Any) -> float | None:
@@ -56,24 +80,27 @@ def read(path: Path) -> RawFile:
         def take(name: str, each: Any) -> None:
             if not isinstance(each, h5py.Dataset):
                 return
-            if each.ndim != 1 or each.dtype.kind not in "iuf" or len(each) < 2:
+            columns = _columns(name, each)
+            if not columns:
                 other.append(f"{name} {each.shape} of {each.dtype}")
                 return
-            attributes = dict(each.attrs)
-            unit = first_of(attributes, _UNIT)
+            # A rate may stand once for all, at the group or the file.
+            attributes = {**dict(file.attrs), **dict(each.parent.attrs), **dict(each.attrs)}
+            unit = first_of(dict(each.attrs), _UNIT)
             rate, step = _number(first_of(attributes, _RATE)), _number(first_of(attributes, _STEP))
-            slope = _number(first_of(attributes, ("slope",)))
-            values = each[()]
-            channels.append(
-                RawChannel(
-                    name=name,
-                    values=values if slope is None else values * slope,
-                    unit=None if unit is None else str(unit),
-                    rate=rate if rate else 1.0 / step if step else None,
-                    start=_number(first_of(attributes, _START)),
-                    about={key: str(value) for key, value in attributes.items()},
+            slope = _number(first_of(dict(each.attrs), ("slope",)))
+            for place, (label, values) in enumerate(columns.items()):
+                own = _text(unit[place]) if np.ndim(unit) == 1 and len(unit) == len(columns) else unit
+                channels.append(
+                    RawChannel(
+                        name=label,
+                        values=values if slope is None else values * slope,
+                        unit=own if isinstance(own, str) else None,
+                        rate=rate if rate else 1.0 / step if step else None,
+                        start=_number(first_of(dict(each.attrs), _START)),
+                        about={key: str(value) for key, value in each.attrs.items()},
+                    )
                 )
-            )
 
         file.visititems(take)
     return RawFile("HDF5", tuple(channels), None if started is None else str(started), tuple(other))
@@ -103,7 +130,7 @@ def _begins(head: bytes, suffix: str) -> bool:
 FORMAT = Format(
     name="hdf5",
     label="HDF5",
-    summary="one-dimensional datasets; attributes `unit`, `sampling_rate` or `dt`, `start`",
+    summary="vectors, columns of long matrices, compound types; attributes `unit`, `sampling_rate` or `dt`, `start`",
     suffixes=(".h5", ".hdf5", ".hdf"),
     read=read,
     begins=_begins,

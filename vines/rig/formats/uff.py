@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from vines.errors import RigError
 from vines.packages import need
 from vines.rig.formats._format import Format
 from vines.rig.formats._raw import RawChannel, RawFile
@@ -23,6 +24,11 @@ def read(path: Path) -> RawFile:
     """Read the time histories of a file; a channel is called by its first line, with a number where two share it.
 
     The time step is written with six digits (2.6 ppm), so a stated rate is to be preferred.
+
+    Raises
+    ------
+    RigError
+        If samples are missing.
     """
     need("pyuff")
     import pyuff
@@ -31,6 +37,7 @@ def read(path: Path) -> RawFile:
     kinds = np.atleast_1d(np.asarray(file.get_set_types(), int))
     channels: list[RawChannel] = []
     other: list[str] = []
+    remarks: list[str] = []
     for place, kind in enumerate(kinds.tolist()):
         if kind != 58:
             other.append(f"dataset {kind}")
@@ -43,7 +50,13 @@ def read(path: Path) -> RawFile:
         if np.iscomplexobj(values):
             other.append("a complex time history")
             continue
+        count = int(each.get("num_pts") or len(values))
         name = str(each.get("id1") or "").strip() or "NONE"
+        if len(values) < count:
+            raise RigError(f"{name}: {count} samples are declared, {len(values)} are there; its end is missing")
+        if len(values) > count:
+            # The last line of text is filled up with zeros.
+            remarks.append(f"{name}: {len(values) - count} numbers behind the {count} samples declared are left out")
         used = [channel.name for channel in channels]
         name = name if name not in used else f"{name} ({sum(one.split(' (')[0] == name for one in used) + 1})"
         unit = str(each.get("ordinate_axis_units_lab") or "").strip()
@@ -56,15 +69,15 @@ def read(path: Path) -> RawFile:
         channels.append(
             RawChannel(
                 name=name,
-                values=values,
+                values=values[:count],
                 unit=None if unit.upper() in ("", "NONE") else unit,
                 rate=1.0 / step if even and step > 0 else None,
                 start=float(each.get("abscissa_min") or 0.0) if even else None,
-                times=None if even else np.asarray(each["x"], np.float64),
+                times=None if even else np.asarray(each["x"], np.float64)[:count],
                 about=about,
             )
         )
-    return RawFile("UFF dataset 58", tuple(channels), other=tuple(other))
+    return RawFile("UFF dataset 58", tuple(channels), other=tuple(other), remarks=tuple(remarks))
 
 
 def write(path: Path, channels: tuple[RawChannel, ...], *, started: str) -> None:
@@ -107,7 +120,9 @@ def write(path: Path, channels: tuple[RawChannel, ...], *, started: str) -> None
 
 def _begins(head: bytes, suffix: str) -> bool:
     del suffix
-    return head.lstrip(b" \r\n").startswith(b"-1")
+    # A line of -1 and nothing else: text may begin with a negative number, too.
+    lines = head.split(b"\n", 4)
+    return next((line.strip() for line in lines if line.strip()), b"") == b"-1"
 
 
 FORMAT = Format(

@@ -65,19 +65,19 @@ def _check_command(run: RunInfo, base: list[tuple[Sampled, Tone]]) -> list[str]:
     for channel, tone in base:
         if not tone.clear:
             raise RigError(
-                f"{channel.name}: the base shows no clear forcing ({tone.amplitude:.3g} against {tone.noise:.3g} of "
+                f"{channel.where}: the base shows no clear forcing ({tone.amplitude:.3g} against {tone.noise:.3g} of "
                 f"noise), but protocol is {run.protocol}; is the channel connected?"
             )
         if run.f_cmd is not None and abs(tone.f / run.f_cmd - 1) > _COMMAND:
             raise RigError(
-                f"{channel.name}: the base moves at {tone.f:.6g} Hz, f_cmd is {run.f_cmd:.6g} Hz; a sampling rate or "
+                f"{channel.where}: the base moves at {tone.f:.6g} Hz, f_cmd is {run.f_cmd:.6g} Hz; a sampling rate or "
                 "the command is wrong"
             )
         if run.E_cmd is not None:
             E = tone.amplitude if channel.role == "base_disp" else tone.amplitude / (2 * np.pi * tone.f) ** 2
             if not _REACHED[0] < E / run.E_cmd < _REACHED[1]:
                 raise RigError(
-                    f"{channel.name}: the base moves by {E:.3g} m, {E / run.E_cmd:.3g} times E_cmd = {run.E_cmd:.3g}: "
+                    f"{channel.where}: the base moves by {E:.3g} m, {E / run.E_cmd:.3g} times E_cmd = {run.E_cmd:.3g}: "
                     "a unit, a sensitivity or the command is wrong"
                 )
     return [f"{channel.name} against the command" for channel, _ in base]
@@ -93,15 +93,15 @@ def _compare(one: Sampled, a: Tone, other: Sampled, b: Tone) -> list[str]:
     angle = float((angle + np.pi) % (2 * np.pi) - np.pi)
     if abs(abs(angle) - np.pi) < _ANGLE:
         raise RigError(
-            f"{one.name} and {other.name} saw one motion with opposite signs: one sign is wrong in channels.tsv"
+            f"{one.where} and {other.where} saw one motion with opposite signs: one sign is wrong in channels.tsv"
         )
     if abs(ratio - 1) > _RATIO:
         raise RigError(
-            f"{other.name} shows {ratio:.3g} times the motion that {one.name} shows; a unit or a sensitivity is wrong"
+            f"{other.where} shows {ratio:.3g} times the motion that {one.where} shows; a unit or a sensitivity is wrong"
         )
     if abs(angle) > _ANGLE:
         raise RigError(
-            f"{one.name} and {other.name} saw one motion {np.degrees(angle):+.0f} degrees apart; a clock, a delay or a "
-            "high-pass is wrong"
+            f"{one.where} and {other.where} saw one motion {np.degrees(angle):+.0f} degrees apart; a clock, a delay "
+            "or a high-pass is wrong"
         )
     return [f"{other.name} against {one.name}: {ratio:.4f} times, {np.degrees(angle):+.2f} deg"]

@@ -9,22 +9,19 @@ import numpy.typing as npt
 
 from vines.errors import RigError
 from vines.rig.formats import RawChannel
+from vines.rig.ingest._clipping import clipped_samples
+from vines.rig.ingest._overrule import Overruling
 from vines.rig.ingest._run_form import ChannelRow
+from vines.rig.ingest._sampling import sampling
 from vines.rig.recording import ROLES
 from vines.rig.units import si_factor, volts_per_unit
 
-__all__ = ["U_CORNER", "Calibrated", "calibrate", "even_rate"]
+__all__ = ["U_CORNER", "Calibrated", "calibrate"]
 
 U_CORNER = 0.01
 """Relative standard uncertainty of the corner of a high-pass: of a calibrated conditioner, about a per cent."""
 
-_RATE_AGREES = 2e-5
-"""Relative difference between a stated rate and that of a file that is taken for rounding: UFF58 keeps six digits."""
-_EVEN = 0.02
-"""Largest error of a time stamp, in samples, that is taken for rounding."""
-_FULL = 0.9999
 _GUARD = 2
-_FLAT = 3
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -43,6 +40,8 @@ class Calibrated:
         Samples a second and time of the first one [s], group delay taken off.
     clipped : int
         Samples at the end of the range, or lost.
+    remarks : tuple of str
+        What was concluded from its file and has to be known.
     """
 
     row: ChannelRow
@@ -51,6 +50,7 @@ class Calibrated:
     rate: float
     start: float
     clipped: int
+    remarks: tuple[str, ...] = ()
 
     @property
     def times(self) -> npt.NDArray[np.float64]:
@@ -58,7 +58,9 @@ class Calibrated:
         return self.start + np.arange(len(self.values)) / self.rate
 
 
-def calibrate(row: ChannelRow, raw: RawChannel, *, max_clipped: float) -> Calibrated:
+def calibrate(
+    row: ChannelRow, raw: RawChannel, *, max_clipped: float, overruling: Overruling | None = None
+) -> Calibrated:
     """Return a channel in SI units.
 
     Parameters
@@ -69,26 +71,32 @@ def calibrate(row: ChannelRow, raw: RawChannel, *, max_clipped: float) -> Calibr
         What its file holds.
     max_clipped : float
         Share of clipped samples above which it is refused.
+    overruling : Overruling, optional
+        Reasons for what contradicts the file; what was used of them is noted in it.
 
     Raises
     ------
     RigError
         If what is stated contradicts the file, samples are missing, their times uneven, or too many clipped.
     """
-    where = f"{row.name} (raw/{row.file}, {row.field})"
+    where = row.where
+    overruling = overruling or Overruling(row.overrule)
     if raw.values.ndim != 1 or not len(raw.values):
         raise RigError(f"{where}: it holds no samples")
     values = np.asarray(raw.values, np.float64)
     bad = ~np.isfinite(values)
     if bad.any():
+        first = raw.about.get("no number", f"number {int(bad.argmax())}")
         raise RigError(
-            f"{where}: {int(bad.sum())} of {len(bad)} samples are NaN or infinite, the first at {int(bad.argmax())}; "
+            f"{where}: {int(bad.sum())} of {len(bad)} samples are NaN or infinite, the first is {first}; "
             "raw samples must be numbers: a lost one is written as out of range"
         )
-    factor = _si_per_unit(row, raw, where)
-    rate = _rate(row, raw, where)
-    start = _start(row, raw, where)
-    lost = _clipped(values, row.range)
+    factor = _si_per_unit(row, raw, where, overruling)
+    if row.scale != 1 or row.offset:
+        values = values * row.scale + row.offset
+    found = sampling(row, raw, where, overruling)
+    rate = found.rate
+    lost = clipped_samples(values, row.range)
     share = lost.mean()
     if share > max_clipped:
         raise RigError(
@@ -103,14 +111,16 @@ def calibrate(row: ChannelRow, raw: RawChannel, *, max_clipped: float) -> Calibr
     values = values * (factor * float(row.sign))
     if row.high_pass:
         values = _undo_high_pass(values, row.high_pass, rate, valid)
-    return Calibrated(row, values, valid, rate, start - row.group_delay, int(lost.sum()))
+    return Calibrated(row, values, valid, rate, found.start - row.group_delay, int(lost.sum()), found.remarks)
 
 
-def _si_per_unit(row: ChannelRow, raw: RawChannel, where: str) -> float:
-    """Return what one unit of the numbers in the file is in the SI unit of the role."""
-    quantity, factor = si_factor(row.unit)
-    if raw.unit is not None and si_factor(raw.unit) != (quantity, factor):
-        raise RigError(f"{where}: channels.tsv says that its unit is {row.unit}, the file says {raw.unit}; correct one")
+def _si_per_unit(row: ChannelRow, raw: RawChannel, where: str, overruling: Overruling) -> float:
+    """Return what one unit of the numbers, scale applied, is in the SI unit of the role."""
+    try:
+        quantity, factor = si_factor(row.unit)
+    except RigError as unknown:
+        raise RigError(f"{where}: channels.tsv: {unknown}") from None
+    _check_unit(row, raw, (quantity, factor), where, overruling)
     wanted, unit = ROLES[row.role]
     if row.sensitivity == "scaled":
         if quantity != wanted:
@@ -129,74 +139,27 @@ def _si_per_unit(row: ChannelRow, raw: RawChannel, where: str) -> float:
     return factor / volts
 
 
-def even_rate(times: npt.NDArray[np.float64], where: str) -> float:
-    """Return the rate of time stamps.
-
-    Raises
-    ------
-    RigError
-        If they are not even: a sample is missing, doubled or late.
-    """
-    if len(times) < 2 or not np.isfinite(times).all() or not times[-1] > times[0]:
-        raise RigError(f"{where}: its time stamps don't rise; a rate cannot be taken from them")
-    # The median step keeps one gap from looking like many small errors.
-    step = float(np.median(np.diff(times[: min(len(times), 4096)])))
-    mean = (times[-1] - times[0]) / (len(times) - 1)
-    if step > 0 and abs(mean - step) < _EVEN * step / 4:
-        step = float(mean)
-    if not step > 0:
-        raise RigError(f"{where}: its time stamps don't rise; a rate cannot be taken from them")
-    error = np.abs(times - times[0] - step * np.arange(len(times)))
-    worst = float(error.max())
-    if worst > _EVEN * step + 1e-9:
-        place = int(np.argmax(error > _EVEN * step + 1e-9))
-        raise RigError(
-            f"{where}: time stamps are not even: sample {place} is {error[place] / step:.3g} sampling intervals off; "
-            "resample, or give the runs before and after the gap as two"
-        )
-    return 1.0 / step
-
-
-def _rate(row: ChannelRow, raw: RawChannel, where: str) -> float:
-    """Return the sampling rate, where table and file agree on it."""
-    told = raw.rate if raw.times is None else even_rate(raw.times, where)
-    if row.fs == "file":
-        if told is None:
-            raise RigError(f"{where}: no sampling rate: fs is file, but the file states none; write it in Hz")
-        return told
-    if told is not None and abs(told / row.fs - 1) > _RATE_AGREES:
-        raise RigError(
-            f"{where}: channels.tsv says {row.fs:.9g} samples a second, the file {told:.9g}; one of them is wrong"
-        )
-    return row.fs
-
-
-def _start(row: ChannelRow, raw: RawChannel, where: str) -> float:
-    """Return the time of the first sample on the clock of the recorder."""
-    if row.t0 != "file":
-        return row.t0
-    if raw.times is not None:
-        return float(raw.times[0])
-    if raw.start is None:
-        raise RigError(f"{where}: t0 is file, but the file does not say when the channel starts; write it in seconds")
-    return raw.start
-
-
-def _clipped(values: npt.NDArray[np.float64], limit: float) -> npt.NDArray[np.bool_]:
-    """Return where samples are at the end of the range, or stay at the largest or least value for three and more."""
-    lost = np.abs(values) >= _FULL * limit
-    for extreme in (values.max(), values.min()):
-        if abs(extreme) < 0.05 * limit:
-            continue
-        flat = values == extreme
-        if flat.sum() >= _FLAT:
-            inner = flat.copy()
-            for shift in range(1, _FLAT):
-                inner[: len(flat) - shift] &= flat[shift:]
-                inner[len(flat) - shift :] = False
-            for shift in range(_FLAT):
-                lost[shift:] |= inner[: len(flat) - shift]
-    return lost
+def _check_unit(
+    row: ChannelRow, raw: RawChannel, stated: tuple[str, float], where: str, overruling: Overruling
+) -> None:
+    """Refuse a unit of the file that is not the one stated, unless it is overruled or the numbers are scaled counts."""
+    if raw.unit is None:
+        return
+    scaled = row.scale != 1
+    remedy = "correct unit, or write 'unit: REASON' into overrule"
+    try:
+        told = si_factor(raw.unit)
+    except RigError as unknown:
+        told, why = None, f"the file's {unknown}"
+    else:
+        why = f"channels.tsv says that its unit is {row.unit}, the file says {raw.unit}"
+        if told[0] == "count" and not scaled:
+            remedy = "write what one count is into scale"
+        elif scaled and told[0] != "count":
+            why = f"scale is {row.scale:g}, but the file holds {raw.unit} and no counts"
+    fits = told is not None and (told[0] == "count" if scaled else told == stated)
+    if not fits and not overruling.take("unit", f"the file says {raw.unit}, {row.unit} is taken"):
+        raise RigError(f"{where}: {why}; {remedy}")
 
 
 def _undo_high_pass(

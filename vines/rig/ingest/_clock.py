@@ -100,7 +100,7 @@ def _check_jumps(channels: Sequence[Calibrated], tones: dict[str, Tone | None]) 
             place = int(jumps.argmax())
             when = 0.5 * (found.times[place] + found.times[place + 1])
             raise RigError(
-                f"{channel.row.name}: the clock of recorder {channel.row.recorder!r} jumps by about "
+                f"{channel.row.where}: the clock of recorder {channel.row.recorder!r} jumps by about "
                 f"{1e3 * float(np.ptp(found.slips)):.2g} ms near {when:.3g} s: "
                 "samples were lost; clocks can't be aligned across the gap"
             )
@@ -127,7 +127,7 @@ def _align(
     pace = b.f / a.f
     if abs(pace - 1) > _DIFFER:
         raise RigError(
-            f"{between}: {here.row.name} has {a.f:.6g} Hz, {there.row.name} {b.f:.6g} Hz, "
+            f"{between}: {here.row.where} has {a.f:.6g} Hz, {there.row.where} {b.f:.6g} Hz, "
             f"{1e6 * (pace - 1):+.0f} ppm apart, allowed are {1e6 * _DIFFER:.0f}; one sampling rate is wrong"
         )
     if not max_offset < 0.5 / a.f:
@@ -140,7 +140,7 @@ def _align(
     offset = float((phase_b - a.phase + np.pi) % (2 * np.pi) - np.pi) / (2 * np.pi * a.f)
     if abs(offset) > max_offset:
         raise RigError(
-            f"{between}: {there.row.name} is {1e3 * offset:.4g} ms off {here.row.name}, allowed are "
+            f"{between}: {there.row.where} is {1e3 * offset:.4g} ms off {here.row.where}, allowed are "
             f"{1e3 * max_offset:.4g} ms (max_offset in run.json); or one of their signs is wrong"
         )
     u = float(np.hypot(a.u_phase, b.u_phase)) / (2 * np.pi * a.f)

@@ -6,17 +6,16 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
 from vines.errors import RigError
 from vines.packages import need
 from vines.rig.formats import RawChannel, RawFile
-from vines.rig.ingest._calibrate import even_rate
+from vines.rig.ingest._clipping import flat_ends
+from vines.rig.ingest._sampling import even_rate
 
 __all__ = ["ChannelFacts", "channel_facts", "draw_file", "spark"]
 
 _BARS = " ▁▂▃▄▅▆▇█"
-_FLAT = 4
 _MOST_DRAWN = 8
 _COLOUR = "#4477aa"
 _PIECE = 0.3
@@ -43,7 +42,7 @@ class ChannelFacts:
     gaps : str
         What is wrong with the times or where samples are missing, in words; empty if nothing is.
     clipped : int
-        Samples that stay at the largest or least value for four and more.
+        Samples that stay at the largest or least value for three and more, where that is no quantised top.
     """
 
     name: str
@@ -65,13 +64,17 @@ def channel_facts(channel: RawChannel) -> ChannelFacts:
     good = values[finite]
     said = []
     rate = channel.rate
-    if channel.times is not None:
+    if channel.times is not None and channel.tick is None:
+        rate = None
+        said.append("its times have no unit")
+    elif channel.times is not None:
         try:
             rate = even_rate(channel.times, "")
         except RigError as uneven:
             said.append(str(uneven).removeprefix(": ").split(";")[0])
     if not finite.all():
-        said.append(f"{int((~finite).sum())} samples are no numbers, the first at {int((~finite).argmax())}")
+        first = channel.about.get("no number", f"number {int((~finite).argmax())}")
+        said.append(f"{int((~finite).sum())} samples are no numbers, the first is {first}")
     if not len(good):
         good = np.array([np.nan])
     return ChannelFacts(
@@ -84,23 +87,8 @@ def channel_facts(channel: RawChannel) -> ChannelFacts:
         mean=float(good.mean()),
         rms=float(np.std(good)),
         gaps="; ".join(said),
-        clipped=_flat(good),
+        clipped=int(flat_ends(good).sum()),
     )
-
-
-def _flat(values: npt.NDArray[np.float64]) -> int:
-    """Return how many samples lie in stretches of four and more at the largest or least value."""
-    if len(values) < _FLAT or values.min() == values.max():
-        return 0
-    total = 0
-    # A channel with few levels, such as a digital line, stays at its ends and is not clipped.
-    if len(np.unique(values[:4096])) <= 16:
-        return 0
-    for extreme in (values.max(), values.min()):
-        edges = np.flatnonzero(np.diff(np.concatenate([[0], values == extreme, [0]])))
-        lengths = np.diff(edges)[::2]
-        total += int(lengths[lengths >= _FLAT].sum())
-    return total
 
 
 def spark(channel: RawChannel, width: int = 48) -> str:

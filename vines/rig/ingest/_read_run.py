@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass, field
 from pathlib import Path
 
 from vines.errors import RigError
@@ -12,8 +13,10 @@ from vines.rig.formats import RawChannel, RawFile, read_file
 from vines.rig.ingest._agreement import check_agreement
 from vines.rig.ingest._calibrate import U_CORNER, Calibrated, calibrate
 from vines.rig.ingest._clock import Clock, align_clocks
-from vines.rig.ingest._run_folder import check_sums, raw_sums, read_folder, run_info
+from vines.rig.ingest._overrule import Overruling
+from vines.rig.ingest._run_folder import RunFolder, check_sums, raw_sums, read_folder, run_info
 from vines.rig.ingest._run_form import ChannelRow, RunForm
+from vines.rig.ingest._sampling import check_starts
 from vines.rig.recording import ROLES, Recording, Sampled
 
 __all__ = ["Ingested", "assemble", "read_run"]
@@ -37,6 +40,12 @@ class Ingested:
         SHA-256 of each raw file.
     compared : tuple of str
         What was compared, in words.
+    read_as : mapping of str to str
+        Format of the file of each channel, with the layout of a text.
+    overruled : mapping of str to str
+        What of its file was overruled for each channel, with the reasons.
+    remarks : mapping of str to str
+        What was found in reading each channel and has to be known.
     """
 
     recording: Recording
@@ -45,6 +54,9 @@ class Ingested:
     clocks: Mapping[str, Clock]
     sums: Mapping[str, str]
     compared: tuple[str, ...]
+    read_as: Mapping[str, str] = field(default_factory=dict)
+    overruled: Mapping[str, str] = field(default_factory=dict)
+    remarks: Mapping[str, str] = field(default_factory=dict)
 
 
 def read_run(path: Path) -> Ingested:
@@ -65,8 +77,31 @@ def read_run(path: Path) -> Ingested:
     folder = read_folder(path)
     sums = raw_sums(folder)
     check_sums(folder, sums)
-    files = {row.file: folder.path / "raw" / row.file for row in folder.rows}
-    return assemble(folder.form, folder.rows, {name: read_file(file) for name, file in files.items()}, sums)
+    with _named(folder.form.run_id):
+        files = {name: _read(folder, name) for name in dict.fromkeys(row.file for row in folder.rows)}
+    return assemble(folder.form, folder.rows, files, sums)
+
+
+def _read(folder: RunFolder, name: str) -> RawFile:
+    """Read a file as its rows state it."""
+    rows = [row for row in folder.rows if row.file == name]
+    stated = {row.dialect for row in rows if row.dialect}
+    channels = ", ".join(row.name for row in rows)
+    if len(stated) > 1:
+        raise RigError(f"{channels} (raw/{name}): their rows state {len(stated)} dialects of one file; write one")
+    try:
+        return read_file(folder.path / "raw" / name, next(iter(stated), ""))
+    except RigError as error:
+        raise RigError(f"{channels}: raw/{error}") from None
+
+
+@contextmanager
+def _named(run: str) -> Iterator[None]:
+    """Name the run in what is refused."""
+    try:
+        yield
+    except RigError as error:
+        raise RigError(f"run {run}: {error}") from None
 
 
 def assemble(
@@ -88,16 +123,25 @@ def assemble(
     RigError
         If the run can't be used as it is.
     """
+    with _named(form.run_id):
+        return _assemble(form, rows, files, sums)
+
+
+def _assemble(
+    form: RunForm, rows: tuple[ChannelRow, ...], files: Mapping[str, RawFile], sums: Mapping[str, str]
+) -> Ingested:
     info = run_info(form)
-    calibrated = [calibrate(row, _field(row, files[row.file]), max_clipped=form.max_clipped) for row in rows]
+    raw = [(row, _field(row, files[row.file]), Overruling(row.overrule)) for row in rows]
+    calibrated = [
+        calibrate(row, channel, max_clipped=form.max_clipped, overruling=reasons) for row, channel, reasons in raw
+    ]
+    check_starts(raw)
     clocks = align_clocks(calibrated, max_offset=form.max_offset, ringdown=info.protocol == "ringdown")
     channels = [_on_the_clock(channel, clocks[channel.row.recorder]) for channel in calibrated]
     if not any(channel.role in ("lo_disp", "lo_acc") for channel in channels):
-        raise RigError(f"run {form.run_id}: no channel measures the oscillator (roles lo_disp, lo_acc)")
+        raise RigError("no channel measures the oscillator (roles lo_disp, lo_acc)")
     if info.protocol != "ringdown" and not any(channel.role.startswith("base") for channel in channels):
-        raise RigError(
-            f"run {form.run_id}: no channel measures the base (base_disp, base_acc); a command is no measurement"
-        )
+        raise RigError("no channel measures the base (base_disp, base_acc); a command is no measurement")
     compared = check_agreement(info, channels)
     together = hashlib.sha256(
         "".join(f"{value}  {name}\n" for name, value in sorted(sums.items())).encode()
@@ -109,6 +153,11 @@ def assemble(
         clocks=clocks,
         sums=dict(sums),
         compared=compared,
+        read_as={row.name: f"{files[row.file].form} {files[row.file].dialect}".strip() for row in rows},
+        overruled={row.name: "; ".join(reasons.used) for row, _, reasons in raw},
+        remarks={
+            channel.row.name: "; ".join((*files[channel.row.file].remarks, *channel.remarks)) for channel in calibrated
+        },
     )
 
 
@@ -117,7 +166,7 @@ def _field(row: ChannelRow, file: RawFile) -> RawChannel:
     try:
         return file.channel(row.field)
     except RigError as missing:
-        raise RigError(f"{row.name} in channels.tsv: in {row.file} {missing}") from None
+        raise RigError(f"{row.where}: {missing}") from None
 
 
 def _on_the_clock(channel: Calibrated, clock: Clock) -> Sampled:

@@ -13,6 +13,7 @@ from typing import Any
 import msgspec
 
 from vines.errors import FileMissingError, RigError, nearest
+from vines.rig.ingest._overrule import Overruling
 from vines.rig.ingest._run_form import ChannelRow, RunForm, Stated
 from vines.rig.recording import ROLES, RunInfo, Uncertain
 
@@ -232,6 +233,8 @@ def _channel(given: Mapping[str, str], where: str) -> ChannelRow:
     for name in (
         "sensitivity",
         "u_sensitivity",
+        "scale",
+        "offset",
         "fs",
         "t0",
         "range",
@@ -245,6 +248,10 @@ def _channel(given: Mapping[str, str], where: str) -> ChannelRow:
                 form[name] = float(form[name])
             except ValueError:
                 raise RigError(f"{where}: {name} is {form[name]!r}, which is no number") from None
+    try:
+        Overruling(form.get("overrule", ""))
+    except RigError as unfit:
+        raise RigError(f"{where}: {unfit}") from None
     if "bits" in form and form["bits"].isdigit():
         form["bits"] = int(form["bits"])
     if form["sign"] == "1":
@@ -271,6 +278,8 @@ def check_rows(rows: Sequence[ChannelRow], where: str) -> None:
         quantity, _ = ROLES[row.role]
         if row.quantity != quantity:
             raise RigError(f"{where}: {row.name}: role {row.role} is a {quantity}, but quantity is {row.quantity}")
+        if not row.scale:
+            raise RigError(f"{where}: {row.name}: scale is 0: write what one count is, or nothing")
         if row.sensitivity != "scaled" and not row.sensitivity_unit:
             raise RigError(f"{where}: {row.name}: no sensitivity unit: write it, such as mV/g or V/mm")
 

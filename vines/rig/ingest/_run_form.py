@@ -66,6 +66,10 @@ class ChannelRow(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_onl
     file: Annotated[str, Meta(min_length=1, description="File below raw/")]
     field: Annotated[str, Meta(min_length=1, description="Name of the channel in that file")]
     unit: Annotated[str, Meta(min_length=1, description="Unit of the numbers in the file")]
+    scale: Annotated[
+        float, Meta(description="What one count of the file is in that unit, where it holds counts; else empty")
+    ] = 1.0
+    offset: Annotated[float, Meta(description="What count 0 is in that unit")] = 0.0
     sensitivity: Annotated[
         float | Literal["scaled"],
         Meta(description="Of the calibration sheet; the word scaled where the file holds mechanical units already"),
@@ -97,6 +101,21 @@ class ChannelRow(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_onl
     sensor: Annotated[str, Meta(description="Make and model")] = ""
     serial: Annotated[str, Meta(description="Serial number")] = ""
     calibrated: Annotated[str, Meta(description="Date of the calibration")] = ""
+    dialect: Annotated[
+        str,
+        Meta(
+            description="Layout of a file of text as 'vines rig inspect' shows it, or the parts that it does not find"
+        ),
+    ] = ""
+    overrule: Annotated[
+        str,
+        Meta(description="What the file says wrongly and why: unit: REASON; fs: REASON; t0: REASON"),
+    ] = ""
+
+    @property
+    def where(self) -> str:
+        """How messages call the channel."""
+        return f"{self.name} (raw/{self.file}, {self.field})"
 
 
 def schemas() -> dict[str, str]:

@@ -70,6 +70,9 @@ def channel_rows(run: Ingested) -> list[dict[str, Any]]:
                 "start": channel.start,
                 "samples": len(channel.values),
                 "clipped": run.clipped[name],
+                "read_as": run.read_as[name],
+                "overruled": run.overruled[name],
+                "remarks": run.remarks[name],
                 **_range(channel),
             }
         )

@@ -1,0 +1,196 @@
+"""The layout of a text: found from its lines, but for what is stated; what fits two ways is refused, not guessed."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from vines.errors import RigError
+from vines.rig.formats._csv._cells import conforms, is_number, kinds_of, split_line
+from vines.rig.formats._csv._dialect import DECIMALS, SEPARATORS
+from vines.rig.formats._csv._head import Name, head_cells, read_name, units_row
+from vines.rig.formats._csv._lines import COMMENTS, Lines
+
+__all__ = ["Layout", "find_layout"]
+
+_SHORTEST = 2
+_ROWS_IN_A_HEAD = 3
+"""So many lines that look like samples above one that does not: it is damage among samples, not the end of a head."""
+_NEAR = 4
+"""Lines above the samples, blank ones left out, among which head and units stand."""
+
+
+@dataclass(frozen=True, slots=True)
+class Layout:
+    """Where samples stand and what their columns are.
+
+    Attributes
+    ----------
+    separator, decimal : str
+        The characters; a blank for any number of blanks.
+    head, units, data : int
+        Lines, counted from 1; 0 for none.
+    kinds : tuple of str
+        What each column is: number, stamp, date, text, empty.
+    names : tuple of Name
+        What each is called: by its number where there is no head.
+    trailing : bool
+        Whether rows end with a separator that the head does not have.
+    """
+
+    separator: str
+    decimal: str
+    head: int
+    units: int
+    data: int
+    kinds: tuple[str, ...]
+    names: tuple[Name, ...]
+    trailing: bool
+
+
+def find_layout(lines: Lines, stated: Mapping[str, Any]) -> Layout:
+    """Return the layout of a text.
+
+    Parameters
+    ----------
+    lines : Lines
+        Of its beginning and end.
+    stated : mapping
+        What `stated_dialect` returned; it is used as it is.
+
+    Raises
+    ------
+    RigError
+        If there are no rows of numbers, a row is not like the others, names and columns are not equally many, or two
+        layouts fit; one line with the number of the line.
+    """
+    if len(lines.last) < _SHORTEST:
+        raise RigError("no rows of samples")
+    separators = [SEPARATORS[stated["separator"]]] if "separator" in stated else [",", ";", "\t", "|", "", " "]
+    decimals = [DECIMALS[stated["decimal"]]] if "decimal" in stated else [".", ","]
+    fitting: list[tuple[int, Layout]] = []
+    refused: list[tuple[int, RigError]] = []
+    for separator in separators:
+        if separator == " " and any(score > 0 for score, _ in (*fitting, *refused)):
+            # Dates hold blanks: who parts cells by another sign does not part them by blanks.
+            continue
+        read = [(kinds, decimal) for decimal in decimals if (kinds := _kinds(lines.last, separator, decimal))]
+        if not read:
+            continue
+        # Of whole numbers both signs make the same: the point, which comes first.
+        kinds, decimal = max(read, key=lambda one: _score(one[0]))
+        try:
+            fitting.append((_score(kinds), _placed(lines, separator, decimal, kinds, stated)))
+        except RigError as error:
+            refused.append((_score(kinds), error))
+    if fitting:
+        return _the_one([layout for _, layout in sorted(fitting, key=lambda one: -one[0])], lines)
+    if refused:
+        raise max(refused, key=lambda one: one[0])[1]
+    raise RigError(f"no rows of numbers; its end is {_short(lines.last[-1])}")
+
+
+def _the_one(fitting: list[Layout], lines: Lines) -> Layout:
+    """Return the layout with most columns of numbers, unless a comma may be a decimal sign as well."""
+    best = fitting[0]
+    single = next((each for each in fitting if not each.separator and each.decimal == ","), None)
+    if single is None or best.head or best is single:
+        return best
+    if single.head and single.names[0].unit:
+        return single
+    raise RigError(
+        f"the comma in {_short(lines.last[-1])} may part two columns or be a decimal sign: write separator=comma or "
+        "separator=none decimal=comma into the column dialect of channels.tsv"
+    )
+
+
+def _kinds(rows: Sequence[str], separator: str, decimal: str) -> tuple[str, ...] | None:
+    """Return what the columns of the last rows are; None if they are no rows of numbers with these signs."""
+    cells = [split_line(row, separator) for row in rows]
+    # A short text shows its head here, too.
+    cells = [row for row in cells if len(row) == len(cells[-1])][-max(_SHORTEST, len(cells) // 2) :]
+    kinds = kinds_of(cells, decimal)
+    if len(cells) < _SHORTEST or "number" not in kinds or not conforms(cells[-1], kinds, decimal):
+        return None
+    return tuple(kinds)
+
+
+def _score(kinds: Sequence[str]) -> int:
+    """Return how well signs part rows: columns of numbers and times count; one of words shows that they don't."""
+    return sum(kind in ("number", "stamp") for kind in kinds) - 2 * kinds.count("text")
+
+
+def _placed(lines: Lines, separator: str, decimal: str, kinds: tuple[str, ...], stated: Mapping[str, Any]) -> Layout:
+    """Return the layout with these signs."""
+    data = stated.get("data") or _first_row(lines, separator, decimal, kinds)
+    if "head" in stated or "units" in stated:
+        near = [stated[key] for key in ("units", "head") if stated.get(key)]
+        if any(place > len(lines.first) for place in near):
+            raise RigError(f"line {max(near)} is stated to be of the head, but the text is shorter")
+    else:
+        near = [k for k in range(data - 1, 0, -1) if lines.first[k - 1].strip()][:_NEAR]
+    found = [(place, *_head(lines.first[place - 1], separator, kinds)) for place in near]
+    rows = [(place, cells) for place, cells, _ in found if cells is not None]
+    if near and (not rows or rows[0][0] != near[0]):
+        names = found[0][2]
+        if stated.get("head") or names > 1:
+            raise RigError(
+                f"line {near[0]} has {names} names, but rows have {len(kinds)} fields: "
+                f"{_short(lines.first[near[0] - 1])}"
+            )
+        rows = []
+    units = stated.get("units", 0)
+    if rows and not units and "head" not in stated and units_row(rows[0][1]):
+        units = rows[0][0]
+    unit_cells = next((cells for place, cells in rows if place == units), [])
+    head, name_cells = next(((place, cells) for place, cells in rows[:2] if place != units), (0, []))
+    numbers = [str(k + 1) for k in range(len(kinds))]
+    names = [
+        read_name(cell) if cell else Name(number, None, False)
+        for number, cell in zip(numbers, name_cells or numbers, strict=False)
+    ]
+    names += [Name(number, None, False) for number in numbers[len(names) :]]
+    for k, cell in enumerate(unit_cells):
+        if cell.strip('"-[]() '):
+            names[k] = Name(names[k].name, cell.strip('"[]()<> '), names[k].time)
+    trailing = kinds[-1] == "empty" and 0 < len(name_cells) < len(kinds)
+    return Layout(separator, decimal, head, units, data, kinds, tuple(names), trailing)
+
+
+def _head(line: str, separator: str, kinds: Sequence[str]) -> tuple[list[str] | None, int]:
+    """Return the cells of a line that may name the columns, else none and how many names it seems to have."""
+    comment = line.lstrip().startswith(COMMENTS)
+    counts = [len(kinds), len(kinds) - 1] if kinds[-1] == "empty" else [len(kinds)]
+    if not (comment and len(kinds) == 1):
+        for count in counts:
+            cells = head_cells(line, separator, count)
+            if cells is not None:
+                return cells, count
+    parts = re.split(r"\s{2,}|\t", line.strip()) if separator == " " else split_line(line, separator)
+    words = not comment and all(parts) and not any(is_number(cell, mark) for cell in parts for mark in ".,")
+    return None, len(parts) if words else 0
+
+
+def _first_row(lines: Lines, separator: str, decimal: str, kinds: Sequence[str]) -> int:
+    """Return the line of the first row of samples."""
+    told = [
+        (place, conforms(split_line(line, separator), kinds, decimal))
+        for place, line in enumerate(lines.first, 1)
+        if line.strip() and not line.lstrip().startswith(COMMENTS)
+    ]
+    odd = max((k for k, (_, row) in enumerate(told) if not row), default=-1)
+    above = [row for _, row in told[: odd + 1]]
+    if sum(above) >= _ROWS_IN_A_HEAD:
+        place = next(place for k, (place, row) in enumerate(told) if not row and sum(above[:k]) >= _ROWS_IN_A_HEAD)
+        raise RigError(f"line {place} is no row like those about it: {_short(lines.first[place - 1])}")
+    if odd + 1 >= len(told):
+        raise RigError(f"no rows of samples in its first {len(lines.first)} lines")
+    return told[odd + 1][0]
+
+
+def _short(line: str) -> str:
+    """Return a line as it is quoted in a message."""
+    text = " ".join(line.split())
+    return repr(text if len(text) <= 60 else text[:57] + "...")

@@ -1,0 +1,147 @@
+"""Which columns hold times, and what they are in seconds: a unit that is not stated is not made up."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from vines.errors import RigError
+from vines.rig.formats._csv._head import Name, is_unit
+from vines.rig.formats._csv._layout import Layout
+from vines.rig.formats._csv._table import day_seconds, numbers
+from vines.rig.units import si_factor
+
+__all__ = ["COUNTS", "TimeColumn", "time_columns", "times_of"]
+
+COUNTS = {"no", "no.", "number", "nr", "nr.", "index", "#", "sample", "samples", "scan", "point", "n", "idx", "record"}
+"""What columns are called that number the rows."""
+
+_EPOCH = 1e8
+"""[s] Times that begin later than this are counted from 1904, 1970 or the like."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class TimeColumn:
+    """Times of the rows.
+
+    Attributes
+    ----------
+    column : int
+        Which column, from 1.
+    unit : str
+        As written, ``stamp`` or ``unknown``.
+    times : ndarray of float64, shape (n,)
+        In seconds, or in the unit that is not known.
+    tick : float or None
+        1, or None where the unit is not known.
+    """
+
+    column: int
+    unit: str
+    times: npt.NDArray[np.float64]
+    tick: float | None
+
+
+def time_columns(layout: Layout, stated: int | None) -> dict[int, list[int]]:
+    """Return for each column of numbers which columns hold its times: the nearest ones before it, else the first.
+
+    Parameters
+    ----------
+    layout : Layout
+        Names, units and kinds.
+    stated : int, optional
+        The only one, from 1, or 0 for none.
+
+    Returns
+    -------
+    dict of int to list of int
+        Places from 0; columns of times and those that number the rows are left out.
+    """
+    every = range(len(layout.kinds))
+    if stated is not None and stated > len(layout.kinds):
+        raise RigError(f"column {stated} is stated to be the time, but there are {len(layout.kinds)} columns")
+    found: dict[int, list[int]] = {}
+    group: list[int] = []
+    first: list[int] = []
+    used = False
+    for k in every:
+        name, kind = layout.names[k], layout.kinds[k]
+        if stated is not None:
+            if k == stated - 1:
+                group = first = [k]
+            elif kind == "number":
+                found[k] = group
+        elif _is_time(name, kind, between=used):
+            group = [k] if used else [*group, k]
+            first, used = first or group, False
+        elif kind == "number" and not (name.name.casefold() in COUNTS and not used and name.unit is None):
+            found[k], used = group, True
+    return {k: own or first for k, own in found.items()}
+
+
+def _is_time(name: Name, kind: str, *, between: bool) -> bool:
+    """Say whether a column holds times; between channels a name alone is too little: a channel may be called x."""
+    seconds = name.unit is not None and is_unit(name.unit) and si_factor(name.unit)[0] == "time"
+    return kind == "stamp" or (kind == "number" and (seconds and name.time if between else seconds or name.time))
+
+
+def times_of(
+    table: Any, layout: Layout, places: Sequence[int], stated_unit: str, noted_unit: str
+) -> tuple[TimeColumn, list[str]]:
+    """Return the times that columns side by side give, and remarks: the finer one, or stamps with their milliseconds.
+
+    Raises
+    ------
+    RigError
+        If a time is missing.
+    """
+    units = {k: stated_unit or _unit(layout, k, noted_unit) for k in places}
+    read: dict[int, Callable[[], npt.NDArray[np.float64]]] = {
+        k: (lambda k=k: day_seconds(table.column(k)))
+        if units[k] == "stamp"
+        else (lambda k=k: numbers(table.column(k), layout.decimal)[0])
+        for k in places
+    }
+    values = {k: read[k]() for k in places}
+    for k, column in values.items():
+        if np.isnan(column).any():
+            place = int(np.isnan(column).argmax())
+            raise RigError(f"column {layout.names[k].name!r}: row {place + 1} of the samples has no time")
+    stamp = next((k for k in places if units[k] == "stamp"), None)
+    if stamp is not None and (parts := _thousandths(values, units, stamp)) is not None:
+        return TimeColumn(stamp + 1, "stamp", values[stamp] + 1e-3 * parts, 1.0), []
+    best = max(places, key=lambda k: len(np.unique(values[k][:4096])))
+    unit, times = units[best], values[best]
+    if unit == "unknown":
+        text = (
+            f"column {layout.names[best].name!r} holds times without a unit: write time_unit=s or the like into dialect"
+        )
+        return TimeColumn(best + 1, unit, times, None), [text]
+    times = times if unit == "stamp" else times * si_factor(unit)[1]
+    return TimeColumn(best + 1, unit, times - (times[0] if abs(times[0]) > _EPOCH else 0.0), 1.0), []
+
+
+def _unit(layout: Layout, k: int, noted: str) -> str:
+    """Return the unit of a column of times as its head says, or else the text above."""
+    if layout.kinds[k] == "stamp":
+        return "stamp"
+    unit = layout.names[k].unit
+    if unit is not None and is_unit(unit) and si_factor(unit)[0] == "time":
+        return unit
+    return "unknown" if unit is not None else noted or "unknown"
+
+
+def _thousandths(
+    values: dict[int, npt.NDArray[np.float64]], units: dict[int, str], stamp: int
+) -> npt.NDArray[np.float64] | None:
+    """Return a column beside whole seconds that holds their milliseconds."""
+    if np.any(values[stamp] % 1):
+        return None
+    for k, unit in units.items():
+        if k != stamp and unit == "ms" and ((values[k] >= 0) & (values[k] < 1000)).all():
+            return values[k]
+    return None
