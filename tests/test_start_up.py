@@ -29,6 +29,7 @@ def loaded(code, tmp_path):
 
 def test_import_vines_and_params_load_nothing_heavy(tmp_path):
     assert loaded("import vines; vines.Params(mu=0.01, A=0.02); vines.PhysicalParams()", tmp_path) == []
+    assert loaded("from vines import systems; systems.Parallel(mu=(0.01, 0.02), A=0.02)", tmp_path) == []
 
 
 @pytest.mark.parametrize("arguments", [["--help"], ["list"], ["status"], ["status", "quickstart"], ["run", "--help"]])
@@ -62,5 +63,5 @@ def test_public_names_resolve_and_are_listed(room):
 
 
 def test_the_rooms_that_were_lazy_are():
-    rooms = ("catalogue", "figures", "pipeline", "rig", "schema", "stages", "store", "viewer")
+    rooms = ("catalogue", "figures", "pipeline", "rig", "schema", "stages", "store", "systems", "viewer")
     assert ["vines", *(f"vines.{room}" for room in rooms)] == LAZY

@@ -37,6 +37,7 @@ NAMES = [
     "simulate",
     "study",
     "switch_branch",
+    "systems",
     "table",
 ]
 OF_AN_ORBIT = [
@@ -105,7 +106,7 @@ KINDS = [
 VIEWS = ["bifurcations", "branches", "checks", "comparisons", "impacts", "logs", "orbits", "points"]
 
 DESIGN = Path(__file__).resolve().parents[2] / "shared" / "DESIGN.md"
-TO_COME = {"figure", "next", "report", "split", "systems", "watch"}
+TO_COME = {"figure", "next", "report", "split", "watch"}
 """What the design has for the capabilities after this release."""
 
 

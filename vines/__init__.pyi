@@ -1,3 +1,4 @@
+from . import systems as systems
 from .attractors import Attractor as Attractor
 from .attractors import classify_many as classify_many
 from .attractors import settle as settle

@@ -75,7 +75,73 @@ def test_names(text, canonical, name, alias):
     assert (str(word), word.name, word.alias) == (canonical, name, alias)
 
 
-@pytest.mark.parametrize("text", ["", "lr", "LXR", "LR/", "LR/0T", "LR/2", "LR/-1T", "LR\n", " LR", "2:1", 3, None])
+several = st.lists(st.sampled_from(["L1", "R1", "L2", "R2", "L3", "R3"]), min_size=1, max_size=10)
+
+
+@given(several, periods, st.integers(0, 20))
+def test_words_of_several_balls_rotate_by_whole_impacts(impacts, p, k):
+    k %= len(impacts)
+    word = Word(spell("".join(impacts), p))
+    assert Word(spell("".join(impacts[k:] + impacts[:k]), p)) == word == Word(str(word)) == eval(repr(word))
+    assert len(word) == len(impacts)
+    assert sorted(zip(word.sides, word.balls, strict=True)) == sorted(
+        (1 if each[0] == "L" else -1, int(each[1])) for each in impacts
+    )
+    assert word.mirror.mirror == word
+    assert (word.n, word.m) == (word.mirror.m, word.mirror.n)
+    if word.symmetric:
+        assert word.mirror == word
+
+
+@given(several, periods, st.permutations([1, 2, 3]))
+def test_equal_balls_have_one_word_whatever_they_are_called(impacts, p, order):
+    text = "".join(impacts)
+    other = "".join(each[0] + str(order[int(each[1]) - 1]) for each in impacts)
+    alike = [(1, 2, 3)]
+    one, names = Word(spell(text, p)).relabelled(alike)
+    assert Word(spell(other, p)).relabelled(alike)[0] == one
+    assert sorted(names) == sorted(names.values()) == [1, 2, 3]
+
+
+@pytest.mark.parametrize(
+    ("text", "canonical", "name", "symmetric"),
+    [
+        # systems-check-values.md, (a): a1, a3, a5, a7
+        ("L1L2R2R1L2L1R1R2/2T", "L1L2R2R1L2L1R1R2/2T", "2:2|2:2/2T", False),
+        ("L1L2R1R2", "L1L2R1R2", "1:1|1:1", True),
+        ("L2L1R2R1", "L1R2R1L2", "1:1|1:1", True),
+        ("L1L2L3R1R2R3", "L1L2L3R1R2R3", "1:1|1:1|1:1", True),
+        ("R3L3", "L3R3", "0:0|0:0|1:1", True),
+        ("R1L1L2L2", "L1L2L2R1", "1:1|2:0", False),
+    ],
+)
+def test_names_of_several_balls(text, canonical, name, symmetric):
+    word = Word(text)
+    assert (str(word), word.name, word.symmetric) == (canonical, name, symmetric)
+
+
+@pytest.mark.parametrize(
+    "text",
+    BAD=[
+        "",
+        "lr",
+        "LXR",
+        "LR/",
+        "LR/0T",
+        "LR/2",
+        "LR/-1T",
+        "LR\n",
+        " LR",
+        "2:1",
+        "L1R",
+        "LR2",
+        "L0R0",
+        "L12R1",
+        3,
+        None,
+    ]
+    @ pytest.mark.parametrize("text", BAD),
+)
 def test_bad_words_are_refused_in_one_line(text):
     with pytest.raises(ParameterError, match="is not a word") as caught:
         Word(text)

@@ -1,5 +1,9 @@
 """The model: its declaration, parameters and words of impacts. Pure Python, no numba."""
 
+from vines.model._conversion import dimensionless
+from vines.model._declared import most_balls, read_system, system_names
+from vines.model._expression import Expression
+from vines.model._parameters import Parameters
 from vines.model._params import Params
 from vines.model._physical import PhysicalParams
 from vines.model._system import Contact, Coordinate, Parameter, Range, System
@@ -38,10 +42,16 @@ __all__ = [
     "X2",
     "Contact",
     "Coordinate",
+    "Expression",
     "Parameter",
+    "Parameters",
     "Params",
     "PhysicalParams",
     "Range",
     "System",
     "Word",
+    "dimensionless",
+    "most_balls",
+    "read_system",
+    "system_names",
 ]

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-import math
-from dataclasses import asdict, dataclass, field, fields, replace
+from dataclasses import dataclass, field
 from typing import Any
 
+from vines.model._parameters import Parameters
+from vines.model._system import System
 from vines.model._vi_nes import VI_NES
 
 __all__ = ["Params"]
@@ -16,7 +17,7 @@ def _default(name: str) -> Any:
 
 
 @dataclass(frozen=True, slots=True)
-class Params:
+class Params(Parameters):
     """Dimensionless parameters (paper, eq. (6)); validated, immutable and hashable.
 
     Parameters
@@ -58,30 +59,12 @@ class Params:
             object.__setattr__(self, parameter.name, parameter.check(getattr(self, parameter.name)))
 
     @property
-    def period(self) -> float:
-        """Forcing period T = 2 pi/Omega (dimensionless time)."""
-        return 2 * math.pi / self.Omega
+    def system(self) -> System:
+        """The declaration of the vibro-impact nonlinear energy sink."""
+        return VI_NES
 
-    def replace(self, **changes: float) -> Params:
-        """Return a copy with some parameters changed.
-
-        Raises
-        ------
-        ParameterError
-            If a name is not a parameter or a value is out of range.
-
-        Examples
-        --------
-        >>> Params(mu=0.01, A=0.02).replace(A=0.03).A
-        0.03
-        """
-        for name in changes:
-            VI_NES.parameter(name)
-        return replace(self, **changes)
-
-    def as_dict(self) -> dict[str, float]:
-        """Return the parameters by name, in the order mu, A, Omega, r, lam."""
-        return asdict(self)
-
-    def __str__(self) -> str:
-        return ", ".join(f"{f.name} = {getattr(self, f.name):.6g}" for f in fields(self)) + " (dimensionless)"
+    @classmethod
+    def declared(cls, balls: int = 0) -> System:
+        """Return the declaration of the vibro-impact nonlinear energy sink; it has one ball."""
+        del balls
+        return VI_NES

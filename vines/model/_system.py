@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+import functools
+import hashlib
+import itertools
+import json
 import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
@@ -71,6 +75,8 @@ class Parameter:
         Where in the paper it is defined.
     symbol, label : str
         TeX and words for axes of figures.
+    physical : str
+        What it is in SI units, as a formula of names of the rig and the run; empty where it has no unit there.
     """
 
     name: str
@@ -82,6 +88,7 @@ class Parameter:
     source: str = ""
     symbol: str = ""
     label: str = ""
+    physical: str = ""
 
     def check(self, value: object) -> float:
         """Return a value as a float.
@@ -140,11 +147,12 @@ class Body:
 
 @dataclass(frozen=True, slots=True)
 class Contact:
-    """A wall that a body meets: its letter in words, the sign of the gap there, its name."""
+    """A wall that a ball meets: its letter in words, the sign of the gap there, its name, the ball's number if any."""
 
     letter: str
     sign: int
     text: str
+    ball: int = 0
 
 
 @dataclass(frozen=True, slots=True)
@@ -159,11 +167,14 @@ class Symmetry:
         By how many forcing periods time is shifted.
     letters : mapping of str to str
         The contact that each contact becomes.
+    broken_by : tuple of str
+        Parameters that have to be 0, since the system has no such symmetry otherwise.
     """
 
     sign: int
     shift: float
     letters: Mapping[str, str]
+    broken_by: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -175,13 +186,18 @@ class Energies:
     lost: tuple[str, ...]
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class System:
     """A system of bodies, walls and one forcing, declared once for every room.
 
     Attributes
     ----------
-    name : str
+    name, title : str
+        Its name in declarations, and what it is.
+    parameters_of : str
+        The class of its parameters, as ``"package:Class"``.
+    balls : int
+        How many balls have numbers after their parameters; 0 where there is one ball and no number.
     parameters : tuple of Parameter
         Dimensionless ones, in the order of arrays and kernels.
     rig, run : tuple of Parameter
@@ -196,6 +212,9 @@ class System:
     """
 
     name: str
+    title: str
+    parameters_of: str
+    balls: int
     parameters: tuple[Parameter, ...]
     rig: tuple[Parameter, ...]
     run: tuple[Parameter, ...]
@@ -234,10 +253,22 @@ class System:
         """The letters of all contacts."""
         return "".join(contact.letter for contact in self.contacts)
 
-    def letters(self, signs: Iterable[float]) -> str:
-        """Return the letters of contacts, from the sign of the gap at each."""
-        letters = {contact.sign: contact.letter for contact in self.contacts}
-        return "".join(letters[1 if sign > 0 else -1] for sign in signs)
+    def letters(self, signs: Iterable[float], balls: Iterable[int] = itertools.repeat(0)) -> str:
+        """Return the letters of contacts, from the sign of the gap at each and the number of the ball (from 1)."""
+        letters = {(contact.sign, contact.ball): contact.letter for contact in self.contacts}
+        return "".join(letters[1 if sign > 0 else -1, ball] for sign, ball in zip(signs, balls, strict=False))
+
+    @functools.cached_property
+    def digest(self) -> str:
+        """What numbers depend on: names, defaults, contacts and symmetries, without texts; 16 hexadecimal digits."""
+        form = [
+            [(each.name, each.default, each.physical) for each in (*self.parameters, *self.rig, *self.run)],
+            [(each.name, each.start) for each in self.start],
+            [(each.letter, each.sign, each.ball) for each in self.contacts],
+            [self.mirror.sign, self.mirror.shift, sorted(self.mirror.letters.items()), self.mirror.broken_by],
+            [self.energies.stored, self.energies.gained, self.energies.lost],
+        ]
+        return hashlib.sha256(json.dumps(form, separators=(",", ":")).encode()).hexdigest()[:16]
 
 
 def finite(name: str, value: object, unit: str = "") -> float:

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import itertools
 import re
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 
 from vines.errors import ParameterError
@@ -12,9 +14,12 @@ __all__ = ["Word"]
 
 _LEFT, _RIGHT = (contact.letter for contact in VI_NES.contacts)
 _SIGNS = {contact.letter: contact.sign for contact in VI_NES.contacts}
-_SHAPE = re.compile(rf"([{VI_NES.alphabet}]+)(?:/([1-9][0-9]*)?T)?")
+_SHAPE = re.compile(rf"([{VI_NES.alphabet}]+|(?:[{VI_NES.alphabet}][1-9])+)(?:/([1-9][0-9]*)?T)?")
 _SWAP = str.maketrans(dict(VI_NES.mirror.letters))
-_HOW = f"write the impacts as letters {' and '.join(VI_NES.alphabet)}, then /pT if p > 1, such as LR, LLR or LRLR/2T"
+_HOW = (
+    f"write the impacts as letters {' and '.join(VI_NES.alphabet)}, each with the number of its ball where there are "
+    "several, then /pT if p > 1, such as LR, LLR, LRLR/2T or L1L2R1R2"
+)
 
 
 @dataclass(frozen=True, slots=True, init=False)
@@ -25,6 +30,9 @@ class Word:
     p forcing periods. An orbit has no first impact, so that any rotation names the same orbit; the
     lexicographically least one is kept. A repetition stays one: ``LRLR/2T`` is an orbit of least period 2T.
 
+    Where a system has several balls, each letter has the number of the ball that hits: ``L1L2R1R2``. A system with one
+    ball writes no number.
+
     Parameters
     ----------
     text : str or Word
@@ -33,7 +41,7 @@ class Word:
     Attributes
     ----------
     letters : str
-        The letters in canonical rotation.
+        The letters in canonical rotation, with the numbers of balls if there are several.
     p : int
         Least period of the orbit, in forcing periods.
 
@@ -51,6 +59,8 @@ class Word:
     ('LRLR/2T', '2:2/2T', '1:1/2T', 2, 2, 2)
     >>> Word("LLR").mirror
     Word('LRR')
+    >>> Word("R2L1L2R1").letters, Word("L1L2R2L1R1").name
+    ('L1L2R1R2', '2:1|1:1')
     """
 
     letters: str
@@ -81,9 +91,36 @@ class Word:
         return self.letters.count(_RIGHT)
 
     @property
+    def balls(self) -> tuple[int, ...]:
+        """The number of the ball of each impact; 0 where balls have no numbers.
+
+        Examples
+        --------
+        >>> Word("L1L2R1R2").balls, Word("LR").balls
+        ((1, 2, 1, 2), (0, 0))
+        """
+        return tuple(int(each[1:] or 0) for each in _impacts(self.letters))
+
+    @property
     def name(self) -> str:
-        """The type n:m/pT, without /pT if p = 1 (paper, section 3.1)."""
-        return _label(self.n, self.m, self.p)
+        """The type n:m/pT, without /pT if p = 1 (paper, section 3.1); of each ball if there are several: 1:1|2:1."""
+        return self.named(max(self.balls))
+
+    def named(self, balls: int) -> str:
+        """Return the type with so many balls, the last of which need not hit.
+
+        Examples
+        --------
+        >>> Word("L1R1").named(2), Word("LR").named(0)
+        ('1:1|0:0', '1:1')
+        """
+        return _label(self._counts(1, balls), self.p)
+
+    def _counts(self, times: int, balls: int) -> list[tuple[int, int]]:
+        """Return the impacts on both ends over a part of the period, for each ball."""
+        own = range(1, balls + 1) if balls else (0,)
+        hits = list(zip(self.sides, self.balls, strict=True))
+        return [(hits.count((1, ball)) // times, hits.count((-1, ball)) // times) for ball in own]
 
     @property
     def alias(self) -> str:
@@ -99,7 +136,7 @@ class Word:
         """
         for times in range(self.p, 1, -1):
             if self.p % times == 0 and self._repeats(times):
-                return _label(self.n // times, self.m // times, self.p)
+                return _label(self._counts(times, max(self.balls)), self.p)
         return self.name
 
     @property
@@ -111,7 +148,7 @@ class Word:
         >>> Word("LLR").sides
         (1, 1, -1)
         """
-        return tuple(_SIGNS[letter] for letter in self.letters)
+        return tuple(_SIGNS[each[0]] for each in _impacts(self.letters))
 
     @property
     def mirror(self) -> Word:
@@ -131,8 +168,42 @@ class Word:
         >>> [Word(w).symmetric for w in ("LR", "LLRR", "LLR", "LRLR/2T", "LR/3T")]
         [True, True, False, False, True]
         """
-        half, odd = divmod(len(self.letters), 2)
-        return not odd and self.p % 2 == 1 and self.letters[half:] == self.letters[:half].translate(_SWAP)
+        half = len(self.letters) // 2
+        return len(self) % 2 == 0 and self.p % 2 == 1 and self.letters[half:] == self.letters[:half].translate(_SWAP)
+
+    def relabelled(self, alike: Iterable[Iterable[int]]) -> tuple[Word, dict[int, int]]:
+        """Return the least word that renaming equal balls gives, and the new number of each of them.
+
+        Parameters
+        ----------
+        alike : iterable of iterables of int
+            Numbers of balls that are equal to each other, group by group.
+
+        Examples
+        --------
+        >>> Word("L2L1R1R2").relabelled([(1, 2)])
+        (Word('L1L2R2R1'), {1: 2, 2: 1})
+        """
+        words = ((_word(_renamed(self.letters, names), self.p), names) for names in _renamings(alike))
+        return min(words, key=lambda each: each[0].letters)
+
+    def shifted(self, alike: Iterable[Iterable[int]]) -> dict[int, int]:
+        """Return how equal balls change roles from one forcing period to the next; empty if they don't.
+
+        Examples
+        --------
+        >>> Word("L1L2R2R1L2L1R1R2/2T").shifted([(1, 2)])
+        {1: 2, 2: 1}
+        >>> Word("L1L2R1R2").shifted([(1, 2)])
+        {}
+        """
+        length, rest = divmod(len(self), self.p)
+        if rest or self.p == 1:
+            return {}
+        width = len(self.letters) // len(self)
+        later = self.letters[length * width :] + self.letters[: length * width]
+        changing = (names for names in _renamings(alike) if any(old != new for old, new in names.items()))
+        return next((names for names in changing if _renamed(self.letters, names) == later), {})
 
     def rotations(self) -> tuple[int, ...]:
         """Return the starts from which the letters read the same: (0,) unless they are a repetition.
@@ -145,11 +216,10 @@ class Word:
         return tuple(k for k, rotated in enumerate(_rotations(self.letters)) if rotated == self.letters)
 
     def _repeats(self, times: int) -> bool:
-        length, rest = divmod(len(self.letters), times)
-        return not rest and self.letters[:length] * times == self.letters
+        return len(self) % times == 0 and self.letters[: len(self.letters) // times] * times == self.letters
 
     def __len__(self) -> int:
-        return len(self.letters)
+        return len(self.sides)
 
     def __str__(self) -> str:
         return self.letters if self.p == 1 else f"{self.letters}/{self.p}T"
@@ -158,13 +228,33 @@ class Word:
         return f"Word({str(self)!r})"
 
 
+def _impacts(letters: str) -> list[str]:
+    """Return each impact: a letter, with the number of its ball if there is one."""
+    width = 1 + letters[-1:].isdecimal()
+    return [letters[k : k + width] for k in range(0, len(letters), width)]
+
+
 def _rotations(letters: str) -> list[str]:
-    return [letters[k:] + letters[:k] for k in range(len(letters))]
+    width = 1 + letters[-1:].isdecimal()
+    return [letters[k:] + letters[:k] for k in range(0, len(letters), width)]
+
+
+def _renamed(letters: str, names: Mapping[int, int]) -> str:
+    return "".join(each[0] + str(names.get(int(each[1:]), int(each[1:]))) for each in _impacts(letters))
+
+
+def _renamings(alike: Iterable[Iterable[int]]) -> Iterator[dict[int, int]]:
+    """Yield every way to give equal balls each other's numbers, the identity first."""
+    groups = [sorted(group) for group in alike]
+    for chosen in itertools.product(*(itertools.permutations(group) for group in groups)):
+        orders = zip(groups, chosen, strict=True)
+        yield {old: new for group, order in orders for old, new in zip(group, order, strict=True)}
 
 
 def _word(letters: str, p: int) -> Word:
     return Word(f"{letters}/{p}T")
 
 
-def _label(n: int, m: int, p: int) -> str:
-    return f"{n}:{m}" if p == 1 else f"{n}:{m}/{p}T"
+def _label(counts: Iterable[tuple[int, int]], p: int) -> str:
+    types = "|".join(f"{n}:{m}" for n, m in counts)
+    return types if p == 1 else f"{types}/{p}T"

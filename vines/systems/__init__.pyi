@@ -1,0 +1,4 @@
+from ._impact_pair import ImpactPair as ImpactPair
+from ._parallel import Parallel as Parallel
+from ._register import names as names
+from ._register import parameters as parameters
