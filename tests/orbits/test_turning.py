@@ -1,8 +1,8 @@
 import numpy as np
 from scipy.optimize import minimize_scalar
 
-from vines.dynamics._room import constants
 from vines.dynamics._flight import phasors
+from vines.dynamics._room import constants
 from vines.model import Params
 from vines.orbits._turning import turning_points_kernel
 
