@@ -12,10 +12,11 @@ import math
 import numpy as np
 import numpy.typing as npt
 
-from vines.dynamics._advance import IMPACT, KIND, MODE, PHASE, STICK, TAU, TIME, V1, V2, X1
-from vines.dynamics._constants import Constants, constants
+from vines.dynamics._advance import A_V1, A_V2, IMPACT, KIND, MODE, PHASE, SIDE, STICK, TAU, TIME, V1, V2, X1, X2
+from vines.dynamics._constants import Constants
 from vines.dynamics._flight import decay, derivatives, phasors
 from vines.dynamics._impact_law import after_impact_kernel
+from vines.dynamics._room import constants
 from vines.dynamics._sincos import sincos
 from vines.dynamics._trajectory import Trajectory
 from vines.errors import StateError
@@ -29,6 +30,7 @@ __all__ = [
     "log_growth",
     "lyapunov_blocks",
     "lyapunov_spectrum",
+    "offset",
     "orthonormalise",
     "tangent_map",
     "tangent_product",
@@ -98,6 +100,31 @@ def jump_basis(c, row, Y):
             Y[2, j] = x
             Y[1, j] = v
             Y[3, j] = v
+
+
+@by_type(Constants)
+@njit
+def offset(c, row, event, late, scale, away):
+    """Fill `away` with the disturbance that a run is of an orbit, just after an impact of both.
+
+    Parameters
+    ----------
+    row, event : ndarray, shape (ROW,)
+        The impact of the run with what comes after, and that of the orbit with what comes before.
+    late : float
+        By how much later the run has it.
+    scale : float
+        Unit of the disturbance.
+    away : ndarray, shape (d,)
+    """
+    x1, v1, v2 = event[X1], event[V1], event[V2]
+    after1, after2 = after_impact_kernel(c.law, v1, v2)
+    ur, ui, gr, gi = phasors(c.free, c.Omega, x1, v1, event[PHASE])
+    _, _, a, _, _ = derivatives(c.free, c.Omega, ur, ui, gr, gi)
+    away[0] = (row[X1] - x1 - after1 * late) / scale
+    away[1] = (row[A_V1] - after1 - (a - c.lam * (after1 - v1)) * late) / scale
+    away[2] = (row[X2] - (x1 - event[SIDE]) - after2 * late) / scale
+    away[3] = (row[A_V2] - after2) / scale
 
 
 @linked_njit
@@ -182,6 +209,8 @@ def log_growth(factors, growth):
 def tangent_map(run: Trajectory) -> npt.NDArray[np.float64]:
     """Return the tangent map of a whole run: disturbances of (x1, v1, x2, v2) at its end by those at its start.
 
+    Of the impact pair disturbances are those of the ball, (x2, v2).
+
     Parameters
     ----------
     run : Trajectory
@@ -189,7 +218,7 @@ def tangent_map(run: Trajectory) -> npt.NDArray[np.float64]:
 
     Returns
     -------
-    ndarray, shape (4, 4)
+    ndarray, shape (d, d)
         With every impact followed one by one, its determinant is r^(2 N) exp(-lam t) for N impacts in a time t.
 
     Examples
@@ -207,7 +236,7 @@ def tangent_map(run: Trajectory) -> npt.NDArray[np.float64]:
 
 
 def lyapunov_spectrum(run: Trajectory, *, skip: float = 0.0) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:
-    """Return the four Lyapunov exponents of a run and their standard errors, per unit of dimensionless time.
+    """Return the Lyapunov exponents of a run and their standard errors, per unit of dimensionless time.
 
     Parameters
     ----------
@@ -218,8 +247,9 @@ def lyapunov_spectrum(run: Trajectory, *, skip: float = 0.0) -> tuple[npt.NDArra
 
     Returns
     -------
-    exponents, errors : ndarray, shape (4,)
-        In descending order; -inf for directions that sticking removes. Errors are those of the mean of eight blocks.
+    exponents, errors : ndarray, shape (d,)
+        As many as a disturbance has numbers, in descending order; -inf for directions that sticking removes. Errors
+        are those of the mean of eight blocks.
 
     Raises
     ------
@@ -233,19 +263,21 @@ def lyapunov_spectrum(run: Trajectory, *, skip: float = 0.0) -> tuple[npt.NDArra
     start = run.t_start + skip * run.params.period
     if not start < run.t_end:
         raise StateError(f"skip is {skip!r} periods; allowed is less than the length of the run")
-    grown = lyapunov_blocks(constants(run.params), run.rows, len(run.rows), start, run.t_end, 8, np.eye(4))
+    c = constants(run.params)
+    grown = lyapunov_blocks(c, run.rows, len(run.rows), start, run.t_end, 8, np.eye(len(directions(c))))
     return exponents_of(grown)
 
 
 def exponents_of(grown: npt.NDArray[np.float64]) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:
     """Return exponents and standard errors from growth by blocks, as `lyapunov_blocks` gives it."""
-    filled = grown[grown[:, 4] > 0]
-    length = filled[:, 4].sum()
-    alive = np.all(np.isfinite(filled[:, :4]), axis=0)
-    exponents = np.full(4, -np.inf)
-    errors = np.zeros(4)
-    exponents[alive] = filled[:, :4][:, alive].sum(axis=0) / length
+    d = grown.shape[1] - 1
+    filled = grown[grown[:, d] > 0]
+    length = filled[:, d].sum()
+    alive = np.all(np.isfinite(filled[:, :d]), axis=0)
+    exponents = np.full(d, -np.inf)
+    errors = np.zeros(d)
+    exponents[alive] = filled[:, :d][:, alive].sum(axis=0) / length
     if len(filled) > 1:
-        rates = filled[:, :4][:, alive] / filled[:, 4:]
+        rates = filled[:, :d][:, alive] / filled[:, d:]
         errors[alive] = rates.std(axis=0, ddof=1) / math.sqrt(len(filled))
     return exponents, errors

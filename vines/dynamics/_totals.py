@@ -28,10 +28,14 @@ from vines.kernels import by_type, entry_njit, linked_njit, njit, zero_matrix, z
 __all__ = [
     "accumulate",
     "add_segment",
+    "ball_mass",
     "base_at",
     "count_event",
+    "event_loss",
+    "event_work",
     "segment_state",
     "state_energy",
+    "stored_energy",
     "window_totals",
 ]
 
@@ -75,6 +79,13 @@ def segment_state(c, row, tau):
 def base_at(c, phase):
     """Return the displacement of the base at a phase of the forcing."""
     return c.A * np.sin(phase)
+
+
+@by_type(Constants)
+@njit
+def ball_mass(c):
+    """Return the mass of the ball in the unit of energies and of ratios of masses."""
+    return c.mu
 
 
 @njit
