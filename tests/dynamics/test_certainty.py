@@ -11,8 +11,8 @@ from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 
 from vines.dynamics import ensemble, simulate
-from vines.dynamics._constants import constants
 from vines.dynamics._flight import derivatives, fourth_bound, phasors, turn
+from vines.dynamics._room import constants
 from vines.dynamics._steps import leaving_step, safe_step
 from vines.model import Params
 

@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 from vines.dynamics import _advance as col
 from vines.dynamics import ensemble, lyapunov_spectrum, no_ball, simulate
 from vines.dynamics._advance import advance, new_state, set_state
-from vines.dynamics._constants import constants
+from vines.dynamics._room import constants
 from vines.errors import ParameterError, StateError
 from vines.model import Params
 

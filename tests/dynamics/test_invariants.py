@@ -14,7 +14,7 @@ from vines.attractors import settle
 from vines.dynamics import _advance as col
 from vines.dynamics import lyapunov_spectrum, no_ball, simulate, tangent_map
 from vines.dynamics._advance import advance, begin, new_state, pass_over, set_state
-from vines.dynamics._constants import constants
+from vines.dynamics._room import constants
 from vines.model import Params
 
 parameters = st.builds(

@@ -15,7 +15,7 @@ from numba import typeof, types
 
 import vines.dynamics
 from vines.dynamics import _advance
-from vines.dynamics._constants import constants
+from vines.dynamics._room import constants
 from vines.dynamics._sincos import sincos
 from vines.kernels import CACHE, njit
 from vines.kernels._cache import LazyCache
@@ -23,7 +23,7 @@ from vines.kernels._linked import load_symbols
 from vines.model import Params
 
 PROGRAM = """
-from vines.dynamics._constants import constants
+from vines.dynamics._room import constants
 from vines.dynamics._flight import phasors
 from vines.model import Params
 print(phasors(constants(Params(mu=0.1, A=0.3)).free, 1.0, 0.1, 0.2, 0.5)[2])

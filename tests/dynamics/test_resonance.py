@@ -9,9 +9,10 @@ import numpy as np
 import pytest
 
 from vines.dynamics import ensemble, lyapunov_spectrum, no_ball, simulate
-from vines.dynamics._constants import Constants, constants
+from vines.dynamics._constants import Constants
 from vines.dynamics._flight import derivatives, fifth, phasors, sixth, turn
 from vines.dynamics._integrals import segment_integrals
+from vines.dynamics._room import constants
 from vines.errors import ParameterError
 from vines.model import Params
 from vines.orbits import all_orbits, find_orbit

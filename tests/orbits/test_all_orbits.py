@@ -4,7 +4,7 @@ import mpmath as mp
 import numpy as np
 import pytest
 
-from vines.dynamics._constants import constants
+from vines.dynamics._room import constants
 from vines.errors import OrbitNotFound
 from vines.model import Params, Word
 from vines.orbits import all_orbits, find_orbit, symmetric_orbits

@@ -7,7 +7,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from vines.dynamics import simulate
-from vines.dynamics._constants import constants
+from vines.dynamics._room import constants
 from vines.errors import OrbitNotFound, ParameterError
 from vines.model import Params, Word
 from vines.orbits import continue_orbit, find_orbit, symmetric_orbits

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from vines.dynamics import simulate
-from vines.dynamics._constants import constants
+from vines.dynamics._room import constants
 from vines.errors import OrbitNotFound, ParameterError
 from vines.model import Params
 from vines.orbits import (

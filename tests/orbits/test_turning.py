@@ -1,8 +1,8 @@
 import numpy as np
 from scipy.optimize import minimize_scalar
 
-from vines.dynamics._constants import constants
 from vines.dynamics._flight import phasors
+from vines.dynamics._room import constants
 from vines.model import Params
 from vines.orbits._turning import turning_points_kernel
 
@@ -29,7 +29,7 @@ def test_every_turning_point_of_random_flights_is_found():
     for k in range(1500):
         p, x, v, drift, phase, duration = flight(rng, k)
         c = constants(p)
-        times = turning_points_kernel(c, *phasors(c.free, p.Omega, x, v, phase), drift, duration)
+        times = turning_points_kernel(c, phasors(c.free, p.Omega, x, v, phase), drift, duration)
         assert np.all(np.diff(times) > 0)
         assert np.all((times > 0) & (times < duration))
         dense = np.linspace(0, duration, 20001)
@@ -55,6 +55,6 @@ def test_a_pair_of_turning_points_between_two_samples_is_found():
         lambda t: -velocity(p, 0.2, 0.1, 0.7, t), bounds=(rough - 0.1, rough + 0.1), options={"xatol": 1e-12}
     )
     z = phasors(c.free, p.Omega, 0.2, 0.1, 0.7)
-    near = turning_points_kernel(c, *z, -top.fun - 1e-10, 10.0)
+    near = turning_points_kernel(c, z, -top.fun - 1e-10, 10.0)
     assert np.sum(np.abs(near - top.x) < 1e-4) == 2
-    assert np.sum(np.abs(turning_points_kernel(c, *z, -top.fun + 1e-10, 10.0) - top.x) < 1e-4) == 0
+    assert np.sum(np.abs(turning_points_kernel(c, z, -top.fun + 1e-10, 10.0) - top.x) < 1e-4) == 0

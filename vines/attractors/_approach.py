@@ -7,7 +7,7 @@ import math
 from vines.attractors import _verdict as v
 from vines.attractors._contacts import difference, repetition
 from vines.attractors._multipliers import carry_on, multipliers, square_of
-from vines.dynamics.kernels import after_impact_kernel, derivatives, flow_basis, jump_basis, phasors
+from vines.dynamics.kernels import directions, flow_basis, jump_basis, offset
 from vines.dynamics.kernels import rows as col
 from vines.kernels import (
     cold_njit,
@@ -104,29 +104,23 @@ def nearest_orbit(c, rows, kept, p, lag, scale, tolerance):
     # The tangent map of one repetition, from just after the last contact to just after that of the next one.
     event = zero_vector(col.ROW)
     event[col.KIND] = col.IMPACT
-    Y = identity(4)
+    d = len(directions(c))
+    Y = identity(d)
     for k in range(lag):
         before = t[k - 1] if k > 0 else t[lag - 1] - duration
         flow_basis(c, 0.0, t[k] - before, Y)
         event[col.X1], event[col.V1], event[col.V2] = states[k, 0], states[k, 1], states[k, 3]
         event[col.PHASE] = c.Omega * t[k] % (2.0 * math.pi)
         jump_basis(c, event, Y)
-    roots = complex_vector(4)
+    roots = complex_vector(d)
     largest = multipliers(Y, roots)
     if not largest < 1.0:
         return True, largest, distance, math.inf
 
     # How far the run is from the orbit at one instant, just after its last contact.
-    x1, v1, v2 = states[lag - 1, 0], states[lag - 1, 1], states[lag - 1, 3]
-    after1, after2 = after_impact_kernel(c.law, v1, v2)
-    ur, ui, gr, gi = phasors(c.free, c.Omega, x1, v1, event[col.PHASE])
-    _, _, a, _, _ = derivatives(c.free, c.Omega, ur, ui, gr, gi)
-    late = guess[lag - 1] - t[lag - 1]
-    away = new_vector(4)
-    away[0] = (rows[end, col.X1] - x1 - after1 * late) / scale
-    away[1] = (rows[end, col.A_V1] - after1 - (a - c.lam * (after1 - v1)) * late) / scale
-    away[2] = (rows[end, col.X2] - (x1 - side[lag - 1]) - after2 * late) / scale
-    away[3] = (rows[end, col.A_V2] - after2) / scale
+    away = new_vector(d)
+    event[col.SIDE] = side[lag - 1]
+    offset(c, rows[end], event, guess[lag - 1] - t[lag - 1], scale, away)
     return True, largest, distance, p * _repetitions(Y, away, distance, tolerance)
 
 
@@ -135,13 +129,14 @@ def _repetitions(Y, away, distance, tolerance):
     """Return after how many repetitions a difference `away` to an orbit has shrunk as `distance` has to `tolerance`."""
     if not distance > tolerance:
         return 0.0
-    powers = new_cube(DOUBLINGS, 4, 4)
-    for i in range(4):
-        for j in range(4):
+    d = away.shape[0]
+    powers = new_cube(DOUBLINGS, d, d)
+    for i in range(d):
+        for j in range(d):
             powers[0, i, j] = Y[i, j]
     for k in range(DOUBLINGS - 1):
         square_of(powers, k)
-    later, one, other = new_vector(4), new_vector(4), new_vector(4)
+    later, one, other = new_vector(d), new_vector(d), new_vector(d)
     # The allowance for a state at one instant that goes with the tolerance of the contacts.
     allowed = tolerance * _size(powers, away, one, other) / distance
     repetitions = 1.0
@@ -160,7 +155,7 @@ def _size(powers, away, one, other):
     The map of one return is the first of `powers`; `one` and `other` are room.
     """
     size = 0.0
-    for i in range(4):
+    for i in range(away.shape[0]):
         size = max(size, abs(away[i]))
     size = max(size, carry_on(powers, 0, away, one), carry_on(powers, 0, one, other))
     return max(size, carry_on(powers, 0, other, one))

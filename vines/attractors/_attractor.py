@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
 from vines.dynamics import Measures
-from vines.model import Params
 
 __all__ = ["Attractor"]
 
@@ -19,7 +19,7 @@ class Attractor:
 
     Attributes
     ----------
-    params : Params
+    params : Params, or those of another system
         Parameters of the run.
     regime : str
         ``periodic``, ``quasiperiodic``, ``chaotic``, ``no_impact`` or ``unsettled``.
@@ -47,12 +47,12 @@ class Attractor:
     impacts : structured ndarray
         Recorded impacts, as `Trajectory.impacts`, t counted from the start of the recording.
     final : dict
-        State at the end of the recording: x1, v1, x2, v2, t and forcing phase [rad].
+        State at the end of the recording: the coordinates of the system (x1, v1, x2, v2), t and forcing phase [rad].
     lyapunov, lyapunov_error : float
         Largest Lyapunov exponent per unit of time and its standard error; nan if not asked for.
-    exponents : ndarray, shape (4,)
+    exponents : ndarray, shape (d,)
         The spectrum in descending order, -inf for directions that sticking removes.
-    multipliers : ndarray of complex, shape (4,), or None
+    multipliers : ndarray of complex, shape (d,), or None
         If periodic, its Floquet multipliers over p periods, the largest first.
     remaining : float
         Estimated forcing periods still needed if not settled, nan where no estimate can be made; else 0.
@@ -66,7 +66,7 @@ class Attractor:
         Why it is called unsettled, or what was noted on the way; empty if nothing.
     """
 
-    params: Params
+    params: Any
     regime: str
     settled: bool
     word: str | None

@@ -16,8 +16,8 @@ from vines.attractors._naming import attractor_from, word_of
 from vines.attractors._settle import NUDGE, ROUNDS, Patience
 from vines.attractors._waiting import next_wait
 from vines.dynamics import ensemble
+from vines.dynamics.kernels import ParameterTable, set_state
 from vines.dynamics.kernels import rows as col
-from vines.dynamics.kernels import set_state
 from vines.dynamics.kernels import totals as entry
 from vines.dynamics.runs import (
     EVENTS_PER_PERIOD,
@@ -301,7 +301,7 @@ class _Many:
         for state, (x1, v1, x2, v2, phase) in zip(states, self.states[runs].tolist(), strict=True):
             set_state(state, x1, v1, x2, v2, phase, 0.0)
         sides, rows = look_at_block(
-            self.parameters[runs],
+            ParameterTable(self.parameters[runs]),
             states,
             self.waited[runs],
             spare,

@@ -8,7 +8,7 @@ from vines.attractors import _verdict as v
 from vines.attractors._approach import LARGEST_P, STABLE, comes_to_orbit, nearest_orbit, note_coming
 from vines.attractors._contacts import contacts, difference, repetition
 from vines.attractors._judge import MAX_P, NEAR, note_decay, note_drift
-from vines.dynamics.kernels import lyapunov_blocks, open_window, run_window, shift_time
+from vines.dynamics.kernels import directions, lyapunov_blocks, open_window, run_window, shift_time
 from vines.dynamics.kernels import rows as col
 from vines.kernels import cold_njit, identity, new_matrix, new_vector, njit
 
@@ -63,8 +63,9 @@ def follow(c, state, elapsed, watch, cap, tolerance, rows, verdict):
     own = new_vector(col.STATE)
     for k in range(col.STATE):
         own[k] = state[k]
-    Y = identity(4)
-    grown = new_matrix(sum(LONGER) * BLOCKS, 5)
+    d = len(directions(c))
+    Y = identity(d)
+    grown = new_matrix(sum(LONGER) * BLOCKS, d + 1)
     filled = 0
     passed = 0.0
     rate, error = 0.0, math.inf
@@ -86,8 +87,8 @@ def follow(c, state, elapsed, watch, cap, tolerance, rows, verdict):
         part = lyapunov_blocks(c, rows, count + 1, skip, length, blocks, Y)
         for b in range(blocks):
             # Growth is booked with the block in which an event falls: a block without one says nothing.
-            if part[b, 4] > 0.0:
-                for j in range(5):
+            if part[b, d] > 0.0:
+                for j in range(d + 1):
                     grown[filled, j] = part[b, j]
                 filled += 1
         rate, error = _spectrum(grown, filled, verdict)
@@ -121,17 +122,18 @@ def follow(c, state, elapsed, watch, cap, tolerance, rows, verdict):
 @cold_njit
 def _spectrum(grown, n, verdict):
     """Write the exponents of growth by n blocks; return the largest and its error, that of a finite run included."""
+    d = grown.shape[1] - 1
     time = 0.0
     for b in range(n):
-        time += grown[b, 4]
-    for j in range(4):
+        time += grown[b, d]
+    for j in range(d):
         total = 0.0
         for b in range(n):
             total += grown[b, j]
         verdict[v.EXPONENTS + j] = total / time if math.isfinite(total) else -math.inf
     square = 0.0
     for b in range(n):
-        square += (grown[b, 0] / grown[b, 4] - verdict[v.EXPONENTS]) ** 2
+        square += (grown[b, 0] / grown[b, d] - verdict[v.EXPONENTS]) ** 2
     # A finite run cannot tell rates apart that differ by less than about one over its length.
     error = math.hypot(math.sqrt(square / (n - 1) / n), 1.0 / time) if n > 1 else math.inf
     verdict[v.LYAPUNOV_ERROR] = error

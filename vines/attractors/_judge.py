@@ -8,8 +8,8 @@ from vines.attractors import _verdict as v
 from vines.attractors._approach import NO_ORBIT, comes_to_orbit, nearest_orbit, note_coming
 from vines.attractors._contacts import contacts, difference, mirror_difference, repetition
 from vines.attractors._multipliers import multipliers
+from vines.dynamics.kernels import directions, ringing, tangent_product
 from vines.dynamics.kernels import rows as col
-from vines.dynamics.kernels import tangent_product
 from vines.kernels import byte_vector, cold_njit, complex_vector, new_vector, njit, zero_integers
 
 __all__ = ["MAX_P", "NEAR", "clear", "judge_window", "note_decay", "note_drift"]
@@ -142,15 +142,16 @@ def _repeats(c, rows, kept, p, lag, last, tolerance, verdict):
     count = kept.shape[0]
     span = p * 2.0 * math.pi / c.Omega
     first, end = kept[count - 1 - lag], kept[count - 1]
-    roots = complex_vector(4)
+    n = len(directions(c))
+    roots = complex_vector(n)
     largest = multipliers(tangent_product(c, rows, first, end), roots)
     for i in range(first + 1, end + 1):
         if rows[i, col.KIND] == col.STICK:
-            # After a merge only the common motion is left, two directions of four; what else shows is rounding.
-            roots[2] = roots[3] = 0.0
+            # After a merge two directions are gone, those of the ball against the wall; what shows is rounding.
+            roots[n - 2] = roots[n - 1] = 0.0
             break
     nearest = math.inf
-    for k in range(4):
+    for k in range(n):
         size = abs(roots[k])
         nearest = min(nearest, abs(1.0 - roots[k]))
         verdict[v.MULTIPLIERS_RE + k] = roots[k].real
@@ -198,10 +199,7 @@ def _without_impact(c, rows, n, tolerance, verdict):
         verdict[v.REGIME] = v.UNSETTLED
         return
     verdict[v.REASON], verdict[v.REMAINING] = v.NOTHING, 0.0
-    cosine, sine = math.cos(rows[last, col.PHASE]), math.sin(rows[last, col.PHASE])
-    q_re = c.free.qr * cosine - c.free.qi * sine
-    q_im = c.free.qr * sine + c.free.qi * cosine
-    excess = math.hypot(rows[last, col.X1] - q_re, rows[last, col.V1] + c.Omega * q_im)
+    excess = ringing(c, rows[last, col.X1], rows[last, col.V1], rows[last, col.PHASE])
     if excess > max(tolerance, 1e-15):
         verdict[v.REASON], verdict[v.VALUE] = v.RINGS, excess
         verdict[v.REMAINING] = math.inf

@@ -8,7 +8,7 @@ from vines.attractors import _verdict as v
 from vines.attractors._follow import follow
 from vines.attractors._judge import clear, judge_window
 from vines.attractors._window import measure_window
-from vines.dynamics.kernels import constants_kernel, open_window, run_window, with_room
+from vines.dynamics.kernels import constants_at, open_window, run_window, with_room
 from vines.dynamics.kernels import rows as col
 from vines.kernels import byte_vector, cold_njit, entry_njit, new_matrix, njit
 
@@ -69,13 +69,13 @@ def _what_next(verdict, spare, may_free):
 
 
 @entry_njit
-def look_at_block(parameters, states, waited, spare, stages, watch, cap, tolerance, impacts, verdicts, totals):
+def look_at_block(table, states, waited, spare, stages, watch, cap, tolerance, impacts, verdicts, totals):
     """Record runs from time 0 on, each until it repeats or the last stage ends, and decide what they show.
 
     Parameters
     ----------
-    parameters : ndarray, shape (n, 5)
-        mu, A, Omega, r, lam of each.
+    table : ParameterTable
+        Parameters of each; its type is that of the system.
     states : ndarray, shape (n, STATE)
         The runs at time 0; on return at the ends of their windows.
     waited : ndarray of int, shape (n,)
@@ -101,7 +101,7 @@ def look_at_block(parameters, states, waited, spare, stages, watch, cap, toleran
         Sides of the contacts of all repetitions, one behind the other; rows of the impacts of runs that stay, the
         number of the run last.
     """
-    n = parameters.shape[0]
+    n = states.shape[0]
     # Taken once: fresh memory costs as much as a short run.
     rows, room = new_matrix(ROOM, col.ROW), new_matrix(ROOM, col.ROW)
     letters = byte_vector(4 * n)
@@ -109,7 +109,7 @@ def look_at_block(parameters, states, waited, spare, stages, watch, cap, toleran
     hits = new_matrix(16, col.ROW + 1)
     filled = 0
     for k in range(n):
-        c = constants_kernel(parameters[k, 0], parameters[k, 1], parameters[k, 2], parameters[k, 3], parameters[k, 4])
+        c = constants_at(table, k)
         verdict = verdicts[k]
         rows, count, room, sides = _look(c, states[k], waited[k], stages, watch, cap, tolerance, rows, room, verdict)
         if written + sides.shape[0] > letters.shape[0]:

@@ -10,13 +10,14 @@ __all__ = ["carry_on", "multipliers", "square_of"]
 
 @cold_njit
 def multipliers(Y, roots):
-    """Fill `roots`, shape (4,), with the eigenvalues of a tangent map, the largest first; return its modulus."""
-    H = complex_matrix(4, 4)
-    for i in range(4):
-        for j in range(4):
+    """Fill `roots`, shape (n,), with the eigenvalues of a tangent map, the largest first; return its modulus."""
+    n = Y.shape[0]
+    H = complex_matrix(n, n)
+    for i in range(n):
+        for j in range(n):
             H[i, j] = complex(Y[i, j], 0.0)
     eigenvalues_kernel(H, roots)
-    for i in range(1, 4):
+    for i in range(1, n):
         root = roots[i]
         k = i
         while k > 0 and abs(roots[k - 1]) < abs(root):
@@ -30,9 +31,9 @@ def multipliers(Y, roots):
 def carry_on(powers, k, away, later):
     """Fill `later` with what the map number k of `powers` makes of a disturbance; return its largest part."""
     size = 0.0
-    for i in range(4):
+    for i in range(away.shape[0]):
         total = 0.0
-        for j in range(4):
+        for j in range(away.shape[0]):
             total += powers[k, i, j] * away[j]
         later[i] = total
         size = max(size, abs(total))
@@ -42,9 +43,10 @@ def carry_on(powers, k, away, later):
 @njit
 def square_of(powers, k):
     """Make map number k + 1 of `powers` the square of number k."""
-    for i in range(4):
-        for j in range(4):
+    n = powers.shape[1]
+    for i in range(n):
+        for j in range(n):
             total = 0.0
-            for m in range(4):
+            for m in range(n):
                 total += powers[k, i, m] * powers[k, m, j]
             powers[k + 1, i, j] = total

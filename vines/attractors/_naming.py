@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
 from vines.attractors import _verdict as v
 from vines.attractors._attractor import Attractor
+from vines.dynamics.kernels import room_of
 from vines.dynamics.runs import STATUS, measures_from
-from vines.model import START_NAMES, VI_NES, Params, Word
+from vines.model import VI_NES, Word
 
 __all__ = ["attractor_from", "word_of"]
 
@@ -28,7 +30,7 @@ def word_of(sides: npt.NDArray[np.int8], p: int) -> Word:
 
 
 def attractor_from(
-    p: Params,
+    p: Any,
     verdict: npt.NDArray[np.float64],
     totals: npt.NDArray[np.float64],
     word: Word | None,
@@ -40,7 +42,7 @@ def attractor_from(
 
     Parameters
     ----------
-    p : Params
+    p : Params, or those of another system
         Parameters.
     verdict, totals : ndarray
         As `look` fills them, NUDGED and PERIODS (those before the recording) included.
@@ -57,13 +59,16 @@ def attractor_from(
     regime = int(value[v.REGIME])
     measures = measures_from(p, totals)
     known = lyapunov or bool(value[v.KNOWN])
-    exponents = np.full(4, math.nan)
+    room = room_of(p)
+    d = room.directions(p)
+    exponents = np.full(d, math.nan)
     if known:
-        exponents = verdict[v.EXPONENTS : v.EXPONENTS + 4].copy()
+        exponents = verdict[v.EXPONENTS : v.EXPONENTS + d].copy()
     multipliers = None
     if not math.isnan(value[v.MULTIPLIERS_RE]):
-        multipliers = verdict[v.MULTIPLIERS_RE : v.MULTIPLIERS_RE + 4] + 1j * verdict[v.MULTIPLIERS_IM :][:4]
-    final = dict(zip(START_NAMES, value[v.FINAL :][: len(START_NAMES)], strict=True))
+        multipliers = verdict[v.MULTIPLIERS_RE :][:d] + 1j * verdict[v.MULTIPLIERS_IM :][:d]
+    x1, v1, x2, v2, phase = value[v.FINAL :][:5]
+    final = {**room.leave(p, x1, v1, x2, v2, phase), "phase": phase}
     return Attractor(
         params=p,
         regime=v.REGIMES[regime],

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -13,12 +14,11 @@ from vines.attractors._attractor import Attractor
 from vines.attractors._look import look_at_block
 from vines.attractors._naming import attractor_from, word_of
 from vines.attractors._waiting import next_wait
-from vines.dynamics.kernels import constants, pass_over, set_state, shift_time
+from vines.dynamics.kernels import constants, pass_over, set_state, shift_time, table_of
 from vines.dynamics.kernels import rows as col
 from vines.dynamics.kernels import totals as entry
-from vines.dynamics.runs import EVENTS_PER_PERIOD, check_start, impacts_of
+from vines.dynamics.runs import EVENTS_PER_PERIOD, impacts_of, start_of
 from vines.errors import StateError
-from vines.model import START_NAMES, Params
 
 __all__ = ["NUDGE", "ROUNDS", "Patience", "settle", "settle_from"]
 
@@ -62,12 +62,8 @@ class Patience:
 
 
 def settle(
-    p: Params,
+    p: Any,
     *,
-    x1: float = 0.0,
-    v1: float = 0.0,
-    x2: float = 0.0,
-    v2: float = 0.1,
     t: float = 0.0,
     phi: float = 0.0,
     settle: float = 400,
@@ -77,15 +73,16 @@ def settle(
     tolerance: float = 1e-10,
     lyapunov: bool = True,
     max_impacts_per_period: int = EVENTS_PER_PERIOD,
+    **start: Any,
 ) -> Attractor:
     """Run for `settle` forcing periods, record the next `record`, and say what the run has settled to.
 
     Parameters
     ----------
-    p : Params
+    p : Params, or the parameters of another system
         Dimensionless parameters.
-    x1, v1, x2, v2, t, phi : float
-        Start, as for `vines.dynamics.simulate`.
+    t, phi : float
+        Time of the start, and phase of the forcing at t = 0 [rad].
     settle : float
         Forcing periods to run first, >= 0.
     record : float
@@ -102,6 +99,8 @@ def settle(
         Whether to give exponents; they are worked out anyhow where the regime depends on them.
     max_impacts_per_period : int
         Cap on events in one forcing period; when it is passed the regime is ``unsettled``, status ``impact_cap``.
+    **start : float
+        Start state by the names of the system, as for `vines.dynamics.simulate`.
 
     Returns
     -------
@@ -123,13 +122,12 @@ def settle(
     >>> found.regime, found.name, found.word, found.symmetric
     ('periodic', '2:1', 'LLR', False)
     """
-    check_start(x1=x1, v1=v1, x2=x2, v2=v2, t=t, phi=phi)
-    begin = (x1, v1, x2, v2, math.fmod(p.Omega * t, 2 * math.pi) + phi)
+    begin = start_of(p, start, t, phi)
     return _settled(p, begin, t, Patience(settle, record, patience, watch, tolerance, max_impacts_per_period), lyapunov)
 
 
 def settle_from(
-    p: Params,
+    p: Any,
     start: Mapping[str, float],
     *,
     settle: float = 400,
@@ -144,10 +142,11 @@ def settle_from(
 
     Parameters
     ----------
-    p : Params
+    p : Params, or the parameters of another system
         Dimensionless parameters.
     start : mapping
-        x1, v1, x2, v2 and phase [rad]; t, if given, is only the origin of `Attractor.final["t"]`.
+        The coordinates of the system (x1, v1, x2, v2) and phase [rad]; t, if given, is only the origin of
+        `Attractor.final["t"]`.
     settle, record, patience, watch, tolerance, lyapunov, max_impacts_per_period
         As for `settle`.
 
@@ -166,21 +165,20 @@ def settle_from(
     >>> settle_from(Params(mu=0.01, A=0.0201), first.final, settle=100).name
     '1:1'
     """
-    x1, v1, x2, v2, phase = (float(start[name]) for name in START_NAMES)
     t = float(start.get("t", 0.0))
-    check_start(x1=x1, v1=v1, x2=x2, v2=v2, phase=phase, t=t)
-    begin = (x1, v1, x2, v2, phase)
+    at = {name: value for name, value in start.items() if name not in ("t", "phase")}
+    begin = start_of(p, at, 0.0, start["phase"])
     return _settled(p, begin, t, Patience(settle, record, patience, watch, tolerance, max_impacts_per_period), lyapunov)
 
 
 def _settled(
-    p: Params, begin: tuple[float, float, float, float, float], t: float, how: Patience, lyapunov: bool
+    p: Any, begin: tuple[float, float, float, float, float], t: float, how: Patience, lyapunov: bool
 ) -> Attractor:
     c = constants(p)
     states = np.zeros((1, col.STATE))
     state = states[0]
     set_state(state, *begin, 0.0)
-    parameters = np.array([list(p.as_dict().values())])
+    table = table_of(p)
     room = np.empty((256, col.ROW))
     verdicts, totals = np.empty((1, v.VERDICT)), np.zeros((1, entry.TOTALS))
     verdict = verdicts[0]
@@ -192,7 +190,7 @@ def _settled(
         shift_time(state, wait * p.period)
         left = np.array([[spare, math.isnan(nudged)]]) if turn < ROUNDS else np.zeros((1, 2))
         sides, hits = look_at_block(
-            parameters, states, waited, left, stages, float(how.watch), how.cap, how.tolerance, True, verdicts, totals
+            table, states, waited, left, stages, float(how.watch), how.cap, how.tolerance, True, verdicts, totals
         )
         shift_time(state, how.record * p.period)
         ran += wait + how.record

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from vines.attractors import _verdict as v
-from vines.dynamics.kernels import BATCHES, close_batch, standard_errors, window_totals
+from vines.dynamics.kernels import BATCHES, ball_mass, close_batch, standard_errors, window_totals
 from vines.dynamics.kernels import rows as col
 from vines.dynamics.kernels import totals as entry
 from vines.kernels import cold_njit, new_matrix, new_vector
@@ -40,7 +40,7 @@ def measure_window(c, rows, n, verdict, total):
     values, errors = new_matrix(BATCHES, 3), new_vector(3)
     for k in range(BATCHES):
         part = window_totals(c, rows, n, k * width, stop if k == BATCHES - 1 else (k + 1) * width)
-        close_batch(c.mu, part, total, values[k])
+        close_batch(ball_mass(c), part, total, values[k])
     standard_errors(values, errors)
     verdict[v.KINETIC_RATIO_ERROR], verdict[v.MAX_ABS_X1_ERROR], verdict[v.RMS_X1_ERROR] = (
         errors[0],

@@ -10,7 +10,7 @@ import numpy as np
 
 from vines.dynamics._constants import Constants
 from vines.dynamics._contact import CONTACT, NO_CONTACT, next_contact
-from vines.dynamics._flight import advance_phase, derivatives, flight, flown
+from vines.dynamics._flight import advance_phase, derivatives, flight, flown, free_ball
 from vines.dynamics._impact_law import after_impact_kernel
 from vines.dynamics._sticking import merges, next_release
 from vines.kernels import by_type, fused_njit, linked_njit, loop_njit, njit
@@ -120,7 +120,8 @@ def state_now(c, state, t):
     phase = advance_phase(state[S_PHASE], c.Omega * tau)
     if side != 0.0:
         return x1, v1, x1 - side, v1, phase, tau
-    return x1, v1, state[S_X2] + state[S_V2] * tau, state[S_V2], phase, tau
+    way, v2 = free_ball(c, state[S_V2], tau)
+    return x1, v1, state[S_X2] + way, v2, phase, tau
 
 
 @fused_njit
@@ -250,6 +251,7 @@ def advance(c, state, stop, cap, rows, first):
             )
             if code == CONTACT:
                 _move(c, state, tau)
+                _, v2 = free_ball(c, v2, tau)
                 after1, after2 = after_impact_kernel(law_of(c, v - v2, state[S_IMPACTS]), v, v2)
                 state[S_IMPACTS] += 1.0
                 if hit != state[S_RUN_SIDE] or state[S_RELEASED] != 0.0:
@@ -274,7 +276,8 @@ def advance(c, state, stop, cap, rows, first):
         if side != 0:
             _place(state, side, side, 0.0, x, v, x - side, v)
         else:
-            _place(state, 0, 0, 0.0, x, v, x2 + v2 * tau, v2)
+            way, v2 = free_ball(c, v2, tau)
+            _place(state, 0, 0, 0.0, x, v, x2 + way, v2)
         _write(rows[count], state, START, 0, tau, x, v, state[S_X2], state[S_V2])
         count += 1
 

@@ -5,11 +5,13 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-from vines.dynamics._impact_law import ImpactLaw, impact_law_kernel
-from vines.kernels import fused_njit, linked_njit
-from vines.model import Params
+import numpy as np
+import numpy.typing as npt
 
-__all__ = ["Constants", "Oscillator", "constants", "constants_kernel", "oscillator"]
+from vines.dynamics._impact_law import ImpactLaw, impact_law_kernel
+from vines.kernels import by_type, fused_njit, linked_njit, njit
+
+__all__ = ["Constants", "Oscillator", "ParameterTable", "constants_at", "constants_kernel", "oscillator"]
 
 NARROW = 1.0 / 256.0
 """|i Omega - s| below which motion is written without dividing by it, whatever the amplitude."""
@@ -173,13 +175,15 @@ def constants_kernel(mu, A, Omega, r, lam):
     )
 
 
-def constants(p: Params) -> Constants:
-    """Return the constants of the kernels.
+class ParameterTable(NamedTuple):
+    """Parameters of many runs, one a row; the type of such a table says of which system they are."""
 
-    Examples
-    --------
-    >>> c = constants(Params(mu=0.01, A=0.02))
-    >>> print(f"{c.law.keep1 + c.law.pass1:.3f} {c.free.gamma:.6f}")
-    1.000 0.999982
-    """
-    return constants_kernel(p.mu, p.A, p.Omega, p.r, p.lam)
+    values: npt.NDArray[np.float64]
+
+
+@by_type(ParameterTable)
+@njit
+def constants_at(table, k):
+    """Return the constants at row k of a table of parameters."""
+    values = table.values
+    return constants_kernel(values[k, 0], values[k, 1], values[k, 2], values[k, 3], values[k, 4])

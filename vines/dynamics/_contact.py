@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from vines.dynamics._constants import Constants
-from vines.dynamics._flight import derivatives, fifth, forced_fifth, modulus, sixth, turn
+from vines.dynamics._flight import derivatives, fifth, forced_fifth, free_ball, modulus, pull, sixth, turn
 from vines.dynamics._steps import leaving_step, only_root, step_ahead, step_back, taylor_root
 from vines.kernels import by_type, fused_njit
 
@@ -44,6 +44,7 @@ def first_step(c, motion, v2, wall, released):
     After a release w' = w'' = 0 exactly, too.
     """
     _, v, a, j, k = derivatives(c.free, c.Omega, *motion)
+    a = pull(c, a)
     re, im = fifth(c.free, *motion)
     bound = modulus(re, im) + forced_fifth(c, *motion) * c.window
     speed = 0.0 if released else max(wall * (v2 - v), 0.0)
@@ -59,7 +60,7 @@ def first_step(c, motion, v2, wall, released):
 
 
 @fused_njit
-def close_in(o, Omega, near, what, motion, x2, v2, side, tau, step, reach):
+def close_in(c, o, what, motion, x2, v2, side, tau, step, reach):
     """Return (tau, x1, v1, x1'', x1''', x1'''') at the only root in [tau, tau + reach], estimated at tau + step.
 
     It is that of the gap to the wall `side` (GAP), of the force between it and a ball riding on it (FORCE), or of the
@@ -70,16 +71,17 @@ def close_in(o, Omega, near, what, motion, x2, v2, side, tau, step, reach):
     x = v = a = j = k = 0.0
     for _ in range(80):
         tau += step
-        now = turn(o, Omega, *motion, tau)
-        x, v, a, j, k = derivatives(o, Omega, *now)
+        now = turn(o, c.Omega, *motion, tau)
+        x, v, a, j, k = derivatives(o, c.Omega, *now)
         d5, _ = fifth(o, *now)
         if what == GAP:
-            gap = 1.0 - side * (x - (x2 + v2 * tau))
-            slope = side * (v - v2)
+            way, speed = free_ball(c, v2, tau)
+            gap = 1.0 - side * (x - (x2 + way))
+            slope = side * (v - speed)
             d6 = sixth(o, *now)
-            step, correction = taylor_root(gap, slope, side * a, side * j, side * k, side * d5, side * d6)
+            step, correction = taylor_root(gap, slope, side * pull(c, a), side * j, side * k, side * d5, side * d6)
         elif what == FORCE:
-            gap = side * a
+            gap = side * pull(c, a)
             slope = -side * j
             step, correction = taylor_root(gap, slope, -side * k, -side * d5, 0.0, 0.0, 0.0)
         else:
@@ -90,7 +92,7 @@ def close_in(o, Omega, near, what, motion, x2, v2, side, tau, step, reach):
             low = max(low, tau)
         else:
             high = min(high, tau)
-        if abs(step) <= near and slope > 0.0 and abs(correction) <= 1e-5 * abs(step) + 1e-14:
+        if abs(step) <= c.near and slope > 0.0 and abs(correction) <= 1e-5 * abs(step) + 1e-14:
             x += step * (v + step * (0.5 * a + step * ((1 / 6) * j + step * ((1 / 24) * k + step * ((1 / 120) * d5)))))
             v += step * (a + step * (0.5 * j + step * ((1 / 6) * k + step * ((1 / 24) * d5))))
             a += step * (j + step * (0.5 * k + step * ((1 / 6) * d5)))
@@ -145,16 +147,17 @@ def contact_within(c, motion, x2, v2, wall, released, tau, stop):
         x, v, a, j, k = derivatives(o, c.Omega, *now)
         d5, i5 = fifth(o, *now)
         bound = modulus(d5, i5) + forced
-        w = x - (x2 + v2 * tau)
-        pace = abs(v - v2)
-        side = 1 if v > v2 else -1
-        d2, d3, d4 = side * a, side * j, side * k
+        way, speed = free_ball(c, v2, tau)
+        w = x - (x2 + way)
+        pace = abs(v - speed)
+        side = 1 if v > speed else -1
+        d2, d3, d4 = side * pull(c, a), side * j, side * k
         gap = max(1.0 - side * w, 0.0)
         d6 = sixth(o, *now)
         h, _ = taylor_root(gap, pace, d2, d3, d4, side * d5, side * d6)
         reach = BEYOND * h
         if reach <= window and only_root(gap, pace, d2, d3, d4, bound, reach):
-            found, x, v, _, _, _ = close_in(o, c.Omega, c.near, GAP, motion, x2, v2, side, tau, h, reach)
+            found, x, v, _, _, _ = close_in(c, o, GAP, motion, x2, v2, side, tau, h, reach)
             if found > stop:
                 return NO_CONTACT, tau, 0, 0.0, 0.0
             return CONTACT, found, side, x, v

@@ -10,7 +10,7 @@ import math
 
 from vines.dynamics._constants import Constants, Oscillator
 from vines.dynamics._sincos import sincos
-from vines.kernels import by_type, fused_njit
+from vines.kernels import by_type, fused_njit, njit
 
 __all__ = [
     "advance_phase",
@@ -21,10 +21,14 @@ __all__ = [
     "flown",
     "forced_fifth",
     "fourth_bound",
+    "free_ball",
     "modulus",
     "phasors",
+    "pull",
+    "ringing",
     "sixth",
     "slow_growth",
+    "speed_terms",
     "terms",
     "turn",
 ]
@@ -187,12 +191,34 @@ def terms(o, ur, ui, gr, gi):
     return 1.0 + abs(ur) + abs(ui) + abs(gr) + abs(gi)
 
 
+@by_type(Constants)
+@fused_njit
+def free_ball(c, v2, tau):
+    """Return how far a free ball comes in a time tau that begins with the velocity v2, and its velocity then."""
+    return v2 * tau, v2
+
+
+@by_type(Constants)
+@fused_njit
+def pull(c, a):
+    """Return the acceleration of a wall that moves with x1'' = a, against a free ball: w''."""
+    return a
+
+
 @fused_njit
 def modulus(re, im):
     """Return |re + i im|."""
     return math.sqrt(re * re + im * im)
 
 
+@by_type(Constants)
+@njit
+def speed_terms(c, ur, ui, gr, gi):
+    """Return the size of the terms of which the velocity of a wall is the sum."""
+    return abs(ur) + abs(ui) + (1.0 + c.Omega) * (abs(gr) + abs(gi))
+
+
+@by_type(Constants)
 @fused_njit
 def fourth_bound(c, ur, ui, gr, gi, window):
     """Return a bound of the oscillator's fourth derivative over a window of free flight (docs/dynamics.md)."""
@@ -200,6 +226,16 @@ def fourth_bound(c, ur, ui, gr, gi, window):
     re = (o.s4r * ur - o.s4i * ui) + (o.c4r * gr - o.c4i * gi)
     im = (o.s4r * ui + o.s4i * ur) + (o.c4r * gi + o.c4i * gr)
     return math.sqrt(re * re + im * im) + math.sqrt(gr * gr + gi * gi) * c.Omega4 * window
+
+
+@by_type(Constants)
+@njit
+def ringing(c, x1, v1, phase):
+    """Return how far the oscillator is from its steady motion under the forcing alone."""
+    cosine, sine = math.cos(phase), math.sin(phase)
+    q_re = c.free.qr * cosine - c.free.qi * sine
+    q_im = c.free.qr * sine + c.free.qi * cosine
+    return math.hypot(x1 - q_re, v1 + c.Omega * q_im)
 
 
 @fused_njit

@@ -10,7 +10,7 @@ import math
 
 import numpy as np
 
-from vines.dynamics._constants import Oscillator
+from vines.dynamics._constants import Constants, Oscillator
 from vines.dynamics._contact import BEYOND, SPEED, close_in
 from vines.dynamics._flight import derivatives, fifth, forced_fifth, modulus, phasors, slow_growth, turn
 from vines.dynamics._steps import only_root, step_ahead, step_back, taylor_root
@@ -76,6 +76,7 @@ def _near_resonance(o, Omega, u0, g0, length):
     return ug, square
 
 
+@by_type(Constants)
 @linked_njit
 def segment_integrals(c, mode, x1, v1, v2, phase, length):
     """Return the integrals of x1^2, v1^2, v2^2, the base work and the damper loss over [0, length].
@@ -201,7 +202,7 @@ def peak_between(c, o, motion, end, start, length, best):
             h, _ = taylor_root(gap, slope, -side * j, -side * k, 0.0, 0.0, 0.0)
             reach = BEYOND * h
             if reach <= window and only_root(gap, slope, -side * j, -side * k, -bound, 0.0, reach):
-                tau, x, _, a, j, k = close_in(o, c.Omega, c.near, SPEED, motion, 0.0, 0.0, int(side), tau, h, reach)
+                tau, x, _, a, j, k = close_in(c, o, SPEED, motion, 0.0, 0.0, int(side), tau, h, reach)
                 if tau > length:
                     return best, when
                 if abs(x) > best:

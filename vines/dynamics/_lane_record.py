@@ -13,7 +13,7 @@ from vines.dynamics import _lane_fields as f
 from vines.dynamics._batches import BATCHES, standard_errors
 from vines.dynamics._lane_measures import open_measures
 from vines.dynamics._lane_segments import begin_segment, close_part, part_of
-from vines.dynamics._tangent import DEAD, flow_basis, jump_basis, log_growth, orthonormalise
+from vines.dynamics._tangent import DEAD, directions, flow_basis, jump_basis, log_growth, orthonormalise
 from vines.dynamics._totals import DURATION, ENERGY_CHANGE, TOTALS, state_energy
 from vines.kernels import (
     copy_values,
@@ -107,7 +107,7 @@ def _digest_growth(c, rows, n, Y, growth, width):
             running = batch
         flow_basis(c, rows[j - 1, col.MODE], rows[j, col.TAU], Y)
         jump_basis(c, rows[j], Y)
-        orthonormalise(Y, gains)
+        orthonormalise(directions(c), Y, gains)
         growth[running, 4] += rows[j, col.TAU]
         for k in range(4):
             product[k] *= gains[k]

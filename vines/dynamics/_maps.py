@@ -14,10 +14,10 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from vines.dynamics._constants import constants
 from vines.dynamics._contact import CONTACT, next_contact
 from vines.dynamics._flight import phasors
 from vines.dynamics._impact_law import after_impact
+from vines.dynamics._room import constants
 from vines.dynamics._saltation import GAP_TOLERANCE, jacobian_kernel
 from vines.errors import StateError
 from vines.model import VI_NES, Params

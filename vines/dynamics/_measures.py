@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
 from vines.dynamics import _totals as entry
-from vines.model import Params
+from vines.dynamics._room import room_of
 
 __all__ = ["Measures", "measures_from"]
 
@@ -108,9 +109,10 @@ class Measures:
         return self._each_period(self.impact_loss)
 
 
-def measures_from(p: Params, totals: npt.NDArray[np.float64]) -> Measures:
+def measures_from(p: Any, totals: npt.NDArray[np.float64]) -> Measures:
     """Return the measures of a window from the totals that `window_totals` gives."""
     t = totals.tolist()
+    mass = room_of(p).mass(p)
     duration = t[entry.DURATION]
     v1_square, v2_square = t[entry.V1_SQUARE], t[entry.V2_SQUARE]
     per = 1.0 / duration if duration > 0 else math.nan
@@ -118,8 +120,8 @@ def measures_from(p: Params, totals: npt.NDArray[np.float64]) -> Measures:
         duration=duration,
         period=p.period,
         kinetic_1=0.5 * v1_square * per,
-        kinetic_2=0.5 * p.mu * v2_square * per,
-        kinetic_ratio=p.mu * v2_square / v1_square if v1_square > 0 else math.nan,
+        kinetic_2=0.5 * mass * v2_square * per,
+        kinetic_ratio=mass * v2_square / v1_square if v1_square > 0 else math.nan,
         max_abs_x1=t[entry.MAX_ABS_X1],
         t_max_abs_x1=t[entry.T_MAX_ABS_X1],
         rms_x1=max(t[entry.X1_SQUARE] * per, 0.0) ** 0.5,

@@ -18,7 +18,9 @@ from vines.dynamics._flight import (
     flight,
     flown,
     forced_fifth,
+    free_ball,
     modulus,
+    pull,
     sixth,
     terms,
     turn,
@@ -120,6 +122,10 @@ def redraw(c, o, motion):
     ur += held - drawn
     ui -= o.first.half * o.first.inverse * (held - drawn)
     return ur, ui, pr, pi, qr, qi, drawn, c.grid, index + 1.0
+
+
+free_ball.register(ScatterConstants)(free_ball.first)
+pull.register(ScatterConstants)(pull.first)
 
 
 @flown.register(ScatterConstants)

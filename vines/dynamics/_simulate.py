@@ -3,18 +3,17 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
 from vines.dynamics import _advance as col
 from vines.dynamics._advance import begin, new_state, set_state
-from vines.dynamics._constants import Constants, constants
-from vines.dynamics._start import check_start
+from vines.dynamics._room import constants, start_of
 from vines.dynamics._trajectory import Trajectory
 from vines.dynamics._window import run_window
 from vines.errors import StateError
-from vines.model import Params
 
 __all__ = ["EVENTS_PER_PERIOD", "STATUS", "record", "simulate"]
 
@@ -25,7 +24,7 @@ STATUS = {col.COMPLETE: "complete", col.EVENT_CAP: "impact_cap", col.STEP_LIMIT:
 
 
 def record(
-    c: Constants, state: npt.NDArray[np.float64], stop: float, cap: int, expected: int
+    c: Any, state: npt.NDArray[np.float64], stop: float, cap: int, expected: int
 ) -> tuple[npt.NDArray[np.float64], str]:
     """Run on to `stop` with every row kept, whatever their number, and a last row for the end.
 
@@ -41,26 +40,20 @@ def record(
 
 
 def simulate(
-    p: Params,
+    p: Any,
     *,
-    x1: float = 0.0,
-    v1: float = 0.0,
-    x2: float = 0.0,
-    v2: float = 0.1,
     t: float = 0.0,
     phi: float = 0.0,
     periods: float = 500,
     max_impacts_per_period: int = EVENTS_PER_PERIOD,
+    **start: Any,
 ) -> Trajectory:
-    """Run the model exactly, event by event, and keep every event.
+    """Run a system exactly, event by event, and keep every event.
 
     Parameters
     ----------
-    p : Params
+    p : Params, or the parameters of another system
         Dimensionless parameters.
-    x1, v1, x2, v2 : float
-        Start state of oscillator and ball, with a gap of at most 1. A start on a wall with the ball approaching begins
-        with an impact; with no relative velocity the sign of the push decides between sticking and flight.
     t : float
         Time of the start.
     phi : float
@@ -69,6 +62,10 @@ def simulate(
         Forcing periods to run, > 0.
     max_impacts_per_period : int
         Cap on events in one forcing period; when it is passed the run ends there with status ``impact_cap``.
+    **start : float
+        Start state by the names of the system: x1, v1, x2, v2 of oscillator and ball (0, 0, 0, .1 where not given),
+        with a gap of at most 1; w, w_dot of the impact pair. A start on a wall with the ball approaching begins
+        with an impact; with no relative velocity the sign of the push decides between sticking and flight.
 
     Returns
     -------
@@ -87,14 +84,14 @@ def simulate(
     >>> abs(run.measures(last=1).balance) < 1e-14
     True
     """
-    check_start(x1=x1, v1=v1, x2=x2, v2=v2, t=t, phi=phi)
+    begin = start_of(p, start, t, phi)
     if not (isinstance(periods, int | float) and math.isfinite(periods) and periods > 0):
         raise StateError(f"periods is {periods!r}; give a finite number > 0")
     if max_impacts_per_period < 1:
         raise StateError(f"max_impacts_per_period is {max_impacts_per_period!r}; give an integer >= 1")
     c = constants(p)
     state = new_state()
-    set_state(state, float(x1), float(v1), float(x2), float(v2), math.fmod(p.Omega * t, 2 * math.pi) + phi, float(t))
+    set_state(state, *begin, float(t))
     stop = t + periods * p.period
     rows, status = record(c, state, stop, max_impacts_per_period, int(4 * periods) + 64)
     return Trajectory(p, float(phi), float(t), float(rows[-1, col.TIME]), status, rows)

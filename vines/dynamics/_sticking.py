@@ -6,7 +6,7 @@ import math
 
 from vines.dynamics._constants import Constants
 from vines.dynamics._contact import BEYOND, CONTACT, FEW_ULP, FORCE, MAX_STEPS, NO_CONTACT, STEP_CAP, close_in
-from vines.dynamics._flight import derivatives, fifth, forced_fifth, modulus, terms, turn
+from vines.dynamics._flight import derivatives, fifth, forced_fifth, modulus, pull, terms, turn
 from vines.dynamics._steps import leaving_step, only_root, safe_step, taylor_root
 from vines.kernels import by_type, fused_njit, loop_njit
 
@@ -27,7 +27,7 @@ def merges(c, side, speed, motion, x2):
     or if its flight is too low for double precision; with no speed at all the sign of the push decides.
     """
     _, _, a, j, k = derivatives(c.free, c.Omega, *motion)
-    push = side * a
+    push = side * pull(c, a)
     jerk = side * j
     if speed == 0.0:
         return push > 0.0 or (push == 0.0 and jerk >= 0.0)
@@ -74,8 +74,8 @@ def release_within(c, side, motion, tau, stop):
         now = turn(o, c.Omega, *motion, tau)
         x, v, a, j, k = derivatives(o, c.Omega, *now)
         bound = modulus(*fifth(o, *now)) + forced
-        # The contact force is (1 + mu) side x1''; its sign is all that matters here.
-        force = side * a
+        # The contact force is (1 + mu) side w'' of a ball that were free; its sign is all that matters here.
+        force = side * pull(c, a)
         slope = -side * j
         bend = -side * k
         if force < 0.0 or (force == 0.0 and slope > 0.0):
@@ -85,7 +85,7 @@ def release_within(c, side, motion, tau, stop):
             reach = BEYOND * h
             # One order lower than in flight: the third derivative of the force is only bounded.
             if reach <= window and only_root(force, slope, bend, -bound, 0.0, 0.0, reach):
-                found, x, v, _, _, _ = close_in(o, c.Omega, c.near, FORCE, motion, 0.0, 0.0, side, tau, h, reach)
+                found, x, v, _, _, _ = close_in(c, o, FORCE, motion, 0.0, 0.0, side, tau, h, reach)
                 return (CONTACT, found, x, v) if found <= stop else (NO_CONTACT, tau, 0.0, 0.0)
         if force == 0.0:
             h = leaving_step(-slope, bend, bound, 0.0, window)

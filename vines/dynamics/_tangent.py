@@ -12,22 +12,25 @@ import math
 import numpy as np
 import numpy.typing as npt
 
-from vines.dynamics._advance import IMPACT, KIND, MODE, PHASE, STICK, TAU, TIME, V1, V2, X1
-from vines.dynamics._constants import constants
+from vines.dynamics._advance import A_V1, A_V2, IMPACT, KIND, MODE, PHASE, SIDE, STICK, TAU, TIME, V1, V2, X1, X2
+from vines.dynamics._constants import Constants
 from vines.dynamics._flight import decay, derivatives, phasors
 from vines.dynamics._impact_law import after_impact_kernel
+from vines.dynamics._room import constants
 from vines.dynamics._sincos import sincos
 from vines.dynamics._trajectory import Trajectory
 from vines.errors import StateError
-from vines.kernels import fused_njit, identity, linked_njit, zero_matrix, zero_vector
+from vines.kernels import by_type, fused_njit, identity, linked_njit, njit, zero_matrix, zero_vector
 
 __all__ = [
     "DEAD",
+    "directions",
     "flow_basis",
     "jump_basis",
     "log_growth",
     "lyapunov_blocks",
     "lyapunov_spectrum",
+    "offset",
     "orthonormalise",
     "tangent_map",
     "tangent_product",
@@ -38,9 +41,17 @@ DEAD = 1e-150
 """Growth below which a direction counts as gone: sticking removes it exactly."""
 
 
+@by_type(Constants)
+@njit
+def directions(c):
+    """Return a tuple as long as a disturbance: the numbers of the state that are not given by the time."""
+    return 0, 0, 0, 0
+
+
+@by_type(Constants)
 @fused_njit
 def flow_basis(c, mode, tau, Y):
-    """Carry four disturbances, the columns of Y, over a time tau between events."""
+    """Carry the disturbances that are the columns of Y over a time tau between events."""
     o = c.stuck if mode != 0.0 else c.free
     size = decay(o.half * tau)
     sine, cosine = sincos(o.gamma * tau)
@@ -58,6 +69,7 @@ def flow_basis(c, mode, tau, Y):
             Y[2, j] += tau * Y[3, j]
 
 
+@by_type(Constants)
 @fused_njit
 def jump_basis(c, row, Y):
     """Apply the effect of an event to the disturbances."""
@@ -90,10 +102,35 @@ def jump_basis(c, row, Y):
             Y[3, j] = v
 
 
+@by_type(Constants)
+@njit
+def offset(c, row, event, late, scale, away):
+    """Fill `away` with the disturbance that a run is of an orbit, just after an impact of both.
+
+    Parameters
+    ----------
+    row, event : ndarray, shape (ROW,)
+        The impact of the run with what comes after, and that of the orbit with what comes before.
+    late : float
+        By how much later the run has it.
+    scale : float
+        Unit of the disturbance.
+    away : ndarray, shape (d,)
+    """
+    x1, v1, v2 = event[X1], event[V1], event[V2]
+    after1, after2 = after_impact_kernel(c.law, v1, v2)
+    ur, ui, gr, gi = phasors(c.free, c.Omega, x1, v1, event[PHASE])
+    _, _, a, _, _ = derivatives(c.free, c.Omega, ur, ui, gr, gi)
+    away[0] = (row[X1] - x1 - after1 * late) / scale
+    away[1] = (row[A_V1] - after1 - (a - c.lam * (after1 - v1)) * late) / scale
+    away[2] = (row[X2] - (x1 - event[SIDE]) - after2 * late) / scale
+    away[3] = (row[A_V2] - after2) / scale
+
+
 @linked_njit
 def tangent_product(c, rows, first, last):
-    """Return the 4x4 tangent map from just after row `first` to just after row `last`."""
-    Y = identity(4)
+    """Return the tangent map, square, from just after row `first` to just after row `last`."""
+    Y = identity(len(directions(c)))
     for i in range(first + 1, last + 1):
         flow_basis(c, rows[i - 1, MODE], rows[i, TAU], Y)
         jump_basis(c, rows[i], Y)
@@ -101,41 +138,47 @@ def tangent_product(c, rows, first, last):
 
 
 @fused_njit
-def orthonormalise(Y, gains):
-    """Gram–Schmidt in place; the lengths before normalisation go to `gains` (0 where a direction has died)."""
-    for j in range(4):
+def orthonormalise(directions, Y, gains):
+    """Gram–Schmidt in place; the lengths before normalisation go to `gains` (0 where a direction has died).
+
+    `directions` is a tuple as long as there are columns, so that the loops are of a length that the compiler knows.
+    """
+    n = len(directions)
+    for j in range(n):
         for k in range(j):
             dot = 0.0
-            for i in range(4):
+            for i in range(n):
                 dot += Y[i, k] * Y[i, j]
-            for i in range(4):
+            for i in range(n):
                 Y[i, j] -= dot * Y[i, k]
         square = 0.0
-        for i in range(4):
+        for i in range(n):
             square += Y[i, j] * Y[i, j]
         length = math.sqrt(square)
         gains[j] = length
         scale = 1.0 / length if length > DEAD else 0.0
-        for i in range(4):
+        for i in range(n):
             Y[i, j] *= scale
 
 
 @linked_njit
 def lyapunov_blocks(c, rows, n, start, stop, blocks, Y):
-    """Return (blocks, 5): logarithmic growth of the four directions in equal blocks of time, and each block's length.
+    """Return logarithmic growth of the d directions in equal blocks of time, and each block's length: (blocks, d + 1).
 
     The columns of Y, orthonormal at the first row, are carried on in place; growth before `start` is not counted.
     """
-    out = zero_matrix(blocks, 5)
-    gains, factors = zero_vector(4), zero_vector(4)
-    for j in range(4):
+    every = directions(c)
+    d = len(every)
+    out = zero_matrix(blocks, d + 1)
+    gains, factors = zero_vector(d), zero_vector(d)
+    for j in range(d):
         factors[j] = 1.0
     width = (stop - start) / blocks
     block = -1
     for i in range(1, n):
         flow_basis(c, rows[i - 1, MODE], rows[i, TAU], Y)
         jump_basis(c, rows[i], Y)
-        orthonormalise(Y, gains)
+        orthonormalise(every, Y, gains)
         t = rows[i, TIME]
         if t > start:
             b = min(int((t - start) / width), blocks - 1)
@@ -144,12 +187,12 @@ def lyapunov_blocks(c, rows, n, start, stop, blocks, Y):
                     log_growth(factors, out[block])
                 block = b
             full = False
-            for j in range(4):
+            for j in range(d):
                 factors[j] *= gains[j] if gains[j] > DEAD else 0.0
                 full |= not DEAD < factors[j] < 1.0 / DEAD
             if full:
                 log_growth(factors, out[block])
-            out[b, 4] += min(rows[i, TAU], t - start)
+            out[b, d] += min(rows[i, TAU], t - start)
     if block >= 0:
         log_growth(factors, out[block])
     return out
@@ -158,13 +201,15 @@ def lyapunov_blocks(c, rows, n, start, stop, blocks, Y):
 @linked_njit
 def log_growth(factors, growth):
     """Move growth from factors to logarithms: one logarithm for many events."""
-    for k in range(4):
+    for k in range(factors.shape[0]):
         growth[k] += math.log(factors[k]) if factors[k] > 0.0 else -math.inf
         factors[k] = 1.0
 
 
 def tangent_map(run: Trajectory) -> npt.NDArray[np.float64]:
     """Return the tangent map of a whole run: disturbances of (x1, v1, x2, v2) at its end by those at its start.
+
+    Of the impact pair disturbances are those of the ball, (x2, v2).
 
     Parameters
     ----------
@@ -173,7 +218,7 @@ def tangent_map(run: Trajectory) -> npt.NDArray[np.float64]:
 
     Returns
     -------
-    ndarray, shape (4, 4)
+    ndarray, shape (d, d)
         With every impact followed one by one, its determinant is r^(2 N) exp(-lam t) for N impacts in a time t.
 
     Examples
@@ -191,7 +236,7 @@ def tangent_map(run: Trajectory) -> npt.NDArray[np.float64]:
 
 
 def lyapunov_spectrum(run: Trajectory, *, skip: float = 0.0) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:
-    """Return the four Lyapunov exponents of a run and their standard errors, per unit of dimensionless time.
+    """Return the Lyapunov exponents of a run and their standard errors, per unit of dimensionless time.
 
     Parameters
     ----------
@@ -202,8 +247,9 @@ def lyapunov_spectrum(run: Trajectory, *, skip: float = 0.0) -> tuple[npt.NDArra
 
     Returns
     -------
-    exponents, errors : ndarray, shape (4,)
-        In descending order; -inf for directions that sticking removes. Errors are those of the mean of eight blocks.
+    exponents, errors : ndarray, shape (d,)
+        As many as a disturbance has numbers, in descending order; -inf for directions that sticking removes. Errors
+        are those of the mean of eight blocks.
 
     Raises
     ------
@@ -217,19 +263,21 @@ def lyapunov_spectrum(run: Trajectory, *, skip: float = 0.0) -> tuple[npt.NDArra
     start = run.t_start + skip * run.params.period
     if not start < run.t_end:
         raise StateError(f"skip is {skip!r} periods; allowed is less than the length of the run")
-    grown = lyapunov_blocks(constants(run.params), run.rows, len(run.rows), start, run.t_end, 8, np.eye(4))
+    c = constants(run.params)
+    grown = lyapunov_blocks(c, run.rows, len(run.rows), start, run.t_end, 8, np.eye(len(directions(c))))
     return exponents_of(grown)
 
 
 def exponents_of(grown: npt.NDArray[np.float64]) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:
     """Return exponents and standard errors from growth by blocks, as `lyapunov_blocks` gives it."""
-    filled = grown[grown[:, 4] > 0]
-    length = filled[:, 4].sum()
-    alive = np.all(np.isfinite(filled[:, :4]), axis=0)
-    exponents = np.full(4, -np.inf)
-    errors = np.zeros(4)
-    exponents[alive] = filled[:, :4][:, alive].sum(axis=0) / length
+    d = grown.shape[1] - 1
+    filled = grown[grown[:, d] > 0]
+    length = filled[:, d].sum()
+    alive = np.all(np.isfinite(filled[:, :d]), axis=0)
+    exponents = np.full(d, -np.inf)
+    errors = np.zeros(d)
+    exponents[alive] = filled[:, :d][:, alive].sum(axis=0) / length
     if len(filled) > 1:
-        rates = filled[:, :4][:, alive] / filled[:, 4:]
+        rates = filled[:, :d][:, alive] / filled[:, d:]
         errors[alive] = rates.std(axis=0, ddof=1) / math.sqrt(len(filled))
     return exponents, errors

@@ -21,17 +21,21 @@ from vines.dynamics._advance import (
     X2,
 )
 from vines.dynamics._constants import Constants
-from vines.dynamics._flight import advance_phase, derivatives, flight, flown, phasors, turn
+from vines.dynamics._flight import advance_phase, derivatives, flight, flown, free_ball, phasors, turn
 from vines.dynamics._integrals import energies_between, peak_between, segment_integrals
 from vines.kernels import by_type, entry_njit, linked_njit, njit, zero_matrix, zero_vector
 
 __all__ = [
     "accumulate",
     "add_segment",
+    "ball_mass",
     "base_at",
     "count_event",
+    "event_loss",
+    "event_work",
     "segment_state",
     "state_energy",
+    "stored_energy",
     "window_totals",
 ]
 
@@ -66,7 +70,8 @@ def segment_state(c, row, tau):
     phase = advance_phase(row[PHASE], c.Omega * tau)
     if mode != 0.0:
         return x1, v1, x1 - mode, v1, phase
-    return x1, v1, row[X2] + row[A_V2] * tau, row[A_V2], phase
+    way, v2 = free_ball(c, row[A_V2], tau)
+    return x1, v1, row[X2] + way, v2, phase
 
 
 @by_type(Constants)
@@ -76,6 +81,13 @@ def base_at(c, phase):
     return c.A * np.sin(phase)
 
 
+@by_type(Constants)
+@njit
+def ball_mass(c):
+    """Return the mass of the ball in the unit of energies and of ratios of masses."""
+    return c.mu
+
+
 @njit
 def state_energy(c, x1, v1, v2, phase):
     """Return the energy of mass, ball and spring, in units of M b^2 omega0^2."""
@@ -83,6 +95,21 @@ def state_energy(c, x1, v1, v2, phase):
     return 0.5 * (v1 * v1 + c.mu * v2 * v2 + stretch * stretch)
 
 
+@by_type(Constants)
+@njit
+def stored_energy(c, x1, v1, x2, v2, phase):
+    """Return the same of all that a system stores."""
+    return state_energy(c, x1, v1, v2, phase)
+
+
+@by_type(Constants)
+@njit
+def event_work(c, row):
+    """Return the work of the base at a row: none on a system whose base acts through a spring."""
+    return 0.0
+
+
+@by_type(Constants)
 @njit
 def event_loss(c, row):
     """Return the energy lost at a row, from the relative velocities just before and after (impact or merge)."""
@@ -96,6 +123,7 @@ def count_event(c, out, row):
     """Add an impact or a merge, and what it costs, to the totals."""
     left = row[SIDE] > 0.0
     out[LOSS_LEFT if left else LOSS_RIGHT] += event_loss(c, row)
+    out[BASE_WORK] += event_work(c, row)
     if row[KIND] == IMPACT:
         out[IMPACTS_LEFT if left else IMPACTS_RIGHT] += 1.0
     else:
@@ -150,25 +178,25 @@ def window_totals(c, rows, n, start, stop):
             length = stop - begins
         if length < low:
             continue
-        x1, v1, v2, phase = rows[i, X1], rows[i, A_V1], rows[i, A_V2], rows[i, PHASE]
+        x1, v1, x2, v2, phase = rows[i, X1], rows[i, A_V1], rows[i, X2], rows[i, A_V2], rows[i, PHASE]
         if low > 0.0:
-            x1, v1, _, v2, phase = segment_state(c, rows[i], low)
+            x1, v1, x2, v2, phase = segment_state(c, rows[i], low)
         if not opened:
             opened = True
             first = rows[i]
             if i == 0 and low == 0.0:
-                energy = state_energy(c, first[X1], first[V1], first[V2], first[PHASE])
+                energy = stored_energy(c, first[X1], first[V1], first[X2], first[V2], first[PHASE])
             else:
-                energy = state_energy(c, x1, v1, v2, phase)
+                energy = stored_energy(c, x1, v1, x2, v2, phase)
             out[MAX_ABS_X1] = abs(x1)
             out[T_MAX_ABS_X1] = begins + low
         add_segment(c, out, rows[i, MODE], begins + low, x1, v1, v2, phase, length - low)
         if ends >= stop or i == n - 2:
-            x1, v1, _, v2, phase = segment_state(c, rows[i], length)
+            x1, v1, x2, v2, phase = segment_state(c, rows[i], length)
             if i == n - 2 and ends <= stop:
                 last = rows[n - 1]
-                x1, v1, v2, phase = last[X1], last[A_V1], last[A_V2], last[PHASE]
-            out[ENERGY_CHANGE] = state_energy(c, x1, v1, v2, phase) - energy
+                x1, v1, x2, v2, phase = last[X1], last[A_V1], last[X2], last[A_V2], last[PHASE]
+            out[ENERGY_CHANGE] = stored_energy(c, x1, v1, x2, v2, phase) - energy
     return out
 
 
@@ -180,7 +208,7 @@ def accumulate(c, rows):
     for i in range(1, n):
         row = rows[i - 1]
         _, _, _, work, loss = segment_integrals(c, row[MODE], row[X1], row[A_V1], row[A_V2], row[PHASE], rows[i, TAU])
-        out[i, 0] = out[i - 1, 0] + work
+        out[i, 0] = out[i - 1, 0] + work + event_work(c, rows[i])
         out[i, 1] = out[i - 1, 1] + loss
         out[i, 2] = out[i - 1, 2] + event_loss(c, rows[i])
     return out

@@ -4,16 +4,17 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
 from vines.dynamics import _advance as col
-from vines.dynamics._constants import constants
 from vines.dynamics._measures import Measures, measures_from
+from vines.dynamics._room import constants, room_of
 from vines.dynamics._totals import accumulate, sample_rows, window_totals
 from vines.errors import StateError
-from vines.model import START_NAMES, STATE_NAMES, VI_NES, Params
+from vines.model import START_NAMES, STATE_NAMES, VI_NES
 
 __all__ = ["EVENT", "IMPACT", "SAMPLE", "STICK", "Trajectory", "impacts_of"]
 
@@ -74,7 +75,7 @@ class Trajectory:
 
     Attributes
     ----------
-    params : Params
+    params : Params, or those of another system
         Parameters of the run.
     phi : float
         Phase of the forcing at t = 0 [rad]: phase = (Omega t + phi) mod 2 pi.
@@ -87,7 +88,7 @@ class Trajectory:
         The events as the kernels wrote them.
     """
 
-    params: Params
+    params: Any
     phi: float
     t_start: float
     t_end: float
@@ -120,7 +121,7 @@ class Trajectory:
         # The merge replaces a chatter at its present impact; the chain itself ends where its hops accumulate.
         rest = self._rest_of_chatter(begins)
         out["t_start"] = self.rows[begins, col.TIME] + rest
-        out["phase_start"] = (self.rows[begins, col.PHASE] + self.params.Omega * rest) % (2 * np.pi)
+        out["phase_start"] = (self.rows[begins, col.PHASE] + constants(self.params).Omega * rest) % (2 * np.pi)
         out["impacts"] = self.rows[begins, col.RUN]
         out["t_release"] = np.nan
         out["phase_release"] = np.nan
@@ -134,8 +135,7 @@ class Trajectory:
         p, rows = self.params, self.rows[begins]
         side = rows[:, col.SIDE]
         speed = np.maximum(side * (rows[:, col.V2] - rows[:, col.V1]), 0.0)
-        force = p.A * (np.sin(rows[:, col.PHASE]) + p.lam * p.Omega * np.cos(rows[:, col.PHASE]))
-        push = side * (force - p.lam * rows[:, col.V1] - rows[:, col.X1])
+        push = side * room_of(p).push(p, rows[:, col.X1], rows[:, col.V1], rows[:, col.PHASE])
         lasts = np.zeros(len(rows))
         good = (push > 0) & (p.r < 1)
         lasts[good] = 2 * speed[good] / (push[good] * (1 - p.r))
@@ -145,16 +145,11 @@ class Trajectory:
 
     @property
     def final(self) -> dict[str, float]:
-        """State at the end: x1, v1, x2, v2, t and phase [rad]."""
+        """State at the end: the coordinates of the system (x1, v1, x2, v2 of the VI-NES), t and phase [rad]."""
         last = self.rows[-1]
-        return {
-            "x1": float(last[col.X1]),
-            "v1": float(last[col.A_V1]),
-            "x2": float(last[col.X2]),
-            "v2": float(last[col.A_V2]),
-            "t": self.t_end,
-            "phase": float(last[col.PHASE]),
-        }
+        phase = float(last[col.PHASE])
+        x1, v1, x2, v2 = last[[col.X1, col.A_V1, col.X2, col.A_V2]].tolist()
+        return {**room_of(self.params).leave(self.params, x1, v1, x2, v2, phase), "t": self.t_end, "phase": phase}
 
     def measures(self, last: float | None = None) -> Measures:
         """Return the energy measures of the whole run, or of its last forcing periods.
@@ -266,10 +261,10 @@ class Trajectory:
             out[name] = raw[:, k]
         out["w"] = out["x1"] - out["x2"]
         out["w_dot"] = out["v1"] - out["v2"]
-        out["base"] = self.params.A * np.sin(out["phase"])
-        out["kinetic_1"] = 0.5 * out["v1"] ** 2
-        out["kinetic_2"] = 0.5 * self.params.mu * out["v2"] ** 2
-        out["potential"] = 0.5 * (out["x1"] - out["base"]) ** 2
+        p = self.params
+        room = room_of(p)
+        out["base"] = room.base(p, out["phase"])
+        out["kinetic_1"], out["kinetic_2"], out["potential"] = room.stored(p, out)
         return out
 
     @cached_property

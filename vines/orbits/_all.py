@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -16,7 +17,8 @@ from vines.orbits._equations import newton_kernel
 from vines.orbits._general import ITERATIONS, proper, same
 from vines.orbits._joined import mirror_image
 from vines.orbits._orbit import Orbit
-from vines.orbits._seeds import base_word, doubled_times, harvested_times, simplex_times
+from vines.orbits._seeds import base_word, doubled_times, harvested_times, random_times, simplex_times
+from vines.orbits._values import unit_of
 
 __all__ = ["Orbits", "all_orbits"]
 
@@ -53,7 +55,7 @@ class Orbits(list[Orbit]):
         self.nearest = nearest
 
 
-def all_orbits(word: str | Word, p: Params) -> Orbits:
+def all_orbits(word: str | Word, p: Any) -> Orbits:
     """Return the orbits of a word, admissible or not, each once.
 
     Orbits that differ by a shift of time are one. Mirror images of each other are listed apart where the word is its
@@ -62,7 +64,7 @@ def all_orbits(word: str | Word, p: Params) -> Orbits:
     Parameters
     ----------
     word : str or Word
-    p : Params
+    p : Params, or the parameters of another system
 
     Returns
     -------
@@ -90,6 +92,8 @@ def all_orbits(word: str | Word, p: Params) -> Orbits:
     """
     word = Word(word)
     refuse_resonance(p)
+    if not isinstance(p, Params):
+        return _searched(word, p)
     if word.n == 0 or word.m == 0:
         remark = "every impact on one wall pushes the ball the same way, and nothing brings it back"
         return Orbits(complete=True, remark=remark, nearest=np.inf)
@@ -113,14 +117,27 @@ def all_orbits(word: str | Word, p: Params) -> Orbits:
         if can_search(word, halves=True):
             remark += "; of symmetric orbits none is missing"
     gathered.add_mirror_images()
-    orbits = sorted(gathered.orbits, key=lambda o: (not o.symmetric, round(o.max_multiplier, 9), o.t[0]))
-    return Orbits(orbits, complete=complete, remark=remark, nearest=gathered.nearest)
+    return Orbits(_in_order(gathered.orbits), complete=complete, remark=remark, nearest=gathered.nearest)
+
+
+def _searched(word: Word, p: Any) -> Orbits:
+    """Return the orbits of a word of another system that simulations and random flight times lead to."""
+    gathered = _Gathered(word, p)
+    for t in (*harvested_times(word, p), *random_times(word, p, _SIMPLEX)):
+        gathered.solve(t)
+    gathered.add_mirror_images()
+    remark = "Newton's method from simulations and random starts: there may be more"
+    return Orbits(_in_order(gathered.orbits), complete=False, remark=remark, nearest=gathered.nearest)
+
+
+def _in_order(orbits: list[Orbit]) -> list[Orbit]:
+    return sorted(orbits, key=lambda o: (not o.symmetric, round(o.max_multiplier, 9), o.t[0]))
 
 
 class _Gathered:
     """The different orbits found so far."""
 
-    def __init__(self, word: Word, p: Params) -> None:
+    def __init__(self, word: Word, p: Any) -> None:
         self.word, self.p, self.c = word, p, constants(p)
         self.orbits: list[Orbit] = []
         self.nearest = np.inf
@@ -132,7 +149,7 @@ class _Gathered:
         converged, t, defect, states = newton_kernel(self.c, self._duration, self._side, t, ITERATIONS)
         if not converged:
             if np.isfinite(defect):
-                self.nearest = min(self.nearest, float(defect) / self.p.mu)
+                self.nearest = min(self.nearest, float(defect) / unit_of(self.p))
         elif proper(self.word, self._duration, t, states):
             self.add(t, states)
         return converged
@@ -146,7 +163,7 @@ class _Gathered:
 
     def add_mirror_images(self) -> None:
         """Add the mirror images of asymmetric orbits if they have the same word."""
-        if self.word.mirror != self.word:
+        if self.word.mirror != self.word or not getattr(self.p, "mirrored", True):
             return
         for orbit in list(self.orbits):
             if not orbit.symmetric:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -10,7 +11,7 @@ import numpy.typing as npt
 from vines.dynamics.kernels import constants
 from vines.model import VI_NES, X1, X2, Params, Word
 from vines.orbits._budget import orbit_measures
-from vines.orbits._floquet import half_map, monodromy, sorted_multipliers, squared
+from vines.orbits._floquet import FIXED_TIME, IMPACT_TO_IMPACT, half_map, monodromy, sorted_multipliers, squared
 from vines.orbits._orbit import Orbit
 from vines.orbits._survey import survey_kernel
 
@@ -22,13 +23,13 @@ _SAME = 1e-9
 """Largest difference, in any component, of an orbit to its mirror image that counts as symmetric."""
 
 
-def assemble(word: Word, p: Params, t: Floats, states: Floats, remark: str = "") -> Orbit:
+def assemble(word: Word, p: Any, t: Floats, states: Floats, remark: str = "") -> Orbit:
     """Return the orbit with these impacts.
 
     Parameters
     ----------
     word : Word
-    p : Params
+    p : Params, or those of another system
     t : (N,) float array
         Times of the impacts in the order of any rotation of the word, increasing within one period pT; the phase of
         the forcing is zero at t = 0.
@@ -43,7 +44,11 @@ def assemble(word: Word, p: Params, t: Floats, states: Floats, remark: str = "")
     c = constants(p)
     jacobians, residual, clearance, violation, wall = survey_kernel(c, duration, side, t, states)
     symmetric = asymmetry(word, duration, t, states) < _SAME
-    half = sorted_multipliers(half_map(jacobians)) if symmetric else None
+    half = (
+        sorted_multipliers(half_map(jacobians, IMPACT_TO_IMPACT if isinstance(p, Params) else FIXED_TIME))
+        if symmetric
+        else None
+    )
     for array in (t, states, jacobians):
         array.setflags(write=False)
     return Orbit(
@@ -65,7 +70,7 @@ def assemble(word: Word, p: Params, t: Floats, states: Floats, remark: str = "")
     )
 
 
-def _canonical(word: Word, p: Params, t: Floats, states: Floats) -> tuple[Floats, Floats]:
+def _canonical(word: Word, p: Any, t: Floats, states: Floats) -> tuple[Floats, Floats]:
     """Rotate to the canonical first impact, the one of least phase if there are several, and shift it into [0, T)."""
     letters = VI_NES.letters(states[:, X1] - states[:, X2])
     starts = [k for k in range(len(t)) if letters[k:] + letters[:k] == word.letters]

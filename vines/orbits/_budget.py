@@ -3,25 +3,26 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
 from vines.dynamics import Measures
-from vines.dynamics.kernels import Constants, after_impact_kernel, window_totals
+from vines.dynamics.kernels import after_impact_kernel, window_totals
 from vines.dynamics.kernels import rows as column
 from vines.dynamics.runs import measures_from
-from vines.kernels import entry_njit, zero_matrix
-from vines.model import Params, Word
+from vines.kernels import entry_njit, linked_njit, zero_matrix
+from vines.model import Word
 
-__all__ = ["orbit_measures"]
+__all__ = ["orbit_measures", "orbit_rows"]
 
 Floats = npt.NDArray[np.float64]
 
 
-@entry_njit
-def _totals(c, duration, side, t, states):
-    """Return the totals of the window from just after the first impact to just after its return."""
+@linked_njit
+def orbit_rows(c, duration, side, t, states):
+    """Return the rows of events from just after the first impact of a closed orbit to just after its return."""
     N = t.size
     rows = zero_matrix(N + 1, column.ROW)
     for k in range(N + 1):
@@ -40,10 +41,16 @@ def _totals(c, duration, side, t, states):
     rows[0, column.KIND] = column.START
     rows[0, column.V1] = rows[0, column.A_V1]
     rows[0, column.V2] = rows[0, column.A_V2]
-    return window_totals(c, rows, N + 1, t[0], t[0] + duration)
+    return rows
 
 
-def orbit_measures(p: Params, c: Constants, word: Word, t: Floats, states: Floats) -> Measures:
+@entry_njit
+def _totals(c, duration, side, t, states):
+    """Return the totals of the window that these rows are."""
+    return window_totals(c, orbit_rows(c, duration, side, t, states), t.size + 1, t[0], t[0] + duration)
+
+
+def orbit_measures(p: Any, c: Any, word: Word, t: Floats, states: Floats) -> Measures:
     """Return the measures of one period, from just after the first impact to just after its return.
 
     `Measures.energy_change` is rounding, and with it `Measures.balance`.

@@ -9,13 +9,12 @@ from __future__ import annotations
 
 import cmath
 import math
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from vines.dynamics.kernels import impact_law, reversing
 from vines.errors import ParameterError
-from vines.model import Params
 
 __all__ = ["SymmetricFamily", "family_of", "fold_amplitude", "fold_speed", "impact_states", "speeds"]
 
@@ -54,7 +53,7 @@ class SymmetricFamily(NamedTuple):
         return 2 * (self.stiffness * V + self.alpha)
 
 
-def refuse_resonance(p: Params) -> None:
+def refuse_resonance(p: Any) -> None:
     """Raise where the steady response, over which all closed forms of orbits are written, does not exist.
 
     Raises
@@ -62,7 +61,7 @@ def refuse_resonance(p: Params) -> None:
     ParameterError
         At Omega = 1 without damping.
     """
-    if math.hypot(1 - p.Omega**2, p.lam * p.Omega) <= 1e-9:
+    if hasattr(p, "lam") and math.hypot(1 - p.Omega**2, p.lam * p.Omega) <= 1e-9:
         raise ParameterError(f"lam is {p.lam:g} at Omega = {p.Omega:g}, where no response is steady; give lam > 0")
 
 

@@ -24,7 +24,6 @@ GRAZING = "grazing"
 REMARKS = ("pair_turns_real",)
 """Types that are not bifurcations: nothing changes its stability there."""
 
-_PAIRS = tuple(combinations(range(4), 2))
 _REAL = 1e-7
 """Imaginary part, relative to the modulus, below which a multiplier is taken to be real."""
 
@@ -85,13 +84,13 @@ def _minus_one(m: Multipliers) -> float:
 def _product_one(m: Multipliers) -> float:
     if not _resolved(m):
         return math.nan
-    return float(np.prod([1 - m[i] * m[j] for i, j in _PAIRS]).real)
+    return float(np.prod([1 - a * b for a, b in combinations(m, 2)]).real)
 
 
 def _discriminant(m: Multipliers) -> float:
     if not _resolved(m):
         return math.nan
-    return float(np.prod([(m[i] - m[j]) ** 2 for i, j in _PAIRS]).real)
+    return float(np.prod([(a - b) ** 2 for a, b in combinations(m, 2)]).real)
 
 
 def conditions(symmetric: bool) -> tuple[Condition, ...]:
@@ -122,13 +121,13 @@ def critical_multiplier(kind: str, point: Point, symmetric: bool) -> tuple[compl
         if abs(found + 1) > _ON_CIRCLE:
             return None
     elif kind == "neimark_sacker":
-        i, j = min(_PAIRS, key=lambda pair: abs(1 - m[pair[0]] * m[pair[1]]))
+        i, j = min(combinations(range(len(m)), 2), key=lambda pair: abs(1 - m[pair[0]] * m[pair[1]]))
         real = abs(m[i].imag) < _REAL * abs(m[i]) or abs(m[i] - m[j].conjugate()) > _REAL * abs(m[i])
         if real or abs(1 - m[i] * m[j]) > _ON_CIRCLE:
             return None
         found = m[i]
     else:
-        i, j = min(_PAIRS, key=lambda pair: abs(m[pair[0]] - m[pair[1]]))
+        i, j = min(combinations(range(len(m)), 2), key=lambda pair: abs(m[pair[0]] - m[pair[1]]))
         # Two multipliers that differ by rounding are one, whose real part is the mean.
         found = complex((m[i] + m[j]).real / 2)
     return complex(found), complex(found**2 if symmetric else found)

@@ -9,9 +9,10 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from vines.errors import OrbitNotFound, ParameterError
-from vines.model import VI_NES
+from vines.model import VI_NES, Params
 from vines.orbits._arclength import Chord, Walk
 from vines.orbits._branch import Bifurcation, Branch
+from vines.orbits._chain_family import ChainProblem
 from vines.orbits._conditions import (
     GRAZING,
     REMARKS,
@@ -54,7 +55,7 @@ def continue_orbit(
     orbit : Orbit
         Where to begin.
     parameter : str
-        mu, A, Omega, r or lam.
+        mu, A, Omega, r or lam; of another system one of its own.
     stop : float
         The other end of the range; the branch sets out towards it.
     within : tuple of float, float, optional
@@ -94,7 +95,8 @@ def continue_orbit(
     >>> [(b.type, round(b.value, 4)) for b in branch.bifurcations]
     [('symmetry_breaking', 0.018)]
     """
-    VI_NES.parameter(parameter)
+    system = VI_NES if isinstance(orbit.params, Params) else orbit.params.system
+    system.parameter(parameter)
     start = getattr(orbit.params, parameter)
     stop = getattr(orbit.params.replace(**{parameter: stop}), parameter)
     if start == stop:
@@ -111,6 +113,8 @@ def continue_orbit(
 
 
 def _problem(orbit: Orbit, parameter: str) -> Problem:
+    if not isinstance(orbit.params, Params):
+        return ChainProblem(orbit, parameter)
     if orbit.symmetric and len(orbit.word) == 2:
         return SymmetricProblem(orbit, parameter)
     return GeneralProblem(orbit, parameter)

@@ -148,10 +148,9 @@ def turnings_kernel(c, duration, t, states):
         x1, v1, x2, v2 = states[j, X1], states[j, V1], states[j, X2], states[j, V2]
         after, ball = after_impact_kernel(c.law, v1, v2)
         phase = (c.Omega * t[j]) % (2.0 * math.pi)
-        zr, zi, qr, qi = phasors(c.free, c.Omega, x1, after, phase)
-        for at in turning_points_kernel(c, zr, zi, qr, qi, ball, tau):
-            a, b, d, e = turn(c.free, c.Omega, zr, zi, qr, qi, at)
-            x, _, bend, _, _ = derivatives(c.free, c.Omega, a, b, d, e)
+        motion = phasors(c.free, c.Omega, x1, after, phase)
+        for at in turning_points_kernel(c, motion, ball, tau):
+            x, _, bend, _, _ = derivatives(c.free, c.Omega, *turn(c.free, c.Omega, *motion, at))
             wall = 1.0 if bend < 0.0 else -1.0
             rows.append((float(j), at, wall, 1.0 - wall * (x - x2 - ball * at), bend))
     out = new_matrix(len(rows), 5)

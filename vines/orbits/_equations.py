@@ -10,15 +10,31 @@ from __future__ import annotations
 import cmath
 import math
 
-from vines.kernels import linked_njit, max_abs, new_cube, new_matrix, new_vector, zero_matrix
+from vines.dynamics.kernels import Constants
+from vines.kernels import by_type, linked_njit, max_abs, new_cube, new_matrix, new_vector, njit, zero_matrix
 from vines.orbits._elimination import eliminate
-from vines.orbits._values import essentials_of
+from vines.orbits._values import Essentials, essentials_of
 
-__all__ = ["closing_kernel", "newton_kernel"]
+__all__ = ["closing_kernel", "closing_unit", "newton_kernel", "prepared"]
 
 _EPS = 2.220446049250313e-16
 
 
+@by_type(Constants)
+@njit
+def prepared(c):
+    """Return what the closing equations take of the constants."""
+    return essentials_of(c)
+
+
+@by_type(Constants)
+@njit
+def closing_unit(c):
+    """Return the unit of the defects, and the size of the terms of which they are sums, in that unit."""
+    return c.law.ratio, 1.0 + math.hypot(c.free.qr, c.free.qi)
+
+
+@by_type(Essentials)
 @linked_njit
 def closing_kernel(c, duration, side, t):
     """Return the closing equations at given impact times, and what was eliminated on the way.
@@ -29,6 +45,7 @@ def closing_kernel(c, duration, side, t):
     duration : float
         Period pT.
     side : (N,) int array
+        The walls; where there are several balls, each times the number of the ball.
     t : (N,) float array
         Impact times, increasing within one period.
 
@@ -166,11 +183,12 @@ def newton_kernel(c, duration, side, t, iterations):
     begin, t, trial = t, new_vector(N), new_vector(N)
     for j in range(N):
         t[j] = begin[j]
-    essential = essentials_of(c)
+    essential = prepared(c)
+    unit, terms = closing_unit(c)
     regular, defect, slope, states = closing_kernel(essential, duration, side, t)
     size = max_abs(defect) if regular else math.inf
     # The equations are sums of parts as large as the steady motion without the ball.
-    rounding = 8.0 * _EPS * c.law.ratio * (1.0 + math.hypot(c.free.qr, c.free.qi))
+    rounding = 8.0 * _EPS * unit * terms
     for _ in range(iterations):
         step = new_matrix(N, 1)
         for j in range(N):
@@ -200,5 +218,5 @@ def newton_kernel(c, duration, side, t, iterations):
             t[j] = trial[j]
         size = better
         if share * largest < 1e-13 * duration or stalled:
-            return math.isfinite(size) and size < 1e-9 * c.law.ratio, t, size, states
+            return math.isfinite(size) and size < 1e-9 * unit, t, size, states
     return False, t, size, states

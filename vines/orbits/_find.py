@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Any
 
 import numpy.typing as npt
 
@@ -16,7 +17,7 @@ from vines.orbits._symmetric import no_symmetric_orbit
 __all__ = ["find_orbit"]
 
 
-def find_orbit(word: str | Word, p: Params, guess: Orbit | npt.ArrayLike | None = None) -> Orbit:
+def find_orbit(word: str | Word, p: Any, guess: Orbit | npt.ArrayLike | None = None) -> Orbit:
     """Return the periodic orbit of a word.
 
     Of several the symmetric admissible one is returned, else a stable one, else the one with the smallest largest
@@ -27,7 +28,7 @@ def find_orbit(word: str | Word, p: Params, guess: Orbit | npt.ArrayLike | None 
     ----------
     word : str or Word
         Such as ``LR``, ``LLR`` or ``LRLR/2T``.
-    p : Params
+    p : Params, or the parameters of another system
     guess : Orbit or (N,) array, optional
         An orbit of the word at nearby parameters, or times of the impacts in the canonical order of the word, for a
         forcing of phase zero at t = 0. The solution that Newton's method finds from there is returned.
@@ -58,9 +59,9 @@ def find_orbit(word: str | Word, p: Params, guess: Orbit | npt.ArrayLike | None 
     found = all_orbits(word, p)
     if found:
         return choose(found)
-    if word.symmetric and len(word) == 2:
+    if isinstance(p, Params) and word.symmetric and len(word) == 2:
         raise no_symmetric_orbit(p, word)
-    if word.n == 0 or word.m == 0:
+    if isinstance(p, Params) and (word.n == 0 or word.m == 0):
         raise OrbitNotFound(f"no {word} orbit at any parameters: {found.remark}; give a word with both L and R")
     nearest = search(word, p)[1] if found.complete else found.nearest
     how = "there is none (all flight times were searched); " if found.complete else ""

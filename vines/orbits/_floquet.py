@@ -13,25 +13,29 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-__all__ = ["half_map", "monodromy", "sorted_multipliers", "squared"]
+__all__ = ["FIXED_TIME", "IMPACT_TO_IMPACT", "half_map", "monodromy", "sorted_multipliers", "squared"]
 
 Floats = npt.NDArray[np.float64]
 Multipliers = npt.NDArray[np.complex128]
-_MIRROR = np.array([-1.0, -1.0, -1.0, 1.0])
+IMPACT_TO_IMPACT = np.array([-1.0, -1.0, -1.0, 1.0])
+"""What the mirror image does to (v1, v2, x2, t)."""
+
+FIXED_TIME = np.array([-1.0])
+"""What it does to each number of a disturbance at a fixed time."""
 
 
 def monodromy(jacobians: Floats) -> Floats:
-    """Return the product J_N … J_1 of the Jacobians of consecutive maps, shape (N, 4, 4) to (4, 4)."""
-    product = np.eye(4)
+    """Return the product J_N … J_1 of the Jacobians of consecutive maps, shape (N, d, d) to (d, d)."""
+    product = np.eye(jacobians.shape[1])
     with np.errstate(invalid="ignore"):  # an impact at zero speed has no Jacobian
         for J in jacobians:
             product = J @ product
     return product
 
 
-def half_map(jacobians: Floats) -> Floats:
-    """Return the Jacobian of H = S P of a symmetric orbit, whose square is its monodromy matrix."""
-    return _MIRROR[:, None] * monodromy(jacobians[: len(jacobians) // 2])
+def half_map(jacobians: Floats, mirror: Floats) -> Floats:
+    """Return the Jacobian of H = S P of a symmetric orbit, whose square is its monodromy matrix, S = diag(mirror)."""
+    return mirror[:, None] * monodromy(jacobians[: len(jacobians) // 2])
 
 
 def sorted_multipliers(matrix: npt.NDArray[Any]) -> Multipliers:

@@ -3,17 +3,19 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
 from vines.dynamics.kernels import constants
 from vines.errors import OrbitNotFound, ParameterError
-from vines.model import V1, V2, Params, Word
+from vines.model import V1, V2, Word
 from vines.orbits._assemble import assemble, asymmetry
 from vines.orbits._closed_form import refuse_resonance
 from vines.orbits._equations import newton_kernel
 from vines.orbits._orbit import Orbit
+from vines.orbits._values import frequency_of, unit_of
 
 __all__ = ["ITERATIONS", "origin", "proper", "refine", "same", "search"]
 
@@ -32,7 +34,7 @@ def _sides(word: Word) -> npt.NDArray[np.int64]:
     return np.array(word.sides, dtype=np.int64)
 
 
-def refine(word: Word, p: Params, guess: Orbit | npt.ArrayLike) -> Orbit:
+def refine(word: Word, p: Any, guess: Orbit | npt.ArrayLike) -> Orbit:
     """Return the orbit that Newton's method finds from a guess.
 
     Raises
@@ -46,7 +48,7 @@ def refine(word: Word, p: Params, guess: Orbit | npt.ArrayLike) -> Orbit:
     if isinstance(guess, Orbit):
         if guess.word != word:
             raise ParameterError(f"the guess is an orbit of {guess.word}, not of {word}; give one of the same word")
-        times = guess.t * guess.params.Omega / p.Omega
+        times = guess.t * frequency_of(guess.params) / frequency_of(p)
     else:
         times = np.asarray(guess, dtype=np.float64)
     duration = word.p * p.period
@@ -58,8 +60,8 @@ def refine(word: Word, p: Params, guess: Orbit | npt.ArrayLike) -> Orbit:
     converged, t, defect, states = newton_kernel(constants(p), duration, _sides(word), times, ITERATIONS)
     if not converged:
         raise OrbitNotFound(
-            f"no {word} orbit from this guess at {p}: Newton's method stopped at a defect of {defect / p.mu:.2g}; "
-            "give a nearer guess, such as an orbit at nearby parameters"
+            f"no {word} orbit from this guess at {p}: Newton's method stopped at a defect of {defect / unit_of(p):.2g};"
+            " give a nearer guess, such as an orbit at nearby parameters"
         )
     if not proper(word, duration, t, states):
         raise OrbitNotFound(
@@ -69,7 +71,7 @@ def refine(word: Word, p: Params, guess: Orbit | npt.ArrayLike) -> Orbit:
     return assemble(word, p, t, states)
 
 
-def search(word: Word, p: Params) -> tuple[list[Orbit], float]:
+def search(word: Word, p: Any) -> tuple[list[Orbit], float]:
     """Return the different orbits of a word that are found from many starts, and the least defect of a failed one.
 
     The starts are drawn from a fixed seed, uniformly over the flight times and the phase.
@@ -83,7 +85,7 @@ def search(word: Word, p: Params) -> tuple[list[Orbit], float]:
         start = rng.uniform(0, p.period) + np.concatenate([[0.0], np.cumsum(flights[:-1])])
         converged, t, defect, states = newton_kernel(c, duration, side, start, ITERATIONS)
         if not converged:
-            nearest = min(nearest, defect / p.mu)
+            nearest = min(nearest, defect / unit_of(p))
         elif proper(word, duration, t, states) and not any(same(orbit, t, states) for orbit in found):
             found.append(assemble(word, p, t, states))
     return found, nearest

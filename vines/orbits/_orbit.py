@@ -5,14 +5,15 @@ from __future__ import annotations
 import hashlib
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
 from vines.dynamics import Measures
-from vines.dynamics.kernels import after_impact, impact_law
+from vines.dynamics.kernels import after_impact, room_of
 from vines.dynamics.runs import IMPACT
-from vines.model import V1, V2, Params, Word
+from vines.model import V1, V2, Word
 
 __all__ = ["Orbit", "short_hash"]
 
@@ -40,16 +41,17 @@ class Orbit:
     Attributes
     ----------
     word : Word
-    params : Params
+    params : Params, or those of another system
     t : (N,) float array
         Times of the impacts over one period pT.
     states : (N, 4) float array
         x1, v1, x2, v2 just before each impact.
-    jacobians : (N, 4, 4) float array
-        Jacobian of the map from each impact to the next in (v1, v2, x2, t).
-    multipliers : (4,) complex array
+    jacobians : (N, d, d) float array
+        Jacobian of the map from each impact to the next in (v1, v2, x2, t), d = 4; of another system the tangent map
+        from just after it to just after the next, as `vines.dynamics.tangent_map` gives it.
+    multipliers : (d,) complex array
         Floquet multipliers over pT, the largest modulus first.
-    half_multipliers : (4,) complex array or None
+    half_multipliers : (d,) complex array or None
         Multipliers of the half map of a symmetric orbit; `multipliers` are their squares.
     symmetric : bool
         Whether the orbit is its own mirror image.
@@ -68,7 +70,7 @@ class Orbit:
     """
 
     word: Word
-    params: Params
+    params: Any
     t: Floats
     states: Floats
     jacobians: Floats
@@ -111,7 +113,7 @@ class Orbit:
     @property
     def phase(self) -> Floats:
         """Phase of the forcing at each impact, Omega t modulo 2 pi [rad], shape (N,)."""
-        return (self.params.Omega * self.t) % (2 * np.pi)
+        return (getattr(self.params, "Omega", 1.0) * self.t) % (2 * np.pi)
 
     @property
     def flight_times(self) -> Floats:
@@ -153,7 +155,7 @@ class Orbit:
 
     def _after(self) -> Floats:
         """Return v1, v2 just after each impact (paper, eq. (12)), shape (N, 2)."""
-        law = impact_law(self.params.mu, self.params.r)
+        law = room_of(self.params).law(self.params, 1)
         return np.column_stack(after_impact(law, self.states[:, V1], self.states[:, V2]))
 
     def start(self) -> dict[str, float]:
@@ -162,10 +164,10 @@ class Orbit:
         Returns
         -------
         dict
-            x1, v1, x2, v2, t: arguments of `vines.simulate`.
+            The coordinates of the system (x1, v1, x2, v2) and t: arguments of `vines.simulate`.
         """
-        (x1, _, x2, _), (v1, v2) = self.states[0].tolist(), self._after()[0].tolist()
-        return {"x1": x1, "v1": v1, "x2": x2, "v2": v2, "t": float(self.t[0])}
+        (x1, _, x2, _), (v1, v2), phase = self.states[0].tolist(), self._after()[0].tolist(), float(self.phase[0])
+        return {**room_of(self.params).leave(self.params, x1, v1, x2, v2, phase), "t": float(self.t[0])}
 
     def __str__(self) -> str:
         kind = [

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -14,7 +15,7 @@ from vines.orbits._flights import start_kernel
 from vines.orbits._floquet import monodromy
 from vines.orbits._orbit import Orbit
 
-__all__ = ["base_word", "doubled_times", "harvested_times", "simplex_times"]
+__all__ = ["base_word", "doubled_times", "harvested_times", "random_times", "simplex_times"]
 
 Floats = npt.NDArray[np.float64]
 
@@ -35,11 +36,11 @@ _KICKS = (0.01, 0.05, 0.2)
 """How far a doubled seed is moved along the critical direction, in flight times of its base orbit."""
 
 
-def harvested_times(word: Word, p: Params) -> Iterator[Floats]:
+def harvested_times(word: Word, p: Any) -> Iterator[Floats]:
     """Yield the times of stretches of simulations that read as the word and almost come back."""
     duration, N = word.p * p.period, len(word)
-    for x1, v1, x2, v2 in _STARTS:
-        hits = simulate(p, x1=x1, v1=v1, x2=x2, v2=v2, periods=_PERIODS, max_impacts_per_period=200).impacts
+    for start in _starts(p):
+        hits = simulate(p, **start, periods=_PERIODS, max_impacts_per_period=200).impacts
         if len(hits) <= N:
             continue
         letters = VI_NES.letters(hits["side"])
@@ -52,6 +53,16 @@ def harvested_times(word: Word, p: Params) -> Iterator[Floats]:
             flights = np.diff(t[k : k + N + 1])
             # The stretch is made to close after pT exactly.
             yield t[k] % p.period + np.concatenate([[0.0], np.cumsum(flights[:-1])]) * duration / flights.sum()
+
+
+def _starts(p: Any) -> Iterator[dict[str, float]]:
+    """Yield the starts of simulations: of another system with all in the middle, at several speeds of the balls."""
+    if isinstance(p, Params):
+        yield from (dict(zip(STATE_NAMES, start, strict=True)) for start in _STARTS)
+        return
+    balls = [body.velocity.name for body in p.system.bodies if body.name.startswith("ball")]
+    for *_, speed in _STARTS:
+        yield {name: speed / (1 + k) for k, name in enumerate(balls)}
 
 
 def base_word(word: Word) -> Word | None:
@@ -81,6 +92,15 @@ def doubled_times(base: Orbit) -> Iterator[Floats]:
     along *= base.flight_times.min() / np.abs(along).max()
     for size in _KICKS:
         yield np.concatenate([base.t + size * along, base.t + base.period - size * along])
+
+
+def random_times(word: Word, p: Any, count: int) -> Iterator[Floats]:
+    """Yield random flight times, each with a random phase; from a fixed seed."""
+    duration, N = word.p * p.period, len(word)
+    rng = np.random.default_rng(N)
+    for _ in range(count):
+        tau = rng.dirichlet(np.ones(N)) * duration
+        yield rng.uniform(0, p.period) + np.concatenate([[0.0], np.cumsum(tau[:-1])])
 
 
 def simplex_times(word: Word, p: Params, c: Constants, count: int) -> Iterator[Floats]:

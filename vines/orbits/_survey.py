@@ -4,32 +4,45 @@ from __future__ import annotations
 
 import math
 
-from vines.dynamics.kernels import after_impact_kernel, derivatives, jacobian_kernel, phasors, turn
-from vines.kernels import copy_values, linked_njit, new_cube, njit
+from vines.dynamics.kernels import (
+    Constants,
+    after_impact_kernel,
+    derivatives,
+    directions,
+    flight,
+    free_ball,
+    jacobian_kernel,
+    pull,
+    segment_state,
+    tangent_product,
+    turn,
+)
+from vines.dynamics.kernels import rows as col
+from vines.kernels import by_type, copy_values, linked_njit, new_cube, njit
 from vines.orbits._turning import turning_points_kernel
 
-__all__ = ["NO_TURNING", "inspect_flight", "survey_kernel"]
+__all__ = ["NO_TURNING", "inspect_flight", "survey_kernel", "survey_rows"]
 
 NO_TURNING = 2.0
 """Clearance of an orbit whose flights never turn back: the width of the cavity."""
 
 
 @njit
-def _gap(c, zr, zi, qr, qi, x2, v2, tau):
+def _gap(c, motion, x2, v2, tau):
     """Return w, w', w'' at tau."""
-    zrt, zit, qrt, qit = turn(c.free, c.Omega, zr, zi, qr, qi, tau)
-    x, v, a, _, _ = derivatives(c.free, c.Omega, zrt, zit, qrt, qit)
-    return x - (x2 + v2 * tau), v - v2, a
+    x, v, a, _, _ = derivatives(c.free, c.Omega, *turn(c.free, c.Omega, *motion, tau))
+    way, speed = free_ball(c, v2, tau)
+    return x - (x2 + way), v - speed, pull(c, a)
 
 
 @njit
-def _crossing(c, zr, zi, qr, qi, x2, v2, side, inside, outside):
+def _crossing(c, motion, x2, v2, side, inside, outside):
     """Return the time in [inside, outside] at which a monotone gap passes the wall."""
     for _ in range(200):
         mid = 0.5 * (inside + outside)
         if mid <= inside or mid >= outside:
             break
-        if side * _gap(c, zr, zi, qr, qi, x2, v2, mid)[0] < 1.0:
+        if side * _gap(c, motion, x2, v2, mid)[0] < 1.0:
             inside = mid
         else:
             outside = mid
@@ -46,8 +59,8 @@ def inspect_flight(c, side, x1, v1, x2, v2, phase, tau):
         Least distance of a turning point to the wall it points at, negative beyond it; time and side of the
         first contact within the flight, nan and 0 if there is none.
     """
-    zr, zi, qr, qi = phasors(c.free, c.Omega, x1, v1, phase)
-    _, speed, push = _gap(c, zr, zi, qr, qi, x2, v2, 0.0)
+    motion = flight(c, c.free, x1, v1, phase, 0.0)
+    _, speed, push = _gap(c, motion, x2, v2, 0.0)
     clearance = NO_TURNING
     violation = math.nan
     wall = 0
@@ -55,18 +68,19 @@ def inspect_flight(c, side, x1, v1, x2, v2, phase, tau):
         violation = 0.0
         wall = side
     before = 0.0
-    for at in turning_points_kernel(c, zr, zi, qr, qi, v2, tau):
-        w, _, bend = _gap(c, zr, zi, qr, qi, x2, v2, at)
+    for at in turning_points_kernel(c, motion, v2, tau):
+        w, _, bend = _gap(c, motion, x2, v2, at)
         towards = 1 if bend < 0.0 else -1
         distance = 1.0 - towards * w
         clearance = min(clearance, distance)
         if distance <= 0.0 and wall == 0:
             wall = towards
-            violation = _crossing(c, zr, zi, qr, qi, x2, v2, towards, before, at)
+            violation = _crossing(c, motion, x2, v2, towards, before, at)
         before = at
     return clearance, violation, wall
 
 
+@by_type(Constants)
 @linked_njit
 def survey_kernel(c, duration, side, t, states):
     """Fly a closed orbit once, flight by flight from its stored states.
@@ -84,7 +98,7 @@ def survey_kernel(c, duration, side, t, states):
 
     Returns
     -------
-    jacobians : (N, 4, 4) float array
+    jacobians : (N, d, d) float array
         Saltation Jacobians of the maps from each impact to the next.
     residual : float
         Largest difference, in any component, of where a flight ends to the state stored there.
@@ -124,4 +138,40 @@ def survey_kernel(c, duration, side, t, states):
         if side[k] * (states[k, 1] - states[k, 3]) <= 0.0 and wall == 0:
             violation = t[j] + tau
             wall = side[k]
+    return jacobians, residual, clearance, violation, wall
+
+
+@linked_njit
+def survey_rows(c, rows, side):
+    """Return the same of an orbit of one ball given by its rows; its Jacobians are tangent maps at fixed times."""
+    N = side.size
+    jacobians = new_cube(N, len(directions(c)), len(directions(c)))
+    residual = 0.0
+    clearance = NO_TURNING
+    violation = math.nan
+    wall = 0
+    for j in range(N):
+        row, following = rows[j], rows[j + 1]
+        Y = tangent_product(c, rows, j, j + 1)
+        for i in range(Y.shape[0]):
+            copy_values(jacobians[j, i], Y[i])
+        tau = following[col.TAU]
+        x1, v1, x2, v2, _ = segment_state(c, row, tau)
+        residual = max(
+            residual,
+            abs(row[col.X1] - row[col.X2] - side[j]),
+            abs(x1 - following[col.X1]),
+            abs(v1 - following[col.V1]),
+            abs(x2 - following[col.X2]),
+            abs(v2 - following[col.V2]),
+        )
+        distance, when, where = inspect_flight(
+            c, side[j], row[col.X1], row[col.A_V1], row[col.X2], row[col.A_V2], row[col.PHASE], tau
+        )
+        clearance = min(clearance, distance)
+        if where != 0 and wall == 0:
+            violation, wall = row[col.TIME] + when, where
+        arrives = side[(j + 1) % N]
+        if arrives * (following[col.V1] - following[col.V2]) <= 0.0 and wall == 0:
+            violation, wall = following[col.TIME], arrives
     return jacobians, residual, clearance, violation, wall

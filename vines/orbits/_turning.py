@@ -8,7 +8,7 @@ computed.
 
 from __future__ import annotations
 
-from vines.dynamics.kernels import derivatives, fourth_bound, turn
+from vines.dynamics.kernels import derivatives, fourth_bound, free_ball, pull, speed_terms, turn
 from vines.kernels import copy_values, linked_njit, new_vector, njit
 
 __all__ = ["turning_points_kernel"]
@@ -23,19 +23,19 @@ _ULP = 4e-16
 
 
 @njit
-def _rate(c, zr, zi, qr, qi, drift, tau):
-    """Return u = x1' - drift, u' and u'' at tau."""
-    zrt, zit, qrt, qit = turn(c.free, c.Omega, zr, zi, qr, qi, tau)
-    _, v, a, j, _ = derivatives(c.free, c.Omega, zrt, zit, qrt, qit)
-    return v - drift, a, j
+def _rate(c, motion, drift, tau):
+    """Return u = w', u' and u'' at tau."""
+    now = turn(c.free, c.Omega, *motion, tau)
+    _, v, a, j, _ = derivatives(c.free, c.Omega, *now)
+    return v - free_ball(c, drift, tau)[1], pull(c, a), j
 
 
 @njit
-def _root(c, zr, zi, qr, qi, drift, a, b, ua):
+def _root(c, motion, drift, a, b, ua):
     """Return the zero of u in [a, b], where u is monotone, has the sign of ua at a and the other one at b."""
     tau = 0.5 * (a + b)
     for _ in range(100):
-        u, du, _ = _rate(c, zr, zi, qr, qi, drift, tau)
+        u, du, _ = _rate(c, motion, drift, tau)
         if (u > 0.0) == (ua > 0.0):
             a = tau
         else:
@@ -50,16 +50,14 @@ def _root(c, zr, zi, qr, qi, drift, a, b, ua):
 
 
 @linked_njit
-def turning_points_kernel(c, zr, zi, qr, qi, drift, duration):
-    """Return the times in (0, duration) at which x1' = drift, in order.
-
-    With the velocity of the ball as drift these are the turning points of the gap.
+def turning_points_kernel(c, motion, drift, duration):
+    """Return the times in (0, duration) at which the gap to a ball that starts with velocity `drift` turns, in order.
 
     Parameters
     ----------
     c : vines.dynamics._constants.Constants
-    zr, zi, qr, qi : float
-        Phasors of the oscillator at the start of the flight.
+    motion : tuple of float
+        As `flight` gives it at the start of the flight.
     drift : float
     duration : float
     """
@@ -69,26 +67,26 @@ def turning_points_kernel(c, zr, zi, qr, qi, drift, duration):
     right = new_vector(_DEEPEST + 2)
     left[0], right[0] = 0.0, duration
     depth = 1
-    slack = 1e-15 * (abs(zr) + abs(zi) + (1.0 + c.Omega) * (abs(qr) + abs(qi)) + abs(drift))
+    slack = 1e-15 * (speed_terms(c, *motion) + abs(drift))
     while depth > 0:
         depth -= 1
         a, b = left[depth], right[depth]
         h = 0.5 * (b - a)
-        zra, zia, qra, qia = turn(c.free, c.Omega, zr, zi, qr, qi, a)
-        _, va, _, _, _ = derivatives(c.free, c.Omega, zra, zia, qra, qia)
-        bound = fourth_bound(c, zra, zia, qra, qia, 2.0 * h)
-        u, du, ddu = _rate(c, zr, zi, qr, qi, drift, a + h)
+        now = turn(c.free, c.Omega, *motion, a)
+        _, va, _, _, _ = derivatives(c.free, c.Omega, *now)
+        bound = fourth_bound(c, *now, 2.0 * h)
+        u, du, ddu = _rate(c, motion, drift, a + h)
         if abs(u) > slack + h * (abs(du) + h * (0.5 * abs(ddu) + h * bound / 6.0)):
             continue
         if abs(du) > h * (abs(ddu) + 0.5 * h * bound):
-            ua = va - drift
-            ub, _, _ = _rate(c, zr, zi, qr, qi, drift, b)
+            ua = va - free_ball(c, drift, a)[1]
+            ub, _, _ = _rate(c, motion, drift, b)
             if ua * ub < 0.0 or (ua == 0.0 and a > 0.0):
                 if count == found.size:
                     grown = new_vector(2 * count)
                     copy_values(grown, found)
                     found = grown
-                found[count] = _root(c, zr, zi, qr, qi, drift, a, b, ua) if ua != 0.0 else a
+                found[count] = _root(c, motion, drift, a, b, ua) if ua != 0.0 else a
                 count += 1
         elif h > _SHORTEST and depth < _DEEPEST:
             left[depth], right[depth] = a + h, b

@@ -6,7 +6,7 @@ Derivatives in a parameter and curves in two of them evaluate the equations at m
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -15,7 +15,7 @@ from vines.dynamics.kernels import impact_law_kernel, oscillator
 from vines.kernels import njit
 from vines.model import AMPLITUDE, DAMPING, FREQUENCY, MASS, RESTITUTION, Params
 
-__all__ = ["Essentials", "essentials", "essentials_of", "values_of"]
+__all__ = ["Essentials", "essentials", "essentials_of", "frequency_of", "unit_of", "values_of"]
 
 
 class Essentials(NamedTuple):
@@ -37,6 +37,16 @@ class Essentials(NamedTuple):
 def values_of(p: Params) -> npt.NDArray[np.float64]:
     """Return mu, A, Omega, r, lam, shape (5,)."""
     return np.array(list(p.as_dict().values()))
+
+
+def frequency_of(p: Any) -> float:
+    """Return the frequency of the forcing of any system."""
+    return float(getattr(p, "Omega", 1.0))
+
+
+def unit_of(p: Any) -> float:
+    """Return the unit of the defects of the closing equations: with it they are velocities of a ball."""
+    return p.mu if isinstance(p, Params) else 1.0
 
 
 @njit

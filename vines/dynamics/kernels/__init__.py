@@ -8,8 +8,24 @@ from vines.dynamics import _advance as rows
 from vines.dynamics import _totals as totals
 from vines.dynamics._advance import advance, begin, pass_over, set_state, shift_time, state_now
 from vines.dynamics._batches import BATCHES, close_batch, standard_errors
-from vines.dynamics._constants import Constants, constants, constants_kernel, oscillator
-from vines.dynamics._flight import derivatives, fourth_bound, phasors, turn
+from vines.dynamics._constants import (
+    Constants,
+    ParameterTable,
+    constants_at,
+    constants_kernel,
+    oscillator,
+)
+from vines.dynamics._flight import (
+    derivatives,
+    flight,
+    fourth_bound,
+    free_ball,
+    phasors,
+    pull,
+    ringing,
+    speed_terms,
+    turn,
+)
 from vines.dynamics._impact_law import (
     after_impact,
     after_impact_kernel,
@@ -19,43 +35,57 @@ from vines.dynamics._impact_law import (
     reversing_kernel,
 )
 from vines.dynamics._integrals import largest_displacement, segment_integrals
+from vines.dynamics._room import constants, room_of, table_of
 from vines.dynamics._saltation import jacobian_kernel
-from vines.dynamics._tangent import flow_basis, jump_basis, lyapunov_blocks, tangent_product
-from vines.dynamics._totals import window_totals
+from vines.dynamics._tangent import directions, flow_basis, jump_basis, lyapunov_blocks, offset, tangent_product
+from vines.dynamics._totals import ball_mass, segment_state, window_totals
 from vines.dynamics._window import open_window, run_window, with_room
 
 __all__ = [
     "BATCHES",
     "Constants",
+    "ParameterTable",
     "advance",
     "after_impact",
     "after_impact_kernel",
+    "ball_mass",
     "begin",
     "close_batch",
     "constants",
+    "constants_at",
     "constants_kernel",
     "derivatives",
+    "directions",
+    "flight",
     "flow_basis",
     "fourth_bound",
+    "free_ball",
     "impact_law",
     "impact_law_kernel",
     "jacobian_kernel",
     "jump_basis",
     "largest_displacement",
     "lyapunov_blocks",
+    "offset",
     "open_window",
     "oscillator",
     "pass_over",
     "phasors",
+    "pull",
     "reversing",
     "reversing_kernel",
+    "ringing",
+    "room_of",
     "rows",
     "run_window",
     "segment_integrals",
+    "segment_state",
     "set_state",
     "shift_time",
+    "speed_terms",
     "standard_errors",
     "state_now",
+    "table_of",
     "tangent_product",
     "totals",
     "turn",

@@ -9,8 +9,8 @@ from vines.dynamics._ensemble import (
     threads_allowed,
 )
 from vines.dynamics._measures import measures_from
+from vines.dynamics._room import start_of
 from vines.dynamics._simulate import EVENTS_PER_PERIOD, STATUS
-from vines.dynamics._start import check_start
 from vines.dynamics._trajectory import IMPACT, impacts_of
 from vines.dynamics._warm_up import timed
 
@@ -19,12 +19,12 @@ __all__ = [
     "IMPACT",
     "STATUS",
     "STATUS_NAMES",
-    "check_start",
     "each_thread",
     "impacts_of",
     "measures_from",
     "measures_of",
     "parameter_table",
+    "start_of",
     "start_table",
     "threads_allowed",
     "timed",
