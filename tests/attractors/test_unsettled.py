@@ -6,7 +6,7 @@ import math
 
 import pytest
 
-from vines.attractors import classify_many, settle_from
+from vines.attractors import classify_many, settle, settle_from
 from vines.model import Params
 from vines.orbits import Orbit, all_orbits
 
@@ -63,6 +63,19 @@ def test_many_at_once_say_the_same(case: str) -> None:
     alone = settle_from(p, start, settle=20, patience=0)
     assert (many.regime[0], many.reason[0]) == ("unsettled", alone.reason)
     assert many.remaining[0] == pytest.approx(alone.remaining, rel=0.1)
+
+
+@pytest.mark.parametrize(
+    "p", [Params(mu=0.00373, A=0.943), Params(mu=0.00885, A=0.0178), Params(mu=0.00513, A=0.0206)], ids=str
+)
+def test_a_window_too_short_for_the_difference_to_halve_tells_how_long_a_run_still_needs(p: Params) -> None:
+    # The first sticks once a period, after 34 impacts: no closing equations hold there.
+    early = classify_many(p, settle=100, patience=0).attractor(0)
+    assert (early.regime, early.recorded) == ("unsettled", 16)
+    assert "comes to a periodic orbit" in early.reason
+    run = early.transient + early.recorded
+    for share, arrived in ((0.75, False), (1.25, True)):
+        assert settle(p, settle=run + share * early.remaining, patience=0).settled is arrived
 
 
 def test_all_along_the_way_next_to_a_doubling_nothing_is_misnamed() -> None:

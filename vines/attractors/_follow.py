@@ -6,8 +6,9 @@ import math
 
 from vines.attractors import _verdict as v
 from vines.attractors._approach import LARGEST_P, STABLE, comes_to_orbit, nearest_orbit, note_coming
+from vines.attractors._coming import note_decay
 from vines.attractors._contacts import contacts, difference, repetition
-from vines.attractors._judge import MAX_P, NEAR, note_decay, note_drift
+from vines.attractors._judge import MAX_P, NEAR, note_drift
 from vines.dynamics.kernels import directions, lyapunov_blocks, open_window, run_window, shift_time
 from vines.dynamics.kernels import rows as col
 from vines.kernels import cold_njit, identity, new_matrix, new_vector, njit

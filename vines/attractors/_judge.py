@@ -5,14 +5,15 @@ from __future__ import annotations
 import math
 
 from vines.attractors import _verdict as v
-from vines.attractors._approach import NO_ORBIT, comes_to_orbit, nearest_orbit, note_coming
+from vines.attractors._approach import nearest_orbit
+from vines.attractors._coming import comes
 from vines.attractors._contacts import contacts, difference, mirror_difference, repetition
 from vines.attractors._multipliers import multipliers
 from vines.dynamics.kernels import directions, ringing, tangent_product
 from vines.dynamics.kernels import rows as col
 from vines.kernels import byte_vector, cold_njit, complex_vector, new_vector, njit, zero_integers
 
-__all__ = ["MAX_P", "NEAR", "clear", "judge_window", "note_decay", "note_drift"]
+__all__ = ["MAX_P", "NEAR", "clear", "judge_window", "note_drift"]
 
 MAX_P = 32
 """Largest number of forcing periods over which a repetition is looked for."""
@@ -97,25 +98,13 @@ def judge_window(c, rows, n, periods, tolerance, verdict):
     verdict[v.REMAINING] = math.nan
     if periods >= CLEAR and best > 0 and lasts[best] < NEAR:
         oldest = difference(rows, kept, lags[best], best * period, scale, best_filled - 1)
-        if lasts[best] < 0.5 * oldest:
-            seen = comes_to_orbit(c, rows, kept, scale, NEAR, tolerance, verdict)
-            if seen == NO_ORBIT:
-                rate = math.log(oldest / lasts[best]) / ((best_filled - 1.0) * best)
-                note_decay(verdict, lasts[best], best, rate, tolerance)
-            # What comes near an unstable orbit will leave it again.
-            if verdict[v.REASON] == v.COMES:
-                verdict[v.REGIME] = v.UNSETTLED
+        if lasts[best] < oldest and comes(
+            c, rows, kept, best, lags[best], best_filled, lasts[best], oldest, scale, NEAR, tolerance, verdict
+        ):
+            verdict[v.REGIME] = v.UNSETTLED
+        else:
+            verdict[v.REMAINING], verdict[v.REASON], verdict[v.VALUE] = math.nan, v.NOTHING, 0.0
     return byte_vector(0)
-
-
-@njit
-def note_decay(verdict, difference, p, rate, tolerance):
-    """Note that a run comes to a periodic orbit, repeating after p periods to a difference that falls as exp(-rate t).
-
-    Time is in forcing periods.
-    """
-    left = difference / -math.expm1(-rate * p)
-    note_coming(verdict, max(math.log(left / tolerance) / rate, 0.0), math.exp(-rate))
 
 
 @njit
