@@ -54,7 +54,8 @@ def comes(c, rows, kept, p, lag, filled, newest, oldest, scale, near, tolerance,
     for i in range(first + 1, end + 1):
         if rows[i, col.KIND] == col.STICK:
             # The closing equations do not hold; the map of the run's own repetition is as near.
-            largest = multipliers(tangent_product(c, rows, first, end), complex_vector(4))
+            Y = tangent_product(c, rows, first, end)
+            largest = multipliers(Y, complex_vector(Y.shape[0]))
             left = largest ** (1.0 / p)
             if _fits(seen_rate, left):
                 note_decay(verdict, newest, p, -math.log(left), tolerance)

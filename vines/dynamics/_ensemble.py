@@ -20,6 +20,7 @@ from vines.dynamics import _lane_run as lanes
 from vines.dynamics import _totals as entry
 from vines.dynamics._lane_record import arrange
 from vines.dynamics._scatter import Scatter
+from vines.dynamics._scatter_constants import ROOM
 from vines.dynamics._scatter_run import scatter_block
 from vines.dynamics._simulate import EVENTS_PER_PERIOD
 from vines.dynamics._start import SLACK
@@ -293,7 +294,7 @@ class _Work:
             if scatter is None:
                 filled = lanes.run_block(*runs, *common, growths, growth_errors, *rest)
             else:
-                filled = scatter_block(*runs, *common, *rest, scatter.numbers(), block.start)
+                filled = scatter_block(*runs, *common, *rest, scatter.numbers(), block.start, np.empty(ROOM))
             if not np.any(self.codes[block] == lanes.OVERFLOW):
                 break
             room *= 2

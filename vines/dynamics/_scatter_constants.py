@@ -10,7 +10,41 @@ from vines.dynamics._constants import Oscillator, constants_kernel, oscillator
 from vines.dynamics._integrals import base_per_force
 from vines.kernels import linked_njit, njit
 
-__all__ = ["Harmonic", "Piece", "ScatterConstants", "ScatterOscillator", "added", "scatter_constants"]
+__all__ = [
+    "AHEAD",
+    "DRAWS",
+    "FIRST",
+    "FORMS",
+    "NUMBERS",
+    "PIECES",
+    "ROOM",
+    "SQUARES",
+    "SUMS",
+    "Harmonic",
+    "Piece",
+    "ScatterConstants",
+    "ScatterOscillator",
+    "added",
+    "scatter_constants",
+]
+
+AHEAD = 64
+"""Held forces drawn at once."""
+
+NUMBERS = 8
+"""Numbers that say how a piece begins: u, G1, G2, the held force, and 0, with which they fill a vector."""
+
+SQUARES = NUMBERS * NUMBERS
+"""Products of two of them."""
+
+FORMS = 4
+"""Integrals of a whole piece that are quadratic forms in them: of x1^2, of v1^2, the work, the damper loss."""
+
+# Places in a run's room: the number of a draw and the draws from it on, the forms for flight and for sticking, sums of
+# products.
+FIRST, DRAWS, PIECES = 0, 1, 8 + AHEAD
+SUMS = PIECES + 2 * FORMS * SQUARES
+ROOM = SUMS + SQUARES
 
 
 class Harmonic(NamedTuple):
@@ -40,7 +74,7 @@ class Harmonic(NamedTuple):
 
 
 class Piece(NamedTuple):
-    """What a whole piece between two draws does: the factors of u and of each G, and what each G adds to u."""
+    """What a time does: the factors of u and of each G, and what each G adds to u."""
 
     ur: float
     ui: float
@@ -57,12 +91,15 @@ class Piece(NamedTuple):
 class ScatterOscillator(NamedTuple):
     """One oscillator under both harmonics and a held force: x = held + Re u, u' = s u + G1 + G2.
 
-    ``reach`` is 0 away from the resonances of both harmonics.
+    ``piece`` is what a whole time between two draws does; over it x leaves the chord between its ends by no more than
+    ``bend`` + ``sag`` |u|. ``reach`` is 0 away from the resonances of both harmonics.
     """
 
     first: Oscillator
     second: Harmonic
     piece: Piece
+    bend: float
+    sag: float
     br: float
     bi: float
     reach: float
@@ -73,6 +110,7 @@ class ScatterConstants(NamedTuple):
 
     ``r`` is the restitution of a slow impact without its deviation; the held forces have the standard deviation
     ``noise``, one for each ``grid`` of time from ``origin`` on; draws are those of `stream` at the seed `key`.
+    ``room`` is the address of `ROOM` doubles, for what is worked out on the way.
     """
 
     mu: float
@@ -96,6 +134,7 @@ class ScatterConstants(NamedTuple):
     second_phase: float
     key: int
     stream: int
+    room: int
 
 
 @njit
@@ -138,11 +177,17 @@ def _scattering(o, A, Omega, lam, phase, grid):
     b1, b2 = added(s, Omega, grid), added(s, 2.0 * Omega, grid)
     piece = Piece(u.real, u.imag, f1.real, f1.imag, b1.real, b1.imag, f2.real, f2.imag, b2.real, b2.imag)
     base = base_per_force(o, Omega, lam)
-    return ScatterOscillator(o, second, piece, base.real, base.imag, max(o.reach, reach))
+    # |u''| is |s|^2 |u| + |c G1| + |c G2| at most, and |u| grows by (|G1| + |G2|) grid at most.
+    first, other = math.hypot(o.gr, o.gi), math.hypot(second.gr, second.gi)
+    sag = 0.125 * grid * grid * o.stiffness
+    bend = sag * grid * (first + other) + 0.125 * grid * grid * (
+        math.hypot(o.c2r, o.c2i) * first + math.hypot(second.c2r, second.c2i) * other
+    )
+    return ScatterOscillator(o, second, piece, bend, sag, base.real, base.imag, max(o.reach, reach))
 
 
 @linked_njit
-def scatter_constants(parameters, numbers, stream, origin):
+def scatter_constants(parameters, numbers, stream, origin, room):
     """Return the `ScatterConstants` of a run.
 
     Parameters
@@ -155,7 +200,13 @@ def scatter_constants(parameters, numbers, stream, origin):
         Number of the run.
     origin : float
         Time at which it begins.
+    room : ndarray, shape (ROOM,)
+        Room for what is worked out on the way; kept by whoever calls as long as the constants are used.
     """
+    # Nothing drawn yet, nothing summed.
+    room[FIRST] = math.inf
+    for k in range(SUMS, ROOM):
+        room[k] = 0.0
     mu, A, Omega, r, lam = parameters[0], parameters[1], parameters[2], parameters[3], parameters[4]
     c = constants_kernel(mu, A, Omega, r, lam)
     grid = c.period / numbers[3]
@@ -183,4 +234,5 @@ def scatter_constants(parameters, numbers, stream, origin):
         numbers[5],
         int(numbers[6]),
         stream,
+        room.ctypes.data,
     )

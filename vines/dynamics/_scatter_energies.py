@@ -11,14 +11,34 @@ import math
 import numpy as np
 
 from vines.dynamics import _totals as entry
-from vines.dynamics._flight import flight, modulus, turn
-from vines.dynamics._integrals import NODES, WEIGHTS, peak_between, stays_below
-from vines.dynamics._scatter_constants import ScatterConstants, ScatterOscillator
-from vines.dynamics._scatter_motion import LEFT, end_of, redraw
+from vines.dynamics._flight import derivatives, flight, modulus, turn
+from vines.dynamics._integrals import NODES, WEIGHTS, energies_between, peak_between, stays_below
+from vines.dynamics._scatter_constants import (
+    AHEAD,
+    DRAWS,
+    FIRST,
+    FORMS,
+    NUMBERS,
+    PIECES,
+    SQUARES,
+    SUMS,
+    ScatterConstants,
+    ScatterOscillator,
+)
+from vines.dynamics._scatter_motion import HELD, INDEX, LEFT, end_of, redraw, sagging, under
 from vines.dynamics._totals import add_segment, base_at, event_loss, event_work, stored_energy
-from vines.kernels import fused_njit, linked_njit, njit
+from vines.kernels import (
+    cold_njit,
+    doubles_at,
+    fused_njit,
+    linked_njit,
+    loop_njit,
+    new_vector,
+    njit,
+    zero_vector,
+)
 
-__all__: list[str] = []
+__all__ = ["fill_forms"]
 
 
 @base_at.register(ScatterConstants)
@@ -96,8 +116,25 @@ def _turned(share, a):
 
 
 @fused_njit
+def _of_one_harmonic(c, o, stuck, start, end, v2, length):
+    """Return the same without a second harmonic: of x1 - held as without scatter, and what the held force adds."""
+    ur, ui, pr, pi, _, _, held, _, _ = start
+    u, v, w, z, _, _, _, _, _ = end
+    x_square, v_square, ball, work, loss = energies_between(
+        c, o.first, stuck, (ur, ui, pr, pi), (u, v, w, z), v2, length
+    )
+    # The integral of G1, and from it those of u and of the base's velocity.
+    p = _turned(1.0 / c.Omega, complex(w - pr, z - pi))
+    mean = (-o.first.half * (u - ur - p.real) + o.first.gamma * (v - ui - p.imag)) / o.first.stiffness
+    moved = u - ur - (o.br * p.real - o.bi * p.imag)
+    return x_square + held * (held * length + 2.0 * mean), v_square, ball, work + held * moved, loss
+
+
+@fused_njit
 def _energies(c, o, stuck, start, end, v2, length):
     """Return the integrals of x1^2, v1^2, v2^2, the work of base and held force, and the damper loss over a piece."""
+    if c.second == 0.0:
+        return _of_one_harmonic(c, o, stuck, start, end, v2, length)
     u0, p0, q0 = complex(start[0], start[1]), complex(start[2], start[3]), complex(start[4], start[5])
     u1, p1, q1 = complex(end[0], end[1]), complex(end[2], end[3]), complex(end[4], end[5])
     held = start[6]
@@ -157,27 +194,153 @@ def _energies(c, o, stuck, start, end, v2, length):
     )
 
 
+@cold_njit
+def fill_forms(c):
+    """Work out the quadratic forms that the integrals of whole pieces are, by Gauss–Legendre.
+
+    Their errors add up over the pieces of a run, so no small denominator may be in them.
+    """
+    forms = doubles_at(c.room + 8 * PIECES, 2 * FORMS * SQUARES)
+    for k in range(2 * FORMS * SQUARES):
+        forms[k] = 0.0
+    z, x, v, bend, base = zero_vector(NUMBERS), new_vector(7), new_vector(7), new_vector(7), new_vector(7)
+    parts = math.ceil(2.0 * c.grid / c.window)
+    for node in range(2 * 8 * parts):
+        stuck, part, k = node // (8 * parts), (node // 8) % parts, node % 8
+        o, mass = (c.stuck, 1.0 + c.mu) if stuck else (c.free, 1.0)
+        t = (c.grid / parts) * (part + 0.5 * (1.0 + (NODES[k // 2] if k % 2 else -NODES[k // 2])))
+        weight = 0.5 * (c.grid / parts) * WEIGHTS[k // 2]
+        for i in range(7):
+            z[i] = 1.0
+            motion = turn(o, c.Omega, z[0], z[1], z[2], z[3], z[4], z[5], z[6], c.grid, 0.0, t)
+            z[i] = 0.0
+            x[i], v[i], bend[i], _, _ = derivatives(o, c.Omega, *motion)
+            base[i] = o.br * motion[2] - o.bi * motion[3] + o.second.br * motion[4] - o.second.bi * motion[5]
+        for i in range(7):
+            for j in range(i + 1):
+                at = stuck * FORMS * SQUARES + NUMBERS * i + j
+                both = weight if i == j else 2.0 * weight
+                forms[at] += both * x[i] * x[j]
+                forms[at + SQUARES] += both * v[i] * v[j]
+                forms[at + 2 * SQUARES] += 0.5 * both * mass * (base[i] * bend[j] + base[j] * bend[i])
+                forms[at + 3 * SQUARES] += both * c.lam * (v[i] - base[i]) * (v[j] - base[j])
+                if i == HELD:
+                    # What the held force does to the oscillator, less what the base does against it.
+                    forms[at + 2 * SQUARES] += 0.5 * both * (v[j] - base[j])
+
+
+@fused_njit
+def _gather(sums, motion):
+    """Add the products of the numbers with which a whole piece begins to their sums."""
+    ur, ui, pr, pi, qr, qi, held, _, _ = motion
+    sums[0] += ur * ur
+    sums[8] += ui * ur
+    sums[9] += ui * ui
+    sums[16] += pr * ur
+    sums[17] += pr * ui
+    sums[18] += pr * pr
+    sums[24] += pi * ur
+    sums[25] += pi * ui
+    sums[26] += pi * pr
+    sums[27] += pi * pi
+    sums[32] += qr * ur
+    sums[33] += qr * ui
+    sums[34] += qr * pr
+    sums[35] += qr * pi
+    sums[36] += qr * qr
+    sums[40] += qi * ur
+    sums[41] += qi * ui
+    sums[42] += qi * pr
+    sums[43] += qi * pi
+    sums[44] += qi * qr
+    sums[45] += qi * qi
+    sums[48] += held * ur
+    sums[49] += held * ui
+    sums[50] += held * pr
+    sums[51] += held * pi
+    sums[52] += held * qr
+    sums[53] += held * qi
+    sums[54] += held * held
+
+
+@fused_njit
+def _highest(o, motion, end):
+    """Return a bound of |x1| between two motions that are a piece apart."""
+    return max(abs(motion[HELD] + motion[0]), abs(end[HELD] + end[0])) + sagging(o, motion)
+
+
+@fused_njit
+def _over_pieces(c, o, motion, gone, length, best):
+    """Go over whole pieces as long as |x1| stays below `best` and draws are at hand: so there is no call in the loop.
+
+    Returns (motion, time gone, number of pieces).
+    """
+    drawn, sums = doubles_at(c.room, DRAWS + AHEAD), doubles_at(c.room + 8 * SUMS, SQUARES)
+    place, pieces = int(motion[INDEX] - drawn[FIRST]) + 1, 0
+    while place < AHEAD and gone + c.grid < length:
+        end = end_of(c, o, motion, c.grid)
+        if not _highest(o, motion, end) <= best:
+            break
+        _gather(sums, motion)
+        motion = under(c, o, end, c.noise * drawn[DRAWS + place])
+        gone += c.grid
+        place += 1
+        pieces += 1
+    return motion, gone, pieces
+
+
+@loop_njit
+def _book(room, out, stuck, ball):
+    """Add the integrals of whole pieces to the totals, and empty the sums; `ball` is the time times v2^2 in flight."""
+    sums = doubles_at(room + 8 * SUMS, SQUARES)
+    forms = doubles_at(room + 8 * (PIECES + stuck * FORMS * SQUARES), FORMS * SQUARES)
+    x, v, work, loss = 0.0, 0.0, 0.0, 0.0
+    for i in range(NUMBERS - 1):
+        for k in range(NUMBERS * i, NUMBERS * i + i + 1):
+            x += forms[k] * sums[k]
+            v += forms[SQUARES + k] * sums[k]
+            work += forms[2 * SQUARES + k] * sums[k]
+            loss += forms[3 * SQUARES + k] * sums[k]
+            sums[k] = 0.0
+    out[entry.X1_SQUARE] += x
+    out[entry.V1_SQUARE] += v
+    out[entry.V2_SQUARE] += v if stuck else ball
+    out[entry.BASE_WORK] += work
+    out[entry.DAMPER_LOSS] += loss
+
+
 @add_segment.register(ScatterConstants)
 @fused_njit
 def _add_segment(c, out, mode, begins, x1, v1, v2, phase, length):
-    o = c.stuck if mode != 0.0 else c.free
+    stuck = mode != 0.0
+    o = c.stuck if stuck else c.free
     motion = flight(c, o, x1, v1, phase, begins)
-    gone = 0.0
+    gone, pieces = 0.0, 0
+    out[entry.DURATION] += length
     while True:
+        if motion[LEFT] == c.grid:
+            motion, gone, more = _over_pieces(c, o, motion, gone, length, out[entry.MAX_ABS_X1])
+            pieces += more
         lasts = min(length - gone, motion[LEFT])
         end = end_of(c, o, motion, lasts)
-        xx, vv, ball, work, loss = _energies(c, o, mode != 0.0, motion, end, v2, lasts)
-        out[entry.DURATION] += lasts
-        out[entry.X1_SQUARE] += xx
-        out[entry.V1_SQUARE] += vv
-        out[entry.V2_SQUARE] += ball
-        out[entry.BASE_WORK] += work
-        out[entry.DAMPER_LOSS] += loss
-        best, when = peak_between(c, o, motion, end, 0.0, lasts, out[entry.MAX_ABS_X1])
-        if when >= 0.0:
-            out[entry.MAX_ABS_X1] = best
-            out[entry.T_MAX_ABS_X1] = begins + gone + when
+        if lasts == motion[LEFT] == c.grid:
+            _gather(doubles_at(c.room + 8 * SUMS, SQUARES), motion)
+            pieces += 1
+        else:
+            xx, vv, ball, work, loss = _energies(c, o, stuck, motion, end, v2, lasts)
+            out[entry.X1_SQUARE] += xx
+            out[entry.V1_SQUARE] += vv
+            out[entry.V2_SQUARE] += ball
+            out[entry.BASE_WORK] += work
+            out[entry.DAMPER_LOSS] += loss
+        if not (lasts <= c.grid and _highest(o, motion, end) <= out[entry.MAX_ABS_X1]):
+            best, when = peak_between(c, o, motion, end, 0.0, lasts, out[entry.MAX_ABS_X1])
+            if when >= 0.0:
+                out[entry.MAX_ABS_X1] = best
+                out[entry.T_MAX_ABS_X1] = begins + gone + when
         if length - gone <= lasts:
-            return
+            break
         gone += lasts
         motion = redraw(c, o, end)
+    if pieces:
+        _book(c.room, out, int(stuck), v2 * v2 * c.grid * pieces)

@@ -26,23 +26,28 @@ from vines.dynamics._flight import (
     turn,
 )
 from vines.dynamics._impact_law import impact_law_kernel
-from vines.dynamics._random import normal
-from vines.dynamics._scatter_constants import Piece, ScatterConstants, ScatterOscillator, added
+from vines.dynamics._random import fill_normals, normal
+from vines.dynamics._scatter_constants import AHEAD, DRAWS, FIRST, Piece, ScatterConstants, ScatterOscillator, added
 from vines.dynamics._sincos import sincos
 from vines.dynamics._sticking import UNRESOLVED, holds_for, next_release, release_within
-from vines.kernels import fused_njit, linked_njit, loop_njit, njit
+from vines.kernels import doubles_at, fused_njit, linked_njit, loop_njit
 
-__all__ = ["LEFT", "end_of", "redraw"]
+__all__ = ["HELD", "INDEX", "LEFT", "end_of", "redraw", "sagging", "under"]
 
 HELD, LEFT, INDEX = 6, 7, 8
 
-SHORT = 0.5
-"""Part of the window of certified steps up to which a piece is first tried as a whole."""
+APART = 1.0 - 1e-12
+"""Where |w| is smaller the gap to a wall can be told."""
 
 
-@njit
+@fused_njit
 def _draw(c, index):
-    return c.noise * normal(c.key, c.stream, 2 * int(index) + 1)
+    drawn = doubles_at(c.room, DRAWS + AHEAD)
+    place = index - drawn[FIRST]
+    if not 0.0 <= place < AHEAD:
+        drawn[FIRST], place = index, 0.0
+        fill_normals(c.key, c.stream, 2 * int(index) + 1, 2, drawn[DRAWS:])
+    return c.noise * drawn[DRAWS + int(place)]
 
 
 @flight.register(ScatterConstants)
@@ -115,13 +120,18 @@ def end_of(c, o, motion, lasts):
 
 
 @fused_njit
-def redraw(c, o, motion):
-    """Return the motion after the next draw: position and velocity go on."""
+def under(c, o, motion, drawn):
+    """Return the motion under the next held force: position and velocity go on."""
     ur, ui, pr, pi, qr, qi, held, _, index = motion
-    drawn = _draw(c, index + 1.0)
     ur += held - drawn
     ui -= o.first.half * o.first.inverse * (held - drawn)
     return ur, ui, pr, pi, qr, qi, drawn, c.grid, index + 1.0
+
+
+@fused_njit
+def redraw(c, o, motion):
+    """Return the motion after the next draw."""
+    return under(c, o, motion, _draw(c, motion[INDEX] + 1.0))
 
 
 free_ball.register(ScatterConstants)(free_ball.first)
@@ -184,17 +194,6 @@ def _holds_for(c, ur, ui, pr, pi, qr, qi, held, left, index):
 
 
 @fused_njit
-def _is_clear(c, motion, x2, v2, span):
-    """Say whether the ball is certain to reach no wall for a while, all terms of its way taken by their size."""
-    x, v, a, j, k = derivatives(c.free, c.Omega, *motion)
-    re, im = fifth(c.free, *motion)
-    bound = abs(re) + abs(im) + span * forced_fifth(c, *motion)
-    bend = 0.5 * abs(a) + span * ((1 / 6) * abs(j) + span * ((1 / 24) * abs(k) + span * ((1 / 120) * bound)))
-    w = x - x2
-    return max(abs(w), abs(w + span * (v - v2))) + span * span * bend < 1.0
-
-
-@fused_njit
 def _wall_left(c, motion, x2, v2):
     """Return the wall that the ball has just left, so little ago that no gap can be told yet, or 0."""
     x, v, _, _, _ = derivatives(c.free, c.Omega, *motion)
@@ -203,16 +202,29 @@ def _wall_left(c, motion, x2, v2):
     return side if near and side * (v - v2) <= 0.0 else 0
 
 
+@fused_njit
+def sagging(o, motion):
+    """Return by how much x may leave the chord between the ends of a whole piece."""
+    return o.bend + o.sag * (abs(motion[0]) + abs(motion[1]))
+
+
 @next_contact.register(ScatterConstants)
 @fused_njit
 def _next_contact(c, motion, x2, v2, wall, released, tau, stop):
     begins = 0.0
     while True:
         left = motion[LEFT]
-        clear = max(tau - begins, 0.0)
         ball = x2 + v2 * begins
+        if wall == 0 and left == c.grid and tau <= begins and begins + left < stop:
+            end = _by_factors(c.free.piece, *motion)
+            w, later = motion[HELD] + motion[0] - ball, end[HELD] + end[0] - (ball + v2 * left)
+            if max(abs(w), abs(later)) + sagging(c.free, motion) < APART:
+                motion = redraw(c, c.free, end)
+                begins += left
+                continue
+        clear = max(tau - begins, 0.0)
         until = min(stop - begins, left)
-        if clear < until and not (wall == 0 and until < SHORT * c.window and _is_clear(c, motion, ball, v2, until)):
+        if clear < until:
             code, at, side, x, v = contact_within(c, motion, ball, v2, wall, released, clear, until)
             if code != NO_CONTACT:
                 return code, begins + at, side, x, v

@@ -6,14 +6,14 @@ import math
 
 from vines.dynamics import _advance as col
 from vines.dynamics import _lane_run as lanes
-from vines.dynamics import _scatter_energies  # noqa: F401 - bodies by type, there before they are compiled
 from vines.dynamics import _totals as entry
 from vines.dynamics._advance import pass_over, set_state, state_now
 from vines.dynamics._batches import BATCHES, close_batch, standard_errors
 from vines.dynamics._scatter_constants import scatter_constants
+from vines.dynamics._scatter_energies import fill_forms
 from vines.dynamics._totals import window_totals
 from vines.dynamics._window import open_window, run_window
-from vines.kernels import entry_njit, linked_njit, new_matrix, zero_matrix, zero_vector
+from vines.kernels import entry_njit, linked_njit, new_matrix, njit, zero_matrix, zero_vector
 
 __all__ = ["scatter_block"]
 
@@ -36,11 +36,22 @@ def _keep_impacts(rows, count, who, events, filled):
     return filled
 
 
+@njit
+def _alike(one, other):
+    """Say whether two runs have the same parameters."""
+    same = True
+    for k in range(one.shape[0]):
+        same &= one[k] == other[k]
+    return same
+
+
 @entry_njit
 def scatter_block(
-    parameters, starts, first, lengths, cap, what, finals, totals, errors, counts, status, events, numbers, base
+    parameters, starts, first, lengths, cap, what, finals, totals, errors, counts, status, events, numbers, base, room
 ):
-    """Run a block of trajectories with scatter; arguments as for `run_block`, `base` the number of the first one.
+    """Run a block of trajectories with scatter, the first of which has the number `base`.
+
+    Other arguments are as for `run_block` and `scatter_constants`.
 
     Returns
     -------
@@ -52,7 +63,13 @@ def scatter_block(
     values, spread, total = zero_matrix(BATCHES, 3), zero_vector(3), zero_vector(entry.TOTALS)
     for who in range(parameters.shape[0]):
         s, length = starts[who], lengths[who]
-        c = scatter_constants(parameters[who], numbers, base + who, -first[who])
+        c = scatter_constants(parameters[who], numbers, base + who, -first[who], room)
+        if (
+            what & lanes.WITH_MEASURES
+            and c.noise > 0.0
+            and not (who > 0 and _alike(parameters[who], parameters[who - 1]))
+        ):
+            fill_forms(c)
         set_state(state, s[0], s[1], s[2], s[3], s[4], -first[who])
         code, end = col.COMPLETE, 0.0
         if not what or first[who] > 0.0:
