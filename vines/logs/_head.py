@@ -8,7 +8,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from mcap import records
 
-from vines.logs._channels import CONTENT, DIGESTS, KINDS, SAMPLE, STATUS, Channel
+from vines.logs._channels import CONTENT, DIGESTS, KINDS, OURS, SAMPLE, STATUS, Channel
 from vines.logs._checked import NUMBERS, described, vouched
 from vines.logs._digests import digest_of, trusted
 from vines.logs._salvage import Piece, Salvage
@@ -53,8 +53,8 @@ class Head:
 
     @property
     def ours(self) -> bool:
-        """Whether vines wrote the log."""
-        return bool(self.digests or self.status) or any(each.name in KINDS for each in self.schemas.values())
+        """Whether vines wrote the log, and something of what it said about the log is left."""
+        return bool(self.digests or self.status) or any(name.startswith(OURS) for name in self.metadata)
 
     def written(self, topic: str) -> int | None:
         """Return how many messages the status counts on a topic, if it says so."""

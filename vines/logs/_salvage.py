@@ -53,6 +53,8 @@ class Salvage:
         First byte, byte after the last, and what was lost there.
     ended : bool
         Whether the end of the data section was found.
+    size : int
+        Bytes of the file.
     """
 
     profile: str = ""
@@ -62,6 +64,12 @@ class Salvage:
     loose: list[bytes] = field(default_factory=list)
     lost: list[tuple[int, int, str]] = field(default_factory=list)
     ended: bool = False
+    size: int = 0
+
+    @property
+    def only_cut(self) -> bool:
+        """Whether a cut explains all that is wrong: up to it, record follows record from the beginning."""
+        return not self.ended and all(end == self.size for _, end, _ in self.lost)
 
 
 _KINDS = {
@@ -88,7 +96,7 @@ def salvage(data: bytes, unpacker: Unpacker) -> Salvage:
     A chunk that the unpacker refuses is lost. Damage inside a record costs that record; damage to its head costs what
     lies before the next place at which records follow each other again.
     """
-    found = Salvage()
+    found = Salvage(size=len(data))
     at = len(MCAP0_MAGIC)
     while at < len(data) and not found.ended:
         step = _record(data, at)
