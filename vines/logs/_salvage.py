@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import re
 import struct
 from dataclasses import dataclass, field
@@ -55,6 +56,8 @@ class Salvage:
         Whether the end of the data section was found.
     size : int
         Bytes of the file.
+    chunks : set of bytes
+        Digests of the chunks that were taken.
     """
 
     profile: str = ""
@@ -65,6 +68,7 @@ class Salvage:
     lost: list[tuple[int, int, str]] = field(default_factory=list)
     ended: bool = False
     size: int = 0
+    chunks: set[bytes] = field(default_factory=set)
 
     @property
     def only_cut(self) -> bool:
@@ -163,9 +167,14 @@ def _take(found: Salvage, opcode: int, body: bytes, unpacker: Unpacker) -> None:
     elif opcode in _KINDS:
         found.pieces.append(_piece(opcode, body, checked=False))
     elif opcode == Opcode.CHUNK:
+        # Copied by what damaged the file; its messages were written once.
+        digest = hashlib.sha256(body).digest()
+        if digest in found.chunks:
+            raise ValueError("it stands in the file before")
         chunk = records.Chunk.read(stream)
         inside = unpacker.unpack(chunk)
         places, described = split(inside)
+        found.chunks.add(digest)
         checked = chunk.uncompressed_crc != 0
         found.pieces += [_piece(kind, content, checked) for kind, content in described]
         starts = sorted((start, length) for (_, length), group in places.items() for start in group)
