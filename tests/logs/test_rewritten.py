@@ -1,12 +1,19 @@
 """Another program rewrites a log: its content is read, or refused; never a wrong channel, never a traceback."""
 
+import io
 import random
+import struct
+from collections import Counter
 from pathlib import Path
 
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
-from mcap.writer import CompressionType
+from mcap.data_stream import ReadDataStream
+from mcap.opcode import Opcode
+from mcap.reader import make_reader
+from mcap.records import Channel
+from mcap.writer import CompressionType, Writer
 
 from tests.logs.conftest import made_up
 from tests.logs.rewriting import rewritten
@@ -139,11 +146,6 @@ def two_runs(log, small, folder):
 
 
 def test_merged_logs_are_not_mixed(log, small, tmp_path):
-    import io
-
-    from mcap.reader import make_reader
-    from mcap.writer import Writer
-
     stream = io.BytesIO()
     writer = Writer(stream)
     writer.start()
@@ -162,15 +164,28 @@ def test_merged_logs_are_not_mixed(log, small, tmp_path):
         logs.read(file)
 
 
-@settings(KEEP, max_examples=60)
-@given(how=WRITERS, place=st.floats(0, 1, exclude_max=True), bit=st.integers(0, 7), cut=st.booleans())
-def test_damage_after_rewriting_is_never_a_wrong_channel(small, log, tmp_path, how, place, bit, cut):
-    data = bytearray(rewritten(log.read_bytes(), **how))
-    at = int(place * len(data))
-    if cut:
-        del data[at:]
-    else:
-        data[at] ^= 1 << bit
+PLACES = st.floats(0, 1, exclude_max=True)
+
+
+def damaged(data, kind, places, width):
+    """Return bytes with one bit, the end, or a stretch of them lost, doubled, or put where others were."""
+    a, b = (int(place * len(data)) for place in places)
+    taken = data[a : a + width]
+    if kind == "flipped":
+        return data[:a] + bytes([data[a] ^ 1 << width % 8]) + data[a + 1 :]
+    made = {"cut": data[:a], "lost": data[:a] + data[a + width :], "doubled": data[:a] + taken + data[a:]}
+    return made.get(kind, data[:b] + taken + data[b + len(taken) :])
+
+
+@settings(KEEP, max_examples=120)
+@given(
+    how=WRITERS,
+    kind=st.sampled_from(["flipped", "cut", "lost", "doubled", "copied"]),
+    places=st.tuples(PLACES, PLACES),
+    width=st.sampled_from([0, 1, 5, 31, 300, 5000]),
+)
+def test_damage_after_rewriting_is_never_a_wrong_row(small, log, tmp_path, how, kind, places, width):
+    data = damaged(rewritten(log.read_bytes(), **how), kind, places, width)
     file, out = tmp_path / "hurt.mcap", tmp_path / "hurt.recovered.mcap"
     out.unlink(missing_ok=True)
     file.write_bytes(data)
@@ -180,9 +195,33 @@ def test_damage_after_rewriting_is_never_a_wrong_channel(small, log, tmp_path, h
             if back.complete:
                 same(table, small[key])
             else:
-                written = {repr(row) for row in small[key].tolist()}
                 rows = zip(*(table[name].to_pylist() for name in small[key].dtype.names), strict=True)
-                assert {repr(row) for row in rows} <= written
+                assert Counter(map(repr, rows)) <= Counter(map(repr, small[key].tolist()))
+
+
+@pytest.mark.parametrize("chunk", [0, 3])
+def test_chunk_that_stands_in_the_file_twice_is_taken_once(chunk, small, log, tmp_path):
+    """Once its messages were there twice, and minus so many were told to be lost."""
+    data = rewritten(log.read_bytes(), chunk_size=1500)
+    places = [at for at, opcode, _ in records_of(data) if opcode == Opcode.CHUNK]
+    start, stop = places[chunk : chunk + 2]
+    file = tmp_path / "twice.mcap"
+    file.write_bytes(data[:stop] + data[start:])
+    said = logs.recover(file)
+    same(logs.read(said.path).states, small["states"])
+    (lost,) = said.lost
+    assert "it stands in the file before" in lost
+
+
+def records_of(data):
+    """Yield place, opcode and content of the whole records of a file."""
+    at = 8
+    while at + 9 <= len(data):
+        opcode, length = struct.unpack_from("<BQ", data, at)
+        if at + 9 + length > len(data):
+            break
+        yield at, opcode, data[at + 9 : at + 9 + length]
+        at += 9 + length
 
 
 def recovered(file):
@@ -231,7 +270,7 @@ def test_older_logs_are_read_and_rewritten_ones_too(name, tmp_path):
     assert back.complete
     assert back.remarks == (
         "rewritten by 'mcap copy', as many messages as written, for whose content only checksums of that program vouch "
-        "(an older log)",
+        "(an older log, or one without vines.content)",
     )
     equal(back, older)
 
@@ -257,3 +296,75 @@ def test_cut_end_of_an_older_log_loses_no_channel(name, cut, tmp_path):
     equal(back, older)
     if name == "run":
         assert "/tf_static: 1 of 1 messages, t 0 to 0" in said.saved
+
+
+@KEEP
+@given(cut=st.floats(0.1, 0.99), crcs=st.booleans(), chunking=st.booleans())
+def test_log_rewritten_without_checksums_is_salvaged_record_by_record_up_to_a_cut(
+    small, log, tmp_path, cut, crcs, chunking
+):
+    data = rewritten(log.read_bytes(), chunking=chunking, crcs=crcs and not chunking, chunk_size=2000)
+    data = data[: int(cut * len(data))]
+    # By mcap's own writer: all messages that are whole before the cut, a chunk being whole or not there.
+    there = None if chunking else messages_before(data)
+    file = tmp_path / "cut.mcap"
+    file.write_bytes(data)
+    (tmp_path / "cut.recovered.mcap").unlink(missing_ok=True)
+    back = or_refused(lambda: recovered(file))
+    if back is None:
+        assert not there
+        return
+    assert (back.status, back.complete) == ("recovered", False)
+    whole = all(getattr(back, key).num_rows == len(small[key]) for key in TIMES)
+    # Of a channel that is whole the digest vouches.
+    assert whole or back.remarks[-1].endswith("of the messages have no checksum: they are unverified")
+    for key, topic in zip(TIMES, TOPICS, strict=False):
+        table = getattr(back, key)
+        same(table, small[key][: table.num_rows])
+        if there is not None:
+            assert table.num_rows == there[topic]
+
+
+def messages_before(data):
+    """Count the whole message records in a file that was cut, by topic."""
+    counts, topics = dict.fromkeys(TOPICS, 0), {}
+    for _, opcode, body in records_of(data):
+        if opcode == Opcode.CHANNEL:
+            channel = Channel.read(ReadDataStream(io.BytesIO(body)))
+            topics[channel.id] = channel.topic
+        elif opcode == Opcode.MESSAGE:
+            counts[topics[int.from_bytes(body[:2], "little")]] += 1
+    return counts if any(counts.values()) else None
+
+
+def test_nothing_of_a_damaged_log_is_taken_that_no_checksum_vouches_for(small, log, tmp_path):
+    """A cut leaves what is before it; a flipped bit may be anywhere: messages without a checksum are then left out."""
+    data = bytearray(rewritten(log.read_bytes(), chunking=False, crcs=True))
+    data[data.index(b"\x05", len(data) // 2)] ^= 0xFF
+    file = tmp_path / "flipped.mcap"
+    file.write_bytes(data)
+    back = or_refused(lambda: recovered(file))
+    for key in TIMES if back is not None else ():
+        table = getattr(back, key)
+        assert table.num_rows in (0, len(small[key]))
+
+
+def test_cut_file_without_metadata_stays_one_of_which_nobody_knows_the_run(small, log, tmp_path):
+    """Once it was called a run, with the messages of one of two channels of a kind."""
+    stream = io.BytesIO()
+    writer = Writer(stream, chunk_size=1000)
+    writer.start()
+    numbers = {}
+    for run in ("a", "b"):
+        for schema, channel, message in make_reader(io.BytesIO(log.read_bytes())).iter_messages(topics=["/state"]):
+            if run not in numbers:
+                kind = writer.register_schema(schema.name, schema.encoding, schema.data)
+                numbers[run] = writer.register_channel(channel.topic, channel.message_encoding, kind, {"run": run})
+            writer.add_message(numbers[run], message.log_time, message.data, message.publish_time)
+    writer.finish()
+    file = tmp_path / "two.mcap"
+    file.write_bytes(stream.getvalue()[:-1])
+    back = recovered(file)
+    assert (back.kind, back.status, back.provenance) == ("foreign", "unknown", {})
+    assert [len(table) for table in back.others.values()] == [60, 60]
+    assert "several channels hold the same kind of message" in back.remarks[0]

@@ -80,7 +80,15 @@ def test_cache_is_made_again_when_log_or_layout_changes(settled, chatter, tmp_pa
     assert viewer.cached_rrd([log], cache) == first
     assert first.stat().st_mtime_ns == made
     first.unlink()
-    assert viewer.cached_rrd([log], cache) == first
+    first = viewer.cached_rrd([log], cache)
+    assert first.is_file()
+    # A recording that was cut or altered is not shown as if it were whole.
+    whole = first.read_bytes()
+    for hurt in (whole[: len(whole) // 2], whole[:-1] + bytes([whole[-1] ^ 1]), b""):
+        first.write_bytes(hurt)
+        first = viewer.cached_rrd([log], cache)
+        assert list(cache.iterdir()) == [first]
+        assert first.stat().st_size > len(whole) // 2
 
     shutil.copy(chatter, log)
     second = viewer.cached_rrd([log], cache)

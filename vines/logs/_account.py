@@ -10,7 +10,10 @@ from vines.errors import printable
 from vines.logs._head import Head
 from vines.logs._salvage import Salvage
 
-__all__ = ["Account", "account"]
+__all__ = ["UNVERIFIED", "Account", "account"]
+
+UNVERIFIED = "unverified"
+"""What is said of messages that are saved though nothing vouches for them."""
 
 
 @dataclass(frozen=True)
@@ -22,7 +25,7 @@ class Account:
     every_message: bool
 
 
-def account(found: Salvage, head: Head, messages: Sequence[bytes], size: int) -> Account:
+def account(found: Salvage, head: Head, messages: Sequence[bytes], unverified: int) -> Account:
     """Return in words what is saved and what is lost.
 
     Parameters
@@ -33,8 +36,8 @@ def account(found: Salvage, head: Head, messages: Sequence[bytes], size: int) ->
         Its descriptions that can be believed.
     messages : sequence of bytes
         The message records that are saved.
-    size : int
-        Bytes of the damaged file.
+    unverified : int
+        How many of them nothing vouches for.
     """
     saved, lost = _channels(head, messages)
     # Without any count the messages that are missing are not known.
@@ -53,9 +56,9 @@ def account(found: Salvage, head: Head, messages: Sequence[bytes], size: int) ->
     lost += [f"bytes {start} to {end - 1}: {what}" for start, end, what in found.lost]
     if not found.ended:
         count = "" if head.status else "; how many messages followed is not known"
-        lost.append(f"the end of the file, after byte {size - 1}{count}")
-    if found.loose and not head.ours:
-        saved.append(f"{len(found.loose)} of the messages have no checksum: they are unverified")
+        lost.append(f"the end of the file, after byte {found.size - 1}{count}")
+    if unverified:
+        saved.append(f"{unverified} of the messages have no checksum: they are {UNVERIFIED}")
     return Account(tuple(map(printable, saved)), tuple(map(printable, lost)), every_message)
 
 

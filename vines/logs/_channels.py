@@ -19,6 +19,7 @@ __all__ = [
     "FIRST_SENSOR",
     "KINDS",
     "ORBIT",
+    "OURS",
     "PARAMETERS",
     "PROVENANCE",
     "RECOVERED",
@@ -34,6 +35,8 @@ __all__ = [
     "message_header",
 ]
 
+OURS = "vines."
+"""Names of the metadata records of vines begin so."""
 PROVENANCE = "vines.provenance"
 """Metadata record with where the numbers come from; the first record of a log after its header."""
 RUN = "vines.run"
@@ -168,7 +171,7 @@ def message_header(payload: int) -> np.dtype:
 
 
 def as_messages(array: np.ndarray, channel: Channel) -> np.ndarray:
-    """Return an array with exactly the fields of the channel's message; further fields are left out.
+    """Return an array with the fields of the channel's message in their types; no copy is made of one that has them.
 
     Parameters
     ----------
@@ -192,17 +195,9 @@ def as_messages(array: np.ndarray, channel: Channel) -> np.ndarray:
         )
     if array.ndim != 1:
         raise SchemaError(f"{channel.key} have shape {array.shape}; allowed is one row a message, shape (n,)")
-    fitting = np.empty(len(array), dtype)
-    for name in dtype.names or ():
-        values = array[name]
-        try:
-            fitting[name] = values.astype(dtype[name], casting="same_kind", copy=False)
-        except TypeError:
-            raise SchemaError(
-                f"field {name!r} of {channel.key} has type {values.dtype}; {dtype[name]} is needed"
-            ) from None
-        if dtype[name].kind == "i" and not np.array_equal(fitting[name], values):
-            raise SchemaError(f"field {name!r} of {channel.key} holds numbers that do not fit {dtype[name]}")
+    fitting = array
+    if any(array.dtype[name] != dtype[name] for name in dtype.names or ()):
+        fitting = _converted(array, dtype, channel)
     times = fitting[channel.time]
     if len(times) and not (np.isfinite(times).all() and times[0] >= 0.0 and times[-1] < _LATEST):
         raise SchemaError(
@@ -214,6 +209,22 @@ def as_messages(array: np.ndarray, channel: Channel) -> np.ndarray:
             f"{channel.key} are not sorted by time: row {place} is at {times[place]}, "
             f"before the one above it; sort them by {channel.time!r}"
         )
+    return fitting
+
+
+def _converted(array: np.ndarray, dtype: np.dtype, channel: Channel) -> np.ndarray:
+    """Return the fields of a message in the types of the message; refuse numbers that would become others."""
+    fitting = np.empty(len(array), dtype)
+    for name in dtype.names or ():
+        values = array[name]
+        try:
+            fitting[name] = values.astype(dtype[name], casting="same_kind", copy=False)
+        except TypeError:
+            raise SchemaError(
+                f"field {name!r} of {channel.key} has type {values.dtype}; {dtype[name]} is needed"
+            ) from None
+        if dtype[name].kind == "i" and not np.array_equal(fitting[name], values):
+            raise SchemaError(f"field {name!r} of {channel.key} holds numbers that do not fit {dtype[name]}")
     return fitting
 
 

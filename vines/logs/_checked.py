@@ -73,6 +73,8 @@ def rewritten(file: Path, found: Found) -> Rewritten:
     contents = trusted(CONTENT, found.metadata.get(CONTENT, {}))
     if not good:
         raise LogError(f"{unfit} neither do the digests of its records; {AGAIN}")
+    if CONTENT in found.metadata and not contents:
+        raise LogError(f"{unfit} neither do the digests of its content; {AGAIN}")
     for name, record in _records(found):
         if not vouched(record, good):
             raise LogError(f"{unfit} its record {name} is not what was written; {AGAIN}")
@@ -103,7 +105,7 @@ def rewritten(file: Path, found: Found) -> Rewritten:
     checked = "content as written"
     if not contents:
         by_whom = "only checksums of that program vouch" if found.covered else "nothing vouches"
-        checked = f"as many messages as written, for whose content {by_whom} (an older log)"
+        checked = f"as many messages as written, for whose content {by_whom} (an older log, or one without {CONTENT})"
     remarks = (f"{by}, {checked if whole else 'in part'}", *lines)
     return Rewritten(whole, bool(contents) or found.covered, remarks, frozenset(ours))
 

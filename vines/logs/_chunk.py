@@ -13,9 +13,8 @@ import zstandard
 from mcap import records
 from mcap.opcode import Opcode
 
-from vines.logs._channels import Rows
 from vines.logs._digests import entries, entry
-from vines.logs._pack import pack
+from vines.logs._pack import Placed, pack
 
 __all__ = ["Packed", "packed", "repacked"]
 
@@ -44,25 +43,17 @@ class Packed:
     contents: Mapping[int, bytes | memoryview]
 
 
-def packed(parts: Sequence[Rows]) -> Packed:
+def packed(parts: Sequence[Placed]) -> Packed:
     """Pack and compress rows as one chunk; free of shared state, so that several can be made at once."""
-    times = np.concatenate([rows.times for rows in parts])
-    sizes = np.repeat([rows.width for rows in parts], [len(rows) for rows in parts])
-    order = np.argsort(times, kind="stable")
-    offsets = np.empty(len(times), np.int64)
-    offsets[order] = np.cumsum(sizes[order]) - sizes[order]
-    data = np.empty(int(sizes.sum()), np.uint8)
+    data = np.empty(sum(len(rows) * rows.width for rows, _ in parts), np.uint8)
     contents: dict[int, bytes | memoryview] = {}
     places: dict[int, tuple[np.ndarray, np.ndarray]] = {}
-    start = 0
-    for rows in parts:
+    for rows, begin in parts:
         block, number = pack(rows), rows.channel.number
-        at = offsets[start : start + len(rows)]
         # Whole records as the items of an array that begins one at each byte: put down many at a time.
         record = np.dtype(f"V{rows.width}")
-        np.ndarray(len(data) - rows.width + 1, record, data, strides=(1,))[at] = block.view(record)[:, 0]
-        contents[number], places[number] = entries(block).data, (rows.times, at)
-        start += len(rows)
+        np.ndarray(len(data) - rows.width + 1, record, data, strides=(1,))[begin] = block.view(record)[:, 0]
+        contents[number], places[number] = entries(block).data, (rows.times, begin)
     return _closed(data.data, places, contents)
 
 

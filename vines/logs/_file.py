@@ -19,9 +19,10 @@ from mcap import records
 from mcap.opcode import Opcode
 from mcap.writer import MCAP0_MAGIC
 
-from vines.logs._channels import CONTENT, DIGESTS, STATUS, Channel, Rows
+from vines.logs._channels import CONTENT, DIGESTS, STATUS, Channel
 from vines.logs._chunk import Packed, packed
 from vines.logs._digests import bytes_of, description, digest_of, sealed
+from vines.logs._pack import Placed
 
 __all__ = ["LogFile"]
 
@@ -131,7 +132,7 @@ class LogFile:
         self.metadata(CONTENT, sealed(CONTENT, {**contents, **self._descriptions}))
         self.metadata(STATUS, {"status": status, **counts, "sha256": self._sha.hexdigest()})
 
-    def chunks(self, every: Iterable[Sequence[Rows]]) -> None:
+    def chunks(self, every: Iterable[Sequence[Placed]]) -> None:
         """Write chunks in their order; packing and compressing runs ahead in threads."""
         waiting: deque[Future[Packed]] = deque()
         with ThreadPoolExecutor(_AT_ONCE) as pool:

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from mcap import records
 
-from vines.logs._channels import CONTENT, DIGESTS, KINDS, SAMPLE, STATUS, Channel
+from vines.logs._channels import CONTENT, DIGESTS, KINDS, OURS, SAMPLE, STATUS, Channel
 from vines.logs._checked import NUMBERS, described, vouched
 from vines.logs._digests import digest_of, trusted
 from vines.logs._salvage import Piece, Salvage
@@ -53,8 +53,8 @@ class Head:
 
     @property
     def ours(self) -> bool:
-        """Whether vines wrote the log."""
-        return bool(self.digests or self.status) or any(each.name in KINDS for each in self.schemas.values())
+        """Whether vines wrote the log, and something of what it said about the log is left."""
+        return bool(self.digests or self.status) or any(name.startswith(OURS) for name in self.metadata)
 
     def written(self, topic: str) -> int | None:
         """Return how many messages the status counts on a topic, if it says so."""
@@ -76,12 +76,7 @@ def head_of(found: Salvage) -> Head:
         into.update(next((d for each in entries if each.name == name and (d := trusted(name, each.metadata))), {}))
     good = set(head.digests.values())
     _records(found, head, good)
-    # In a file that was rewritten numbers are others than those of the digests.
-    native = found.library == "vines" and all(
-        digest_of(piece.record) in good
-        for piece in found.pieces
-        if piece.checked and isinstance(piece.record, records.Channel)
-    )
+    native = _native(found, head, good)
     _descriptions(found, head, good, native)
     if native:
         _anew(found, head, good)
@@ -92,6 +87,22 @@ def head_of(found: Salvage) -> Head:
             if name.startswith(("schema ", "channel ")) and digest not in held
         ]
     return head
+
+
+def _native(found: Salvage, head: Head, good: set[str]) -> bool:
+    """Return whether numbers are those of the digests; in a file that was rewritten they are others.
+
+    The header alone does not tell, since some programs keep it.
+    """
+    channels = [(piece.record, piece.checked) for piece in found.pieces if isinstance(piece.record, records.Channel)]
+    checked = [channel for channel, is_checked in channels if is_checked]
+    if found.library != "vines" or checked:
+        return found.library == "vines" and all(digest_of(channel) in good for channel in checked)
+    schemas = {piece.record.id: piece.record for piece in found.pieces if isinstance(piece.record, records.Schema)}
+    return not any(
+        digest_of(channel) not in good and described(channel, schemas.get(channel.schema_id), good, head.contents)
+        for channel, _ in channels
+    )
 
 
 def _records(found: Salvage, head: Head, good: set[str]) -> None:
@@ -184,7 +195,7 @@ def _fits(found: Salvage, channel: Channel) -> bool:
     """Return whether every message on a channel's number is laid out as vines lays out its message."""
     layout = wire_format(channel.message)
     blank = np.frombuffer(layout.blank, np.uint8)
-    for message in found.checked:
+    for message in (*found.checked, *found.loose):
         if int.from_bytes(message[9:11], "little") == channel.number:
             raw = np.frombuffer(message, np.uint8)[31:]
             if len(raw) != len(blank) or (raw[layout.tags] != blank[layout.tags]).any():

@@ -15,7 +15,7 @@ from vines.errors import FileMissingError, LogError, SchemaError
 from vines.logs._channels import BASE, CHANNELS, Rows, as_rows
 from vines.logs._chunk import packed
 from vines.logs._file import LogFile
-from vines.logs._pack import CHUNK_BYTES
+from vines.logs._pack import CHUNK_BYTES, cut
 from vines.logs._rig import sensor_channels
 from vines.logs._write import begin
 
@@ -127,7 +127,8 @@ class LiveWriter:
         """
         if key not in self._channels:
             raise SchemaError(f"this log has no channel {key!r}; it has {', '.join(self._channels)}")
-        added = as_rows(np.atleast_1d(rows), self._channels[key], self._counts[key])
+        # A copy: what the caller does to the array afterwards must not change what is written.
+        added = as_rows(np.array(rows, ndmin=1), self._channels[key], self._counts[key])
         if not len(added):
             return
         with self._lock:
@@ -170,7 +171,7 @@ class LiveWriter:
             if not taken:
                 return False
             # In the lock: a chunk is whole in the file before the next one begins.
-            for parts in _shares(taken):
+            for parts in cut(taken):
                 self._log.chunk(packed(parts))
             self._stream.flush()
             return True
@@ -206,13 +207,3 @@ def _joined(parts: list[Rows]) -> Rows:
     first = parts[0]
     times = np.concatenate([part.times for part in parts])
     return Rows(first.channel, first.layout, times, np.concatenate([part.values for part in parts]), first.first)
-
-
-def _shares(taken: list[Rows]) -> list[list[Rows]]:
-    """Return the rows in shares of about the size of a chunk, each channel in its order."""
-    count = max(1, -(-sum(len(rows) * rows.width for rows in taken) // CHUNK_BYTES))
-    shares: list[list[Rows]] = []
-    for k in range(count):
-        parts = [rows.part(slice(len(rows) * k // count, len(rows) * (k + 1) // count)) for rows in taken]
-        shares.append([part for part in parts if len(part)])
-    return [share for share in shares if share]

@@ -10,25 +10,34 @@ from mcap.opcode import Opcode
 
 from vines.logs._channels import Rows, message_header
 
-__all__ = ["CHUNK_BYTES", "cut", "pack"]
+__all__ = ["CHUNK_BYTES", "Placed", "cut", "pack"]
 
 CHUNK_BYTES = 224 * 1024
 """Uncompressed size at which a chunk is closed: what a damaged byte, or a killed writer, can cost."""
 
 
-def cut(every: Sequence[Rows]) -> Iterator[list[Rows]]:
-    """Yield the rows of each chunk, so that chunks follow each other in time."""
-    times = np.concatenate([rows.times for rows in every])
-    number = np.repeat(np.arange(len(every), dtype=np.uint16), [len(rows) for rows in every])
-    widths = np.array([rows.width for rows in every])
-    in_time = number[np.argsort(times, kind="stable")]
-    chunk = (np.cumsum(widths[in_time]) - 1) // CHUNK_BYTES
-    chunks = int(chunk[-1]) + 1 if len(chunk) else 0
-    ends = np.searchsorted(chunk, np.arange(chunks + 1))
-    edges = [np.searchsorted(np.flatnonzero(in_time == place), ends) for place in range(len(every))]
-    for k in range(chunks):
-        parts = [rows.part(slice(int(edge[k]), int(edge[k + 1]))) for rows, edge in zip(every, edges, strict=True)]
-        yield [part for part in parts if len(part)]
+Placed = tuple[Rows, np.ndarray]
+"""Rows of a channel, and where in its chunk each of their messages begins."""
+
+
+def cut(every: Sequence[Rows]) -> Iterator[list[Placed]]:
+    """Yield the rows of each chunk, so that all messages of a log follow each other in time."""
+    widths = np.repeat([rows.width for rows in every], [len(rows) for rows in every])
+    by_time = np.argsort(np.concatenate([rows.times for rows in every]), kind="stable")
+    ends = np.empty(len(widths), np.int64)
+    ends[by_time] = np.cumsum(widths[by_time])
+    of_each = np.split(ends, np.cumsum([len(rows) for rows in every])[:-1])
+    limits = np.arange(0, (int(ends.max()) if len(ends) else 0) + CHUNK_BYTES, CHUNK_BYTES)
+    edges = [np.searchsorted(each, limits, side="right").tolist() for each in of_each]
+    for k in range(len(limits) - 1):
+        taken = [
+            (rows.part(slice(edge[k], edge[k + 1])), each[edge[k] : edge[k + 1]] - rows.width)
+            for rows, each, edge in zip(every, of_each, edges, strict=True)
+            if edge[k] < edge[k + 1]
+        ]
+        first = min((int(begin[0]) for _, begin in taken), default=0)
+        if taken:
+            yield [(rows, begin - first) for rows, begin in taken]
 
 
 def pack(rows: Rows) -> np.ndarray:

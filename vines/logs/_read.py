@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING
 from mcap import records
 
 from vines.errors import FileMissingError, LogError, LogVersionError, printable
+from vines.logs._account import UNVERIFIED
 from vines.logs._channels import (
     CHANNELS,
     KINDS,
@@ -268,6 +269,7 @@ def _log(file: Path, found: Found, verdict: _Verdict, tables: dict[int, pa.Table
         remarks.append(f"channels that vines cannot decode (it reads protobuf and JSON): {', '.join(unread)}")
     if salvaged:
         remarks.append(f"recovered; lost: {'; '.join(salvaged.get('lost', '').splitlines())}")
+        remarks += [line for line in salvaged.get("saved", "").splitlines() if line.endswith(f"are {UNVERIFIED}")]
     try:
         parameters = {key: float(text) for key, text in found.metadata.get(PARAMETERS, {}).items()}
     except ValueError as unfit:

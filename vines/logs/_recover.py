@@ -155,13 +155,13 @@ def _salvaged(file: Path, data: bytes, complaint: LogError, max_chunk: int) -> _
         raise LogError(f"{file} is not an MCAP file (it begins with {data[:8]!r}); nothing can be recovered")
     found = salvage(data, Unpacker(len(data), max_chunk))
     head = head_of(found)
-    messages = _believed(found, head)
+    messages, unverified = _believed(found, head)
     if not messages:
         if isinstance(complaint, ChunkError):
             raise complaint
         reason = "no message is intact" if head.channels else "no description of a channel is intact"
         raise LogError(f"{file}: {reason} in {len(data)} bytes, nothing can be recovered; make the run again")
-    told = account(found, head, messages, len(data))
+    told = account(found, head, messages, unverified)
     stream = BytesIO()
     note = {"from": file.name, "sha256": hashlib.sha256(data).hexdigest()}
     _write(LogFile(stream, profile=found.profile), note, head, messages, told.saved, told.lost)
@@ -175,7 +175,7 @@ def _by_channel(messages: Sequence[bytes]) -> dict[int, Messages]:
     every: defaultdict[int, Messages] = defaultdict(Messages)
     alike: defaultdict[tuple[int, int], list[int]] = defaultdict(list)
     for place, message in enumerate(messages):
-        alike[int.from_bytes(message[9:11], "little"), len(message)].append(place)
+        alike[_channel(message), len(message)].append(place)
     for (number, size), places in alike.items():
         block = np.frombuffer(b"".join(messages[place] for place in places), np.uint8).reshape(-1, size)
         every[number].blocks.append(block)
@@ -183,26 +183,35 @@ def _by_channel(messages: Sequence[bytes]) -> dict[int, Messages]:
     return every
 
 
-def _believed(found: Salvage, head: Head) -> list[bytes]:
-    """Return the messages that are described and vouched for, in the order of time.
+def _believed(found: Salvage, head: Head) -> tuple[list[bytes], int]:
+    """Return the messages that can be taken, in the order of time, and for how many of them nothing vouches.
 
-    A checksum vouches for those in chunks. Those without are taken from a file that holds no digests, and are then told
-    as unverified; from a log of vines only where the digest of the whole channel fits.
+    A checksum vouches for those in chunks, or else the digest of the whole channel. Those without either are taken from
+    a file that holds no digests, and from a log of vines only if it was cut and nothing else is wrong with it: then
+    record follows record up to the cut.
     """
-    every = [*found.checked, *found.loose]
-    if head.ours and found.loose:
-        with_loose = _by_channel(every)
-        fitting = {
-            number
-            for number, channel in head.channels.items()
-            if number in with_loose
-            and head.contents.get(channel.topic)
-            == with_loose[number].digest(channel, head.schemas.get(channel.schema_id))
-        }
-        loose = [each for each in found.loose if int.from_bytes(each[9:11], "little") in fitting]
-        every = [*found.checked, *loose]
-    described = [message for message in every if head.describes(int.from_bytes(message[9:11], "little"))]
-    return sorted(described, key=_time_and_sequence)
+    checked, loose = (
+        [message for message in group if head.describes(_channel(message))] for group in (found.checked, found.loose)
+    )
+    fitting = _fitting(head, [*checked, *loose]) if head.ours and loose else set()
+    if head.ours and not found.only_cut:
+        loose = [message for message in loose if _channel(message) in fitting]
+    unverified = sum(_channel(message) not in fitting for message in loose)
+    return sorted([*checked, *loose], key=_time_and_sequence), unverified
+
+
+def _fitting(head: Head, messages: Sequence[bytes]) -> set[int]:
+    """Return the channels whose messages are what the digest of their content says."""
+    return {
+        number
+        for number, each in _by_channel(messages).items()
+        if head.contents.get(head.channels[number].topic)
+        == each.digest(head.channels[number], head.schemas.get(head.channels[number].schema_id))
+    }
+
+
+def _channel(message: bytes) -> int:
+    return int.from_bytes(message[9:11], "little")
 
 
 def _time_and_sequence(message: bytes) -> tuple[int, int]:
@@ -221,7 +230,7 @@ def _write(
     """Write the new file: as the old one, with a record of what happened to it."""
     if head.ours:
         # First, as in every log of vines.
-        gone = {"recovered_from": note["from"], "remark": "the provenance of the run was damaged"}
+        gone = {"recovered_from": note["from"], "remark": "the provenance of the run was damaged or left out"}
         log.metadata(PROVENANCE, head.metadata.get(PROVENANCE, gone))
     for name, values in head.metadata.items():
         if name != RECOVERED and not (head.ours and name == PROVENANCE):

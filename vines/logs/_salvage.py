@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import re
 import struct
 from dataclasses import dataclass, field
@@ -53,6 +54,10 @@ class Salvage:
         First byte, byte after the last, and what was lost there.
     ended : bool
         Whether the end of the data section was found.
+    size : int
+        Bytes of the file.
+    chunks : set of bytes
+        Digests of the chunks that were taken.
     """
 
     profile: str = ""
@@ -62,6 +67,13 @@ class Salvage:
     loose: list[bytes] = field(default_factory=list)
     lost: list[tuple[int, int, str]] = field(default_factory=list)
     ended: bool = False
+    size: int = 0
+    chunks: set[bytes] = field(default_factory=set)
+
+    @property
+    def only_cut(self) -> bool:
+        """Whether a cut explains all that is wrong: up to it, record follows record from the beginning."""
+        return not self.ended and all(end == self.size for _, end, _ in self.lost)
 
 
 _KINDS = {
@@ -88,7 +100,7 @@ def salvage(data: bytes, unpacker: Unpacker) -> Salvage:
     A chunk that the unpacker refuses is lost. Damage inside a record costs that record; damage to its head costs what
     lies before the next place at which records follow each other again.
     """
-    found = Salvage()
+    found = Salvage(size=len(data))
     at = len(MCAP0_MAGIC)
     while at < len(data) and not found.ended:
         step = _record(data, at)
@@ -155,9 +167,14 @@ def _take(found: Salvage, opcode: int, body: bytes, unpacker: Unpacker) -> None:
     elif opcode in _KINDS:
         found.pieces.append(_piece(opcode, body, checked=False))
     elif opcode == Opcode.CHUNK:
+        # Copied by what damaged the file; its messages were written once.
+        digest = hashlib.sha256(body).digest()
+        if digest in found.chunks:
+            raise ValueError("it stands in the file before")
         chunk = records.Chunk.read(stream)
         inside = unpacker.unpack(chunk)
         places, described = split(inside)
+        found.chunks.add(digest)
         checked = chunk.uncompressed_crc != 0
         found.pieces += [_piece(kind, content, checked) for kind, content in described]
         starts = sorted((start, length) for (_, length), group in places.items() for start in group)

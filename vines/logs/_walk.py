@@ -18,7 +18,7 @@ from mcap.exceptions import McapError
 from mcap.opcode import Opcode
 
 from vines.errors import ChunkError, LogError
-from vines.logs._channels import STATUS
+from vines.logs._channels import OURS, STATUS
 from vines.logs._contents import Messages, gather, split
 from vines.logs._frames import data_section, frames, indexed
 from vines.logs._unpack import Unpacker
@@ -163,7 +163,7 @@ def _walk(file: Path, data: bytes, unpacker: Unpacker) -> Found:
 def _metadata(file: Path, found: Found, body: bytes, sha256: str) -> None:
     """Take a metadata record, given the SHA-256 of what stands before it."""
     entry = records.Metadata.read(ReadDataStream(BytesIO(body)))
-    if entry.name.startswith("vines.") and found.metadata.get(entry.name, entry.metadata) != entry.metadata:
+    if entry.name.startswith(OURS) and found.metadata.get(entry.name, entry.metadata) != entry.metadata:
         raise LogError(
             f"{file} holds two records {entry.name} that differ, as if logs of several runs had been merged; "
             "vines does not guess which messages belong to which, read the logs one by one"

@@ -17,8 +17,9 @@ __all__ = ["cached_rrd"]
 def cached_rrd(logs: Sequence[str | os.PathLike[str] | Log], folder: Path) -> Path:
     """Return a recording of logs from a folder, made if the logs or the layout have changed since.
 
-    A recording is named by the places of its logs and by a digest of their bytes, the modules that draw them and the
-    version of Rerun. Those of the same logs that are out of date are removed. The folder may be deleted at any time.
+    A recording is named by the places of its logs, by a digest of their bytes, the modules that draw them and the
+    version of Rerun, and by a digest of its own: one that was cut or altered is made again. Those of the same logs that
+    are out of date are removed. The folder may be deleted at any time.
 
     Parameters
     ----------
@@ -42,15 +43,22 @@ def cached_rrd(logs: Sequence[str | os.PathLike[str] | Log], folder: Path) -> Pa
     for log in logs:
         sha256 = log.sha256 if isinstance(log, Log) else hashlib.sha256(bytes_of_file(Path(log))).hexdigest()
         content.update(bytes.fromhex(sha256))
-    target = folder / f"{place}-{content.hexdigest()[:20]}.rrd"
-    if target.is_file():
-        return target
+    name = f"{place}-{content.hexdigest()[:20]}"
+    kept = [each for each in folder.glob(f"{name}-*.rrd") if each.stem.endswith(_own_digest(each))]
+    if kept:
+        return kept[0]
     folder.mkdir(parents=True, exist_ok=True)
-    save_rrd(logs, target)
+    made = save_rrd(logs, folder / f"{name}.rrd")
+    target = made.rename(folder / f"{name}-{_own_digest(made)}.rrd")
     for other in folder.glob(f"{place}-*.rrd"):
         if other != target:
             other.unlink(missing_ok=True)
     return target
+
+
+def _own_digest(recording: Path) -> str:
+    with recording.open("rb") as stream:
+        return hashlib.file_digest(stream, "sha256").hexdigest()[:20]
 
 
 def _drawing() -> str:
