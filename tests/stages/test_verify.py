@@ -258,7 +258,7 @@ def test_a_row_that_nothing_can_be_compared_with_is_passed_over(data):
     rewrite(data, "doubled_run", "points", lambda table: failed(table))
     (line,) = [
         each
-        for each in verify("quickstart", recompute=400).lines
+        for each in verify("quickstart", recompute=20).lines
         if each.name == "points" and each.group == "recomputed"
     ]
     assert line.good
