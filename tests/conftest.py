@@ -19,6 +19,15 @@ os.environ.pop("VINES_DATA", None)
 # A shell starts what runs in the background with SIGINT ignored; the commands that tests interrupt would inherit that.
 signal.signal(signal.SIGINT, signal.default_int_handler)
 
+# A file is on the disk when a write returns, for the sake of power cuts. No test makes one, and all wait for the disk;
+# that everything stored is synced is a test of the store.
+os.fsync = lambda descriptor: None
+
+# Beside others a worker has one core: what a test computes in several processes it asks for (jobs=2), and commands that
+# it starts see all cores.
+if "PYTEST_XDIST_WORKER" in os.environ and hasattr(os, "sched_getaffinity"):
+    os.sched_getaffinity = lambda process: {0}
+
 # No timed test in the suite: a busy machine must not fail a property.
 # In CI the examples are the same each time; a developer's run goes on looking for new ones.
 hypothesis.settings.register_profile("vines", deadline=None, derandomize=bool(os.environ.get("CI")))

@@ -9,6 +9,8 @@ from pathlib import Path
 
 import pytest
 
+from tests.made_once import own_copy
+
 HELPER = """
 from vines.kernels import fused_njit, linked_njit, new_vector
 
@@ -57,16 +59,30 @@ def _run(folder: Path, helper: str, kernel: str = KERNEL, program: str = PROGRAM
     return (done.stdout + done.stderr).strip()
 
 
-def test_only_what_changed_is_compiled_and_never_stale(tmp_path: Path) -> None:
-    assert _run(tmp_path, HELPER) == "32.0 ['between', 'called', 'kernel']"
-    assert _run(tmp_path, HELPER) == "32.0 []"
-    assert _run(tmp_path, HELPER.replace("@linked_njit", "# Once.\n\n@linked_njit")) == "32.0 []"
+@pytest.fixture(scope="module")
+def compiled_once(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Return a folder whose kernels are compiled; not to be changed."""
+    folder = tmp_path_factory.mktemp("compiled")
+    assert _run(folder, HELPER) == "32.0 ['between', 'called', 'kernel']"
+    return folder
+
+
+@pytest.fixture
+def compiled(compiled_once: Path, tmp_path: Path) -> Path:
+    """Return a folder of its own with the same sources and kernels, which may be changed."""
+    return own_copy(compiled_once, tmp_path)
+
+
+def test_only_what_changed_is_compiled_and_never_stale(compiled: Path) -> None:
+    # In another folder than where they were compiled, too.
+    assert _run(compiled, HELPER) == "32.0 []"
+    assert _run(compiled, HELPER.replace("@linked_njit", "# Once.\n\n@linked_njit")) == "32.0 []"
     # The callee alone: its callers hold its name.
-    assert _run(tmp_path, HELPER.replace("+ 1.0", "+ 2.0")) == "42.0 ['called']"
+    assert _run(compiled, HELPER.replace("+ 1.0", "+ 2.0")) == "42.0 ['called']"
     # A helper that is copied: both that hold a copy.
-    assert _run(tmp_path, HELPER.replace("2.0 * x", "3.0 * x")) == "43.0 ['called', 'kernel']"
+    assert _run(compiled, HELPER.replace("2.0 * x", "3.0 * x")) == "43.0 ['called', 'kernel']"
     # Back again: it is still there.
-    assert _run(tmp_path, HELPER) == "32.0 []"
+    assert _run(compiled, HELPER) == "32.0 []"
 
 
 BODIES = """
@@ -147,20 +163,10 @@ def test_a_body_by_type_compiles_again_what_was_compiled_for_its_type(tmp_path: 
     assert ask(BODIES) == "(3.0, 14.0) 1 0"
 
 
-def test_a_callee_whose_result_is_of_another_type_compiles_its_caller(tmp_path: Path) -> None:
-    assert _run(tmp_path, HELPER).startswith("32.0")
+def test_a_callee_whose_result_is_of_another_type_compiles_its_caller(compiled: Path) -> None:
     whole = HELPER.replace("return inner(x) + 1.0", "return 3 if inner(x) > 0.0 else 4")
     # The caller's own result is of the same type as before, so whoever calls that is left as it is.
-    assert _run(tmp_path, whole) == "32.0 ['between', 'called']"
-
-
-def test_the_same_sources_elsewhere_are_not_compiled_again(tmp_path: Path) -> None:
-    one, other = tmp_path / "one", tmp_path / "other"
-    one.mkdir()
-    other.mkdir()
-    cache = str(tmp_path / "cache")
-    assert _run(one, HELPER, NUMBA_CACHE_DIR=cache).endswith("['between', 'called', 'kernel']")
-    assert _run(other, HELPER, NUMBA_CACHE_DIR=cache) == "32.0 []"
+    assert _run(compiled, whole) == "32.0 ['between', 'called']"
 
 
 def test_who_waits_is_told_once_and_can_silence_it(tmp_path: Path) -> None:
@@ -178,12 +184,11 @@ def test_a_folder_that_cannot_be_written_does_no_harm(tmp_path: Path) -> None:
     assert _run(tmp_path, HELPER, NUMBA_CACHE_DIR=str(tmp_path / "file")).startswith("32.0")
 
 
-def test_a_damaged_file_is_compiled_again(tmp_path: Path) -> None:
-    _run(tmp_path, HELPER)
-    for path in [*(tmp_path / "cache").rglob("*.nbc"), *(tmp_path / "cache").rglob("*.nbi")]:
+def test_a_damaged_file_is_compiled_again(compiled: Path) -> None:
+    for path in [*(compiled / "cache").rglob("*.nbc"), *(compiled / "cache").rglob("*.nbi")]:
         path.write_bytes(path.read_bytes()[:40])
-    assert _run(tmp_path, HELPER) == "32.0 ['between', 'called', 'kernel']"
-    assert _run(tmp_path, HELPER) == "32.0 []"
+    assert _run(compiled, HELPER) == "32.0 ['between', 'called', 'kernel']"
+    assert _run(compiled, HELPER) == "32.0 []"
 
 
 @pytest.mark.parametrize("first", ["vines.dynamics, numba", "numba, vines.dynamics"])
@@ -195,10 +200,9 @@ def test_wide_vectors_are_used_where_the_processor_has_them(first: str) -> None:
     assert (wide == "True") == features.strip().endswith("-prefer-256-bit")
 
 
-def test_what_another_process_compiles_meanwhile_is_taken_over(tmp_path: Path) -> None:
+def test_what_another_process_compiles_meanwhile_is_taken_over(compiled: Path) -> None:
     """The second look into the cache, behind the lock, finds the kernel that the first look missed."""
-    _run(tmp_path, HELPER)
-    for path in (tmp_path / "cache" / "kernels" / "kernel").iterdir():
+    for path in (compiled / "cache" / "kernels" / "kernel").iterdir():
         path.unlink()
     program = """
 from vines.kernels import _cache, expected
@@ -214,4 +218,4 @@ _cache.LazyCache.load_overload = missing_at_first
 import kernel
 print(kernel.kernel(1.0))
 """
-    assert _run(tmp_path, HELPER, program=program) == "32.0"
+    assert _run(compiled, HELPER, program=program) == "32.0"

@@ -1,7 +1,6 @@
 """The laboratory of the tests in a process of its own: runs its pipeline, as the command line would."""
 
 import importlib
-import importlib.util
 import json
 import sys
 from pathlib import Path
@@ -9,9 +8,7 @@ from pathlib import Path
 if __name__ == "__main__":
     folder, options = Path(sys.argv[1]), json.loads(sys.argv[2])
     sys.path.insert(0, str(folder / "code"))
-    spec = importlib.util.spec_from_file_location("lab_of_the_tests", Path(__file__).with_name("conftest.py"))
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
+    module = importlib.import_module("lab")  # beside this script
     processes = importlib.import_module("vines.pipeline._processes")
     processes.WORTH_SECONDS = options.pop("worth", processes.WORTH_SECONDS)
     work = importlib.import_module("vines.pipeline._work")

@@ -184,11 +184,11 @@ def test_cached_digests_are_used_and_a_change_is_seen(lab):
 QUICK = """
 import sys
 from pathlib import Path
-sys.path.insert(0, sys.argv[1])
-import conftest_of_the_lab
+sys.path[:0] = [sys.argv[1], sys.argv[3]]
+from lab import Lab
 from vines.pipeline import load, plan
 from vines.store import Store
-lab = object.__new__(conftest_of_the_lab.Lab)
+lab = object.__new__(Lab)
 lab.folder = Path(sys.argv[2])
 lab.register()
 pipeline = load(lab.folder / "pipelines" / "toys.toml", root=lab.folder)
@@ -203,10 +203,6 @@ def test_a_plan_loads_no_heavy_package(lab):
 
     text = TOYS.replace("count = 5", "count = 401")
     lab.run(lab.declare(text), jobs=1)
-    conftest = Path(__file__).with_name("conftest.py").read_text()
-    (lab.package.parent / "conftest_of_the_lab.py").write_text(conftest.replace("import pytest\n", ""))
-    source = (lab.package.parent / "conftest_of_the_lab.py").read_text().partition("@pytest.fixture")[0]
-    (lab.package.parent / "conftest_of_the_lab.py").write_text(source)
-    command = [sys.executable, "-c", QUICK, str(lab.package.parent), str(lab.folder)]
+    command = [sys.executable, "-c", QUICK, str(lab.package.parent), str(lab.folder), str(Path(__file__).parent)]
     out = subprocess.run(command, capture_output=True, text=True, check=True)
     assert out.stdout == "{'up_to_date'} set()\n"

@@ -339,8 +339,7 @@ def test_a_picture_that_fails_in_another_process_fails_its_stage_alone(lab):
 def test_a_script_without_a_guard_may_use_processes(lab):
     lab.declare(PICTURES.replace("LABEL", ""))
     (lab.folder / "script.py").write_text(SCRIPT.replace('if __name__ == "__main__":', "if True:"))
-    (lab.folder / "conftest_of_the_lab.py").write_text(Path(__file__).with_name("conftest.py").read_text())
-    command = [sys.executable, "script.py", str(lab.package.parent), str(lab.folder), str(lab.folder), "2"]
+    command = [sys.executable, "script.py", lab.package.parent, Path(__file__).parent, lab.folder, "2"]
     assert subprocess.run(command, cwd=lab.folder, timeout=120, check=False).returncode == 0
     assert lab.store.pins("toys").keys() == {"up", "first", "second", "total"}
 
@@ -352,7 +351,7 @@ sys.path[:0] = [sys.argv[1], sys.argv[2]]
 if __name__ == "__main__":
     import vines.pipeline._processes as processes
     processes.WORTH_SECONDS = 0.0
-    from conftest_of_the_lab import Lab
+    from lab import Lab
     lab = object.__new__(Lab)
     lab.folder = Path(sys.argv[3])
     lab.store = importlib.import_module("vines.store").Store(lab.folder / "data")
@@ -366,8 +365,14 @@ def test_killed_in_the_middle_the_same_command_ends_with_the_same_bytes(lab, job
     form = TOYS.replace('"toy"', '"toy"\n    wait = 0.02').replace("[stages.total]", 'carry = "A"\n    [stages.total]')
     declared = lab.declare(form.replace("vary.A", "vary.mu = [0.1, 0.2]\n    vary.A"))
     (lab.folder / "script.py").write_text(SCRIPT)
-    (lab.folder / "conftest_of_the_lab.py").write_text(Path(__file__).with_name("conftest.py").read_text())
-    command = [sys.executable, "script.py", str(lab.package.parent), str(lab.folder), str(lab.folder), str(jobs)]
+    command = [
+        sys.executable,
+        "script.py",
+        str(lab.package.parent),
+        str(Path(__file__).parent),
+        str(lab.folder),
+        str(jobs),
+    ]
     for parts in (2, 4):
         process = subprocess.Popen(command, cwd=lab.folder)
         while len(list(lab.store.pools.glob("*/0*"))) < parts and process.poll() is None:

@@ -61,7 +61,7 @@ def small(tmp_path_factory):
     (root / "pipelines" / "small.toml").write_text(SMALL)
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("VINES_ROOT", str(root))
-        run("small", stages=["one_one", "two_one", "plain", "picture", "moduli"])
+        run("small", stages=["one_one", "two_one", "plain", "picture", "moduli"], jobs=2)
         yield root
 
 

@@ -199,7 +199,7 @@ def test_an_interrupted_campaign_goes_on_with_what_was_reconstructed(rehearsed, 
     before = [path.stat().st_mtime_ns for path in kept]
     (table,) = rehearsed.data.glob("results/*/reconstructions.parquet")
     bytes_before = table.read_bytes()
-    rehearsed.vines("run", "rehearsal", "reconstruct", "--force", *settings)
+    rehearsed.vines("run", "rehearsal", "reconstruct", "--force", "--jobs", "2", *settings)
     assert [path.stat().st_mtime_ns for path in kept] == before
     assert table.read_bytes() == bytes_before
 

@@ -37,7 +37,7 @@ def test_a_run_without_impacts_is_a_row_that_says_so(project):
     # The oscillator moves by two millimetres at most in four seconds, the ball is met by no end.
     make_run(project.root / "runs" / "still", STILL, 2)
     (project.root / "pipelines" / "still.toml").write_text(PIPELINE)
-    project.vines("run", "still")
+    project.vines("run", "still", "--jobs", "2")
 
     def rows(sql):
         return json.loads(project.vines("query", sql, "--format", "json").stdout)

@@ -254,19 +254,18 @@ def test_the_draw_follows_the_seed(data):
 
 
 def test_a_row_that_nothing_can_be_compared_with_is_passed_over(data):
-    rewrite(data, "up", "points", lambda table: failed(table))
+    data.unpin("quickstart", set(data.pins("quickstart")) - set(RUNS))  # few rows, so that each of them is drawn
+    rewrite(data, "doubled_run", "points", lambda table: failed(table))
     (line,) = [
         each
-        for each in verify("quickstart", recompute=400).lines
+        for each in verify("quickstart", recompute=20).lines
         if each.name == "points" and each.group == "recomputed"
     ]
     assert line.good
-    rows = sum(result_of(data, stage).manifest["tables"]["points"]["rows"] for stage in STAGES_WITH_POINTS)
-    swept = result_of(data, "up").manifest["tables"]["points"]["rows"]
-    assert (line.checked, line.skipped) == (rows - swept, swept)
+    assert (line.checked, line.skipped) == (len(RUNS) - 1, 1)
 
 
-STAGES_WITH_POINTS = ("symmetric_run", "asymmetric_run", "doubled_run", "two_one_run", "up")
+RUNS = ("symmetric_run", "asymmetric_run", "doubled_run", "two_one_run")
 
 
 def failed(table):

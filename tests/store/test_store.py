@@ -7,6 +7,7 @@ import signal
 import subprocess
 import sys
 from importlib import metadata
+from pathlib import Path
 
 import numpy as np
 import pyarrow as pa
@@ -69,6 +70,25 @@ def test_a_result_is_there_with_its_manifest_and_stays_as_it_is(tmp_path):
     assert commit(store, "k" * 64, "other").files["note.txt"].read_text() == "hello"
     assert commit(store, "k" * 64, "other", replace=True).files["note.txt"].read_text() == "other"
     assert list(store.staging_folder.iterdir()) == []
+
+
+def test_what_is_stored_is_on_the_disk_before_it_has_its_name(tmp_path, monkeypatch):
+    store, synced = Store(tmp_path / "data"), []
+
+    def fsync(descriptor):
+        path = Path(f"/proc/self/fd/{descriptor}").readlink()
+        synced.append(path.name)
+        assert path.is_dir() or path.stat().st_size, "synced before it was written"
+
+    monkeypatch.setattr(os, "fsync", fsync)
+    commit(store, "ab")
+    # its files, then its folder; the folder of results last, once its name stands there
+    assert set(synced[:-2]) >= {"note.txt", "manifest.json"}
+    assert synced[-2:] == ["result", "results"]
+    synced.clear()
+    store.pin("toys", "up", {"result": "ab"})
+    assert synced[0].startswith(".toys.pins.json.")
+    assert synced[-1] == "pipelines"
 
 
 def test_damage_is_found(tmp_path):

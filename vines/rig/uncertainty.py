@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 import numpy.typing as npt
-from scipy.stats import t as student
+from scipy.special import stdtrit
 
 from vines.rig.recording import Uncertain
 
@@ -80,7 +80,7 @@ def standard_error(series: Floats) -> float:
     total = np.concatenate([[0.0], np.cumsum(np.concatenate([away, away[:length]]))])
     blocks = total[length : length + n] - total[:n]
     variance = float(np.mean(blocks**2)) / (length * n * (1 - length / n))
-    return math.sqrt(variance) * float(student.ppf(0.975, max(1.5 * n / length, 2.0))) / _NORMAL
+    return math.sqrt(variance) * float(stdtrit(max(1.5 * n / length, 2.0), 0.975)) / _NORMAL
 
 
 def mean_over_periods(
