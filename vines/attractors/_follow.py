@@ -76,7 +76,7 @@ def follow(c, state, elapsed, watch, cap, tolerance, rows, verdict):
         length = LONGER[stage] * watch * period
         elapsed = length
         passed += LONGER[stage] * watch
-        count = open_window(own, rows)
+        count = open_window(c, own, rows)
         rows, count, code = run_window(c, own, length, cap, rows, count)
         if code != col.COMPLETE:
             verdict[v.REASON] = v.CAPPED_LATER
