@@ -19,13 +19,17 @@ from vines.dynamics.kernels import rows as col
 from vines.dynamics.runs import EVENTS_PER_PERIOD, impacts_of, start_of
 from vines.errors import StateError
 
-__all__ = ["NUDGE", "ROUNDS", "Patience", "settle", "settle_from"]
+__all__ = ["APART", "NUDGE", "ROUNDS", "Patience", "settle", "settle_from"]
 
 ROUNDS = 8
 """How often a run may be taken on because it had not arrived."""
 
 NUDGE = 1e-6
 """Change of the ball's velocity that frees a run from an unstable orbit on which it sits exactly."""
+
+
+APART = 1e-9
+"""Difference in velocity with which equal balls start."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,6 +76,7 @@ def settle(
     tolerance: float = 1e-10,
     lyapunov: bool = True,
     max_impacts_per_period: int = EVENTS_PER_PERIOD,
+    apart: float = APART,
     **start: Any,
 ) -> Attractor:
     """Run for `settle` forcing periods, record the next `record`, and say what the run has settled to.
@@ -98,6 +103,9 @@ def settle(
         Whether to give exponents; they are worked out anyhow where the regime depends on them.
     max_impacts_per_period : int
         Cap on events in one forcing period; when it is passed the regime is ``unsettled``, status ``impact_cap``.
+    apart : float
+        By how much more than the one before it each of several equal balls starts in velocity: those that hit together
+        would do so for ever, which no run does that begins beside it. 0 to leave them.
     **start : float
         Start state by the names of the system, as for `vines.dynamics.simulate`.
 
@@ -121,7 +129,10 @@ def settle(
     >>> found.regime, found.name, found.word, found.symmetric
     ('periodic', '2:1', 'LLR', False)
     """
-    begin = start_of(p, start, t, phi)
+    x1, v1, x2, v2, phase = start_of(p, start, t, phi)
+    for group in getattr(p, "alike", ()):
+        v2[np.array(group) - 1] += apart * np.arange(len(group))
+    begin = (x1, v1, x2, v2, phase)
     return _settled(p, begin, t, Patience(settle, record, patience, watch, tolerance, max_impacts_per_period), lyapunov)
 
 

@@ -155,7 +155,7 @@ class Orbit:
 
     def _after(self) -> Floats:
         """Return v1, v2 just after each impact (paper, eq. (12)), shape (N, 2)."""
-        law = room_of(self.params).law(self.params, 1)
+        law = room_of(self.params).law(self.params, np.maximum(self.word.balls, 1))
         return np.column_stack(after_impact(law, self.states[:, V1], self.states[:, V2]))
 
     def start(self) -> dict[str, float]:

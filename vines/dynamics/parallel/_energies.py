@@ -160,5 +160,7 @@ def _window_totals(c, rows, n, start, stop):
             energy = _energy(c, rows[i], low)
         _add(c, out, rows[i], begins, low, length)
         if ends >= stop or i == n - 2:
-            out[entry.ENERGY_CHANGE] = _energy(c, rows[i], length) - energy
+            # An event that ends the window belongs to it.
+            whole = i == n - 2 and ends <= stop
+            out[entry.ENERGY_CHANGE] = (_energy(c, rows[n - 1], 0.0) if whole else _energy(c, rows[i], length)) - energy
     return out

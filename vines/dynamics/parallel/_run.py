@@ -109,7 +109,7 @@ class ParallelRun(Trajectory):
 
     @cached_property
     def sticks(self) -> Table:
-        """Spells of sticking: ball, side, times of merge and release (nan if it still rides), impacts of the chatter."""
+        """Spells of sticking: ball, side, times of merge and release (nan if it rides still), impacts before."""
         found: list[tuple[int, int, float, float, int]] = []
         open_at: dict[int, int] = {}
         for row in self.rows[np.isin(self.rows[:, col.KIND], (col.STICK, col.IMPACT, col.RELEASE))]:

@@ -21,7 +21,7 @@ __all__: list[str] = []
 @directions.register(ParallelConstants)
 @njit
 def _directions(c):
-    return (0, 0) + (0,) * len(c.mu) + (0,) * len(c.mu)
+    return (0.0, 0.0) + c.mu + c.mu  # noqa: RUF005 — numba knows the length of this sum only
 
 
 @flow_basis.register(ParallelConstants)
