@@ -16,16 +16,20 @@ from vines.model import VI_NES, Word
 
 __all__ = ["attractor_from", "word_of"]
 
-_WORDS: dict[tuple[bytes, int], Word] = {}
+_WORDS: dict[tuple[bytes, int, tuple[tuple[int, ...], ...], bytes], Word] = {}
 
 
-def word_of(sides: npt.NDArray[np.int8], p: int) -> Word:
+def word_of(sides: npt.NDArray[np.int8], p: int, of: Any = None) -> Word:
     """Return the word of the contacts in one repetition of p forcing periods; each is worked out once."""
-    key = (sides.tobytes(), p)
+    alike = getattr(of, "alike", ())
+    balls = np.abs(sides) if getattr(of, "balls", 0) else 0 * sides
+    key = (sides.tobytes(), p, alike, balls.tobytes())
     word = _WORDS.get(key)
     if word is None:
-        letters = VI_NES.letters(sides)
-        word = _WORDS[key] = Word(letters if p == 1 else f"{letters}/{p}T")
+        system = VI_NES if of is None else of.system
+        letters = system.letters(sides, balls.tolist())
+        word = Word(f"{letters}/{p}T")
+        word = _WORDS[key] = word.relabelled(alike)[0] if alike else word
     return word
 
 
@@ -60,15 +64,15 @@ def attractor_from(
     measures = measures_from(p, totals)
     known = lyapunov or bool(value[v.KNOWN])
     room = room_of(p)
-    d = room.directions(p)
+    d = room.layout(p).directions
     exponents = np.full(d, math.nan)
     if known:
         exponents = verdict[v.EXPONENTS : v.EXPONENTS + d].copy()
     multipliers = None
-    if not math.isnan(value[v.MULTIPLIERS_RE]):
-        multipliers = verdict[v.MULTIPLIERS_RE :][:d] + 1j * verdict[v.MULTIPLIERS_IM :][:d]
-    x1, v1, x2, v2, phase = value[v.FINAL :][:5]
-    final = {**room.leave(p, x1, v1, x2, v2, phase), "phase": phase}
+    if not math.isnan(value[v.EXPONENTS + d]):
+        multipliers = verdict[v.EXPONENTS + d :][:d] + 1j * verdict[v.EXPONENTS + 2 * d :][:d]
+    *at, phase = value[v.FINAL :][:5]
+    final = {**room.leave(p, at, phase, value[v.EXPONENTS + 3 * d :]), "phase": phase}
     return Attractor(
         params=p,
         regime=v.REGIMES[regime],

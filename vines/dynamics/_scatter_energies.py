@@ -26,7 +26,7 @@ from vines.dynamics._scatter_constants import (
     ScatterOscillator,
 )
 from vines.dynamics._scatter_motion import HELD, INDEX, LEFT, end_of, redraw, sagging, under
-from vines.dynamics._totals import add_segment, base_at, event_loss, event_work, stored_energy
+from vines.dynamics._totals import add_segment, base_at, event_loss, event_work, stored_energy, window_totals
 from vines.kernels import (
     cold_njit,
     doubles_at,
@@ -47,7 +47,7 @@ def _base_at(c, phase):
     return c.A * np.sin(phase) + c.second * np.sin(2.0 * phase + c.second_phase)
 
 
-for _name in (event_loss, event_work, stored_energy):
+for _name in (event_loss, event_work, stored_energy, window_totals):
     _name.register(ScatterConstants)(_name.first)
 
 

@@ -1,5 +1,6 @@
 """Periodic orbits of words: solution, stability, admissibility, measures, and families of them with bifurcations."""
 
+from vines.orbits import _balls as _balls
 from vines.orbits import _capsule as _capsule
 from vines.orbits._all import Orbits, all_orbits
 from vines.orbits._branch import Bifurcation, Branch

@@ -18,7 +18,7 @@ from vines.orbits._general import ITERATIONS, proper, same
 from vines.orbits._joined import mirror_image
 from vines.orbits._orbit import Orbit
 from vines.orbits._seeds import base_word, doubled_times, harvested_times, random_times, simplex_times
-from vines.orbits._values import unit_of
+from vines.orbits._values import marks_of, unit_of
 
 __all__ = ["Orbits", "all_orbits"]
 
@@ -142,7 +142,7 @@ class _Gathered:
         self.orbits: list[Orbit] = []
         self.nearest = np.inf
         self._duration = word.p * p.period
-        self._side = np.array(word.sides, dtype=np.int64)
+        self._side = marks_of(word)
 
     def solve(self, t: Floats) -> bool:
         """Add what Newton's method finds from impact times, and say whether it converged."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from itertools import repeat
 from typing import Any
 
 import numpy as np
@@ -43,12 +44,14 @@ def harvested_times(word: Word, p: Any) -> Iterator[Floats]:
         hits = simulate(p, **start, periods=_PERIODS, max_impacts_per_period=200).impacts
         if len(hits) <= N:
             continue
-        letters = VI_NES.letters(hits["side"])
+        system = VI_NES if isinstance(p, Params) else p.system
+        letters = system.letters(hits["side"], hits["ball"].tolist() if "ball" in hits.dtype.names else repeat(0))
+        width = len(word.letters) // N
         t = np.asarray(hits["t"])
         change = np.abs(t[N:] - t[:-N] - duration)
         for name in STATE_NAMES:
             change = np.maximum(change, np.abs(hits[name][N:] - hits[name][:-N]))
-        reads = np.array([letters[k : k + N] == word.letters for k in range(len(change))])
+        reads = np.array([letters[k * width : (k + N) * width] == word.letters for k in range(len(change))])
         for k in [k for k in np.argsort(change, kind="stable") if reads[k] and change[k] < 0.5][:_BEST]:
             flights = np.diff(t[k : k + N + 1])
             # The stretch is made to close after pT exactly.
