@@ -277,7 +277,7 @@ LOGGERS: dict[str, Case] = {
         ("Zeit [µs];lo [µm];base [m/s²]\n" + rows("{t:.0f};{a};{b}", tick=1e-6)).encode("cp1252"), units=("µm", "m/s²")
     ),
     "quoted_decimal_comma": Case(
-        (HEAD + comma(rows(SEMI)).replace(";", '","').replace("\n", '"\n"').removesuffix('"').join('""')[:-1]).encode()
+        (HEAD + "".join(f'"{line}"\n'.replace(";", '","') for line in comma(rows(SEMI)).splitlines())).encode()
     ),
     "classic_mac": Case((HEAD + rows(PLAIN)).replace("\n", "\r").encode()),
     "doubled_returns": Case((HEAD + rows(PLAIN)).replace("\n", "\r\r\n").encode()),
@@ -324,7 +324,8 @@ LOGGERS: dict[str, Case] = {
     ),
     "no_last_line_end": Case((HEAD + rows("{t:.5f},{a:.5f},{b:.5f}")).rstrip("\n").encode()),
     "thousands": Case(
-        ("Time [s];lo [V]\n" + "".join(f"{k};1.234,{k:03}\n" for k in range(50))).encode(), refused="no rows of numbers; its"
+        ("Time [s];lo [V]\n" + "".join(f"{k};1.234,{k:03}\n" for k in range(50))).encode(),
+        refused="no rows of numbers; its end",
     ),
     "ragged": Case((HEAD + rows(PLAIN) + "0.24,0.1\n" + "0.241,0.1,0.2\n" * 30).encode(), refused="line 242 "),
     "head_again": Case((HEAD + rows(PLAIN) + HEAD + rows(PLAIN)).encode(), refused="line 242 is no row"),
