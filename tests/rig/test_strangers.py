@@ -1,4 +1,4 @@
-"""Files and runs of strangers that once failed, where they are at hand; made anew they stand in formats/ and ingest/."""
+"""Files and runs of strangers that once failed, where they are at hand; made anew, they are in formats/ and ingest/."""
 
 from pathlib import Path
 
