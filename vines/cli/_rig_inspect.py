@@ -18,7 +18,7 @@ import msgspec
 def command(file: Path, png: Path | None, dialect: str, as_json: bool) -> None:
     """Show what FILE holds: channels, units, rates, gaps, clipping.
 
-    Of a text it says how it was read; what it found wrongly can be stated, here to try it and in channels.tsv to keep it.
+    Of a text it says how it was read; what it finds wrongly can be stated: here to try it, in channels.tsv to keep it.
     'vines rig formats' lists what can be read.
     """
     from vines.rig import channel_facts, draw_file, spark

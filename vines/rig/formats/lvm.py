@@ -21,7 +21,8 @@ __all__ = ["FORMAT", "read"]
 _BEGINNING = b"LabVIEW Measurement"
 _END_OF_HEAD = "***End_of_Header***"
 _SPECIAL, _END_OF_SPECIAL = "***Start_Special***", "***End_Special***"
-_SEPARATORS = {"tab": "\t", "comma": ","}
+_HEAD = 40
+_EMPTY = " \t,"
 _STEP_AGREES = 1e-3
 """[samples] By which a segment may begin off the end of the one before and still go on from it."""
 
@@ -46,10 +47,9 @@ def read(path: Path) -> RawFile:
     """
     text, _ = to_utf8(path.read_bytes())
     lines = text.decode().split("\n")
-    head, place = _keys(lines, 0, "\t")
-    separator = _SEPARATORS.get((head.get("Separator") or ["tab"])[0].casefold(), "\t")
-    if separator != "\t":
-        head, place = _keys(lines, 0, separator)
+    # The line that names the separator is parted by it.
+    separator = "," if any(line.startswith("Separator,") for line in lines[:_HEAD]) else "\t"
+    head, place = _keys(lines, 0, separator)
     decimal = (head.get("Decimal_Separator") or ["."])[0] or "."
     columns = (head.get("X_Columns") or ["One"])[0]
     channels: list[RawChannel] = []
@@ -76,7 +76,7 @@ def _segments(lines: Sequence[str], place: int, separator: str) -> list[_Segment
     """Return the segments behind the head of the file."""
     found = []
     while True:
-        while place < len(lines) and not lines[place].strip():
+        while place < len(lines) and not lines[place].strip(_EMPTY):
             place += 1
         if place >= len(lines):
             break
@@ -91,7 +91,7 @@ def _segments(lines: Sequence[str], place: int, separator: str) -> list[_Segment
         first = place + 1
         place = first
         # A row begins with its time, or with nothing where times are not kept; words begin the next head.
-        while place < len(lines) and lines[place].strip() and not lines[place][:1].isalpha():
+        while place < len(lines) and lines[place].strip(_EMPTY) and not lines[place][:1].isalpha():
             place += 1
         found.append(_Segment(keys, names, lines[first:place], first))
     if not any(segment.rows for segment in found):

@@ -13,7 +13,8 @@ _NUMBER = {
     mark: re.compile(rf"[+-]?(?:\d+{re.escape(mark)}?\d*|{re.escape(mark)}\d+)(?:[eE][+-]?\d+)?") for mark in ".,"
 }
 _LOST = re.compile(
-    r"nan|na|n/a|null|none|[+-]?inf(?:inity)?|[-+*#?]+|ol|over\w*|[+-]?1\.#\w+|#n/a|#num!|burn ?out|invalid|no data",
+    r"nan|na|[-+]?∞|n/a|null|none|[+-]?inf(?:inity)?|[-+*#?]+|ol|over\w*|[+-]?1\.#\w+|#n/a|#num!|burn ?out|invalid"
+    r"|no data",
     re.IGNORECASE,
 )
 """What loggers write for a sample that they don't have."""
@@ -69,7 +70,10 @@ def _kind(cell: str, decimal: str) -> str:
         return "stamp" if found["h"] or found["f"] else "text"
     if _LOST.fullmatch(cell):
         return "lost"
-    return "date" if _DATE.fullmatch(cell) else "text"
+    if _DATE.fullmatch(cell):
+        return "date"
+    # Digits among other signs are what numbers look like that were parted wrongly.
+    return "text" if any(map(str.isdigit, cell)) else "word"
 
 
 def kinds_of(rows: Sequence[Sequence[str]], decimal: str) -> list[str]:
@@ -77,8 +81,9 @@ def kinds_of(rows: Sequence[Sequence[str]], decimal: str) -> list[str]:
     kinds = []
     for column in zip(*rows, strict=True):
         counts = Counter(_kind(cell, decimal) for cell in column)
-        said = counts["number"] + counts["stamp"] + counts["date"] + counts["text"]
-        most = max(("number", "stamp", "date", "text"), key=lambda kind: counts[kind])
+        meanings = ("number", "stamp", "date", "text", "word")
+        said = sum(counts[kind] for kind in meanings)
+        most = max(meanings, key=lambda kind: counts[kind])
         kinds.append(most if said else "number" if counts["lost"] else "empty")
     return kinds
 
@@ -94,4 +99,6 @@ def conforms(cells: Sequence[str], kinds: Sequence[str], decimal: str) -> bool:
             if found not in (kind, "lost", "empty"):
                 return False
             numbers += found == kind
+        elif kind == "empty" and cell:
+            return False
     return numbers > 0

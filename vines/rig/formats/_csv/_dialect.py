@@ -6,6 +6,7 @@ from dataclasses import asdict, dataclass, fields
 from typing import Any
 
 from vines.errors import RigError, nearest
+from vines.rig.units import si_factor
 
 __all__ = ["DECIMALS", "SEPARATORS", "Dialect", "stated_dialect"]
 
@@ -75,6 +76,8 @@ def stated_dialect(text: str) -> dict[str, Any]:
             if not value.isdecimal():
                 raise RigError(f"dialect {part!r}: {key} is the number of a line or column, 0 for none")
             found[key] = int(value)
+        elif key == "time_unit" and value not in ("stamp", "unknown") and si_factor(value)[0] != "time":
+            raise RigError(f"dialect {part!r}: it is no unit of time, such as s, ms, us, min; or write stamp")
         else:
             found[key] = value
     return found

@@ -44,16 +44,18 @@ def to_utf8(data: bytes, stated: str = "") -> tuple[bytes, str]:
     """
     mark, marked = next(((mark, name) for mark, name in _MARKS if data.startswith(mark)), (b"", ""))
     data = data[len(mark) :]
-    name = stated or marked or _wide(data[:4096])
+    # A mark says which of the two orders of bytes a stated utf-16 is.
+    name = marked if stated.casefold() in ("utf-16", "utf16", "utf-32", "utf32") else ""
+    name = name or stated or marked or _wide(data[:4096])
     if name.startswith("utf-16"):
         # A recorder that was switched off may have written half a character.
         data = data[: len(data) // 2 * 2]
     if not name:
         if b"\0" in data[:65536]:
             raise RigError("it is no text: it holds zero bytes")
-        name = "utf-8" if _fits(data, "utf-8") else _WINDOWS
+        name = "utf-8" if _is_utf8(data) else _WINDOWS
     try:
-        text = data if name == "utf-8" and _fits(data, name) else data.decode(name).encode()
+        text = data if name == "utf-8" and _is_utf8(data) else data.decode(name).encode()
     except LookupError:
         raise RigError(f"encoding {name!r} is not known, such as utf-8, utf-16, cp1252, shift_jis") from None
     except UnicodeError:
@@ -77,9 +79,11 @@ def _wide(head: bytes) -> str:
     return ""
 
 
-def _fits(data: bytes, name: str) -> bool:
+def _is_utf8(data: bytes) -> bool:
+    if data.isascii():
+        return True
     try:
-        data.decode(name)
+        data.decode()
     except UnicodeDecodeError:
         return False
     return True

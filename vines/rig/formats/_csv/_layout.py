@@ -13,13 +13,34 @@ from vines.rig.formats._csv._dialect import DECIMALS, SEPARATORS
 from vines.rig.formats._csv._head import Name, head_cells, read_name, units_row
 from vines.rig.formats._csv._lines import COMMENTS, Lines
 
-__all__ = ["Layout", "find_layout"]
+__all__ = ["COUNTS", "Layout", "find_layout"]
 
 _SHORTEST = 2
 _ROWS_IN_A_HEAD = 3
 """So many lines that look like samples above one that does not: it is damage among samples, not the end of a head."""
-_NEAR = 4
-"""Lines above the samples, blank ones left out, among which head and units stand."""
+_NAMES = ("tracename", "trace name", "channel name", "signal name", "name", "channel", "ch")
+_UNITS = ("vunit", "unit", "units")
+"""Labels of rows of names and of units, where the first column is one of labels, as Yokogawa writes them."""
+COUNTS = frozenset(
+    {
+        "no",
+        "no.",
+        "number",
+        "nr",
+        "nr.",
+        "index",
+        "#",
+        "sample",
+        "samples",
+        "scan",
+        "reading",
+        "point",
+        "n",
+        "idx",
+        "record",
+    }
+)
+"""What columns are called that number the rows."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,7 +54,7 @@ class Layout:
     head, units, data : int
         Lines, counted from 1; 0 for none.
     kinds : tuple of str
-        What each column is: number, stamp, date, text, empty.
+        What each column is: number, stamp, date, word, text with digits, empty.
     names : tuple of Name
         What each is called: by its number where there is no head.
     trailing : bool
@@ -77,6 +98,7 @@ def find_layout(lines: Lines, stated: Mapping[str, Any]) -> Layout:
             # Dates hold blanks: who parts cells by another sign does not part them by blanks.
             continue
         read = [(kinds, decimal) for decimal in decimals if (kinds := _kinds(lines.last, separator, decimal))]
+        read = [(kinds, decimal) for kinds, decimal in read if _score(kinds) >= 0]
         if not read:
             continue
         # Of whole numbers both signs make the same: the point, which comes first.
@@ -118,45 +140,79 @@ def _kinds(rows: Sequence[str], separator: str, decimal: str) -> tuple[str, ...]
 
 
 def _score(kinds: Sequence[str]) -> int:
-    """Return how well signs part rows: columns of numbers and times count; one of words shows that they don't."""
+    """Return how well signs part rows: columns of numbers and times count; other digits show that they don't."""
     return sum(kind in ("number", "stamp") for kind in kinds) - 2 * kinds.count("text")
 
 
 def _placed(lines: Lines, separator: str, decimal: str, kinds: tuple[str, ...], stated: Mapping[str, Any]) -> Layout:
     """Return the layout with these signs."""
     data = stated.get("data") or _first_row(lines, separator, decimal, kinds)
-    if "head" in stated or "units" in stated:
-        near = [stated[key] for key in ("units", "head") if stated.get(key)]
-        if any(place > len(lines.first) for place in near):
-            raise RigError(f"line {max(near)} is stated to be of the head, but the text is shorter")
-    else:
-        near = [k for k in range(data - 1, 0, -1) if lines.first[k - 1].strip()][:_NEAR]
-    found = [(place, *_head(lines.first[place - 1], separator, kinds)) for place in near]
-    rows = [(place, cells) for place, cells, _ in found if cells is not None]
-    if near and (not rows or rows[0][0] != near[0]):
-        names = found[0][2]
-        if stated.get("head") or names > 1:
-            raise RigError(
-                f"line {near[0]} has {names} names, but rows have {len(kinds)} fields: "
-                f"{_short(lines.first[near[0] - 1])}"
-            )
-        rows = []
-    units = stated.get("units", 0)
-    if rows and not units and "head" not in stated and units_row(rows[0][1]):
-        units = rows[0][0]
-    unit_cells = next((cells for place, cells in rows if place == units), [])
-    head, name_cells = next(((place, cells) for place, cells in rows[:2] if place != units), (0, []))
+    head, units = (_Row(), _Row()) if data == 1 else _named_rows(lines, data, separator, decimal, kinds, stated)
     numbers = [str(k + 1) for k in range(len(kinds))]
     names = [
         read_name(cell) if cell else Name(number, None, False)
-        for number, cell in zip(numbers, name_cells or numbers, strict=False)
+        for number, cell in zip(numbers, head.cells or numbers, strict=False)
     ]
     names += [Name(number, None, False) for number in numbers[len(names) :]]
-    for k, cell in enumerate(unit_cells):
-        if cell.strip('"-[]() '):
+    for k, cell in enumerate(units.cells):
+        if kinds[k] == "number" and cell.strip('"-[]() ') and cell.casefold() not in COUNTS:
             names[k] = Name(names[k].name, cell.strip('"[]()<> '), names[k].time)
-    trailing = kinds[-1] == "empty" and 0 < len(name_cells) < len(kinds)
-    return Layout(separator, decimal, head, units, data, kinds, tuple(names), trailing)
+    trailing = kinds[-1] == "empty" and 0 < len(head.cells) < len(kinds)
+    return Layout(separator, decimal, head.line, units.line, data, kinds, tuple(names), trailing)
+
+
+@dataclass(frozen=True, slots=True)
+class _Row:
+    """A line above the samples and its cells; none of both if there is none."""
+
+    line: int = 0
+    cells: tuple[str, ...] = ()
+
+
+def _named_rows(
+    lines: Lines, data: int, separator: str, decimal: str, kinds: Sequence[str], stated: Mapping[str, Any]
+) -> tuple[_Row, _Row]:
+    """Return the rows of names and of units."""
+    if "head" in stated or "units" in stated:
+        places = [stated.get("head", 0), stated.get("units", 0)]
+        if max(places) > len(lines.first):
+            raise RigError(f"line {max(places)} is stated to be of the head, but the text is shorter")
+        found = []
+        for place in places:
+            cells, names = _head(lines.first[place - 1], separator, kinds) if place else ([], 0)
+            if cells is None:
+                raise RigError(_unequal(lines, place, names, kinds))
+            found.append(_Row(place, tuple(cells)))
+        return found[0], found[1]
+    near = [k for k in range(data - 1, 0, -1) if lines.first[k - 1].strip()]
+    if kinds[0] == "empty":
+        # The first column holds labels, each of a row of the head.
+        rows = [(k, _head(lines.first[k - 1], separator, kinds)[0]) for k in near]
+        labelled = {cells[0].casefold(): _Row(k, ("", *cells[1:])) for k, cells in rows if cells}
+        names = next((labelled[label] for label in _NAMES if label in labelled), None)
+        if names is not None:
+            return names, next((labelled[label] for label in _UNITS if label in labelled), _Row())
+    rows = [(k, *_head(lines.first[k - 1], separator, kinds)) for k in near[:2]]
+    if not rows:
+        return _Row(), _Row()
+    place, cells, names = rows[0]
+    if cells is None:
+        if names > 1:
+            raise RigError(_unequal(lines, place, names, kinds))
+        return _Row(), _Row()
+    counted = [cell for cell, kind in zip(cells, kinds, strict=False) if kind in ("number", "stamp")]
+    if all(is_number(cell, decimal) for cell in counted):
+        raise RigError(f"line {place} is no row like those below it, and no head: {_short(lines.first[place - 1])}")
+    if units_row([cell for cell, kind in zip(cells, kinds, strict=False) if kind == "number"]):
+        above = rows[1] if len(rows) > 1 else None
+        named = _Row(above[0], tuple(above[1])) if above is not None and above[1] is not None else _Row()
+        return named, _Row(place, tuple(cells))
+    return _Row(place, tuple(cells)), _Row()
+
+
+def _unequal(lines: Lines, place: int, names: int, kinds: Sequence[str]) -> str:
+    line = _short(lines.first[place - 1])
+    return f"line {place} has {names} names, but rows have {len(kinds)} fields: {line}"
 
 
 def _head(line: str, separator: str, kinds: Sequence[str]) -> tuple[list[str] | None, int]:

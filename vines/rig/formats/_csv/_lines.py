@@ -44,6 +44,8 @@ def whole_lines(text: bytes) -> tuple[bytes, str]:
     >>> whole_lines(b"0.0,1.25\n0.1,1.5"), whole_lines(b"0.0,1.25\n0.1,1.50"), whole_lines(b"0,1\n1")
     ((b'0.0,1.25\n', '0.1,1.5'), (b'0.0,1.25\n0.1,1.50\n', ''), (b'0,1\n', '1'))
     """
+    if text.endswith(b"\n"):
+        return text, ""
     body, end, last = text.rpartition(b"\n")
     if not last.strip():
         return body + end, ""
@@ -63,8 +65,15 @@ def take_lines(text: bytes) -> Lines:
     >>> take_lines(b"# a note\nt,x\n\n0,1\n")
     Lines(first=('# a note', 't,x', '', '0,1'), last=('t,x', '0,1'))
     """
-    body = text.removesuffix(b"\n")
+    # A long text is not copied for the sake of its first lines.
+    place = 0
+    for _ in range(_BEGINNING):
+        end = text.find(b"\n", place)
+        if end < 0:
+            break
+        place = end + 1
+    first = text[:place].removesuffix(b"\n").split(b"\n")
     # The piece at the end may begin within a line.
-    end = body[-_END_BYTES:].split(b"\n")[len(body) > _END_BYTES :]
-    last = [line.decode() for line in end if line.strip() and not line.lstrip().startswith(_BEGINS)]
-    return Lines(tuple(line.decode() for line in body.split(b"\n", _BEGINNING)[:_BEGINNING]), tuple(last[-_END:]))
+    tail = text[-_END_BYTES:].split(b"\n")[len(text) > _END_BYTES :]
+    last = [line.decode() for line in tail if line.strip() and not line.lstrip().startswith(_BEGINS)]
+    return Lines(tuple(line.decode() for line in first), tuple(last[-_END:]))

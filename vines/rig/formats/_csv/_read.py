@@ -14,7 +14,7 @@ from vines.rig.formats._csv._head import read_notes
 from vines.rig.formats._csv._layout import Layout, find_layout
 from vines.rig.formats._csv._lines import take_lines, whole_lines
 from vines.rig.formats._csv._table import numbers, read_rows
-from vines.rig.formats._csv._times import COUNTS, TimeColumn, time_columns, times_of
+from vines.rig.formats._csv._times import TimeColumn, counts_rows, time_columns, times_of
 from vines.rig.formats._raw import RawChannel, RawFile
 
 __all__ = ["read"]
@@ -105,7 +105,7 @@ def _counts(table: object, layout: Layout, labels: list[str], places: list[int])
     """Return where a column that numbers the rows shows that some are missing."""
     said = []
     for k in places:
-        if layout.kinds[k] == "number" and layout.names[k].name.casefold() in COUNTS:
+        if layout.kinds[k] == "number" and counts_rows(layout, k):
             values, _ = numbers(table.column(k), layout.decimal)  # type: ignore[attr-defined]
             odd = np.flatnonzero(np.diff(values) != 1)
             if len(odd):

@@ -11,6 +11,7 @@ import numpy.typing as npt
 from vines.errors import RigError
 from vines.rig.formats._csv._cells import STAMP, split_line
 from vines.rig.formats._csv._layout import Layout
+from vines.rig.formats._csv._lines import COMMENTS
 
 __all__ = ["day_seconds", "numbers", "read_rows"]
 
@@ -36,10 +37,12 @@ def read_rows(text: bytes, layout: Layout) -> tuple[Any, int]:
     place = 0
     for _ in range(layout.data - 1):
         place = text.index(b"\n", place) + 1
-    body, comments = (
-        _COMMENT.subn(b"", text[place:]) if any(sign in text for sign in (b"#", b"%", b"//")) else (text[place:], 0)
-    )
-    if b"\n " in body:
+    comments = 0
+    # A long text is copied only where something is to be taken out.
+    body: bytes | memoryview = memoryview(text)[place:]
+    if any(text.find(mark.encode(), place) >= 0 for mark in COMMENTS):
+        body, comments = _COMMENT.subn(b"", body)
+    if text.find(b"\n ", place) >= 0:
         body = _BLANK.sub(b"", body)
     if layout.separator == " ":
         body = re.sub(rb"(?m)^ | $", b"", re.sub(rb"[ \t]+", b" ", body))
@@ -50,7 +53,7 @@ def read_rows(text: bytes, layout: Layout) -> tuple[Any, int]:
     while True:
         try:
             table = pc.read_csv(
-                pa.BufferReader(body),
+                pa.BufferReader(pa.py_buffer(body)),
                 read_options=pc.ReadOptions(column_names=names),
                 parse_options=pc.ParseOptions(delimiter=layout.separator or _NO_SEPARATOR),
                 convert_options=pc.ConvertOptions(

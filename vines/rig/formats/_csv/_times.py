@@ -11,14 +11,11 @@ import numpy.typing as npt
 
 from vines.errors import RigError
 from vines.rig.formats._csv._head import Name, is_unit
-from vines.rig.formats._csv._layout import Layout
+from vines.rig.formats._csv._layout import COUNTS, Layout
 from vines.rig.formats._csv._table import day_seconds, numbers
 from vines.rig.units import si_factor
 
-__all__ = ["COUNTS", "TimeColumn", "time_columns", "times_of"]
-
-COUNTS = {"no", "no.", "number", "nr", "nr.", "index", "#", "sample", "samples", "scan", "point", "n", "idx", "record"}
-"""What columns are called that number the rows."""
+__all__ = ["TimeColumn", "counts_rows", "time_columns", "times_of"]
 
 _EPOCH = 1e8
 """[s] Times that begin later than this are counted from 1904, 1970 or the like."""
@@ -70,17 +67,29 @@ def time_columns(layout: Layout, stated: int | None) -> dict[int, list[int]]:
     used = False
     for k in every:
         name, kind = layout.names[k], layout.kinds[k]
-        if stated is not None:
-            if k == stated - 1:
-                group = first = [k]
-            elif kind == "number":
-                found[k] = group
-        elif _is_time(name, kind, between=used):
+        if stated is None and _is_time(name, kind, between=used):
             group = [k] if used else [*group, k]
             first, used = first or group, False
-        elif kind == "number" and not (name.name.casefold() in COUNTS and not used and name.unit is None):
+        elif k == (stated or 0) - 1:
+            group = first = [k]
+        elif k == stated and layout.kinds[k - 1] == "stamp" and _is_time(name, kind, between=False):
+            # Milliseconds of the stamps.
+            group = first = [k - 1, k]
+        elif kind == "number" and (used or not counts_rows(layout, k)):
             found[k], used = group, True
     return {k: own or first for k, own in found.items()}
+
+
+def counts_rows(layout: Layout, k: int) -> bool:
+    """Say whether a column numbers the rows: it is called so, or it is the first and alone without a name."""
+    name = layout.names[k]
+    alone = (
+        k == 0
+        and layout.head > 0
+        and name.name == "1"
+        and all(each.name != str(j + 1) for j, each in enumerate(layout.names[1:], 1))
+    )
+    return name.unit is None and (name.name.casefold() in COUNTS or alone)
 
 
 def _is_time(name: Name, kind: str, *, between: bool) -> bool:
@@ -99,7 +108,7 @@ def times_of(
     RigError
         If a time is missing.
     """
-    units = {k: stated_unit or _unit(layout, k, noted_unit) for k in places}
+    units = {k: _unit(layout, k, stated_unit, noted_unit) for k in places}
     read: dict[int, Callable[[], npt.NDArray[np.float64]]] = {
         k: (lambda k=k: day_seconds(table.column(k)))
         if units[k] == "stamp"
@@ -125,10 +134,12 @@ def times_of(
     return TimeColumn(best + 1, unit, times - (times[0] if abs(times[0]) > _EPOCH else 0.0), 1.0), []
 
 
-def _unit(layout: Layout, k: int, noted: str) -> str:
-    """Return the unit of a column of times as its head says, or else the text above."""
+def _unit(layout: Layout, k: int, stated: str, noted: str) -> str:
+    """Return the unit of a column of times as it is stated, as its head says, or else the text above."""
     if layout.kinds[k] == "stamp":
         return "stamp"
+    if stated and stated != "stamp":
+        return stated
     unit = layout.names[k].unit
     if unit is not None and is_unit(unit) and si_factor(unit)[0] == "time":
         return unit
