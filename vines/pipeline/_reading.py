@@ -139,7 +139,7 @@ def _stage(name: str, table: dict[str, Any], spec: Kind, common: dict[str, Any],
         form = spec.options_of(table)
     except VinesError as error:
         raise type(error)(f"{where}: {error}") from None
-    general = [key for key in GENERAL if _allows(spec, key)]
+    general = _general(spec)
     own_keys = filter(None, (spec.variant, *option_names(form)))
     known(table, [*general, *own_keys], where)
     # a kind may have an option of its own under a general key that it does not take, as basins have refine
@@ -175,10 +175,12 @@ def _kind(table: object, where: str) -> Kind:
         raise DeclarationError(text if text.startswith(where) else f"{where}.kind: {text}") from None
 
 
-def _allows(spec: Kind, key: str) -> bool:
+def _general(spec: Kind) -> list[str]:
+    """Return the general keys that a kind allows."""
     grid = spec.vary == "grid"
     allowed = {"carry": spec.carry, "needs": spec.needs, "vary": spec.vary != "none", "params": bool(spec.parameters)}
-    return {**allowed, "zip": grid, "refine": grid}.get(key, True)
+    allowed |= {"zip": grid, "refine": grid}
+    return [key for key in GENERAL if allowed.get(key, True)]
 
 
 def _axes(form: object, spec: Kind, where: str, zipped: Iterable[str]) -> tuple[Axis, ...]:
