@@ -5,6 +5,7 @@ Every room may import this module; it imports nothing but the standard library a
 
 from __future__ import annotations
 
+import functools
 import os
 from pathlib import Path
 
@@ -85,6 +86,7 @@ def cache_folder() -> Path:
     return Path(base) / "vines"
 
 
+@functools.cache
 def shipped(name: str) -> Path:
     """Return what ships with vines: the folders ``schemas`` and ``pipelines``, the files ``LICENSE``, ``CITATION.cff``.
 

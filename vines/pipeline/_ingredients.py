@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import hashlib
-import json
 from collections.abc import Mapping
 from dataclasses import dataclass
 from fractions import Fraction
@@ -17,7 +16,7 @@ from vines.errors import FileMissingError
 from vines.pipeline._code import CodeDigests
 from vines.pipeline._declaration import Stage
 from vines.places import shipped
-from vines.store import canonical, key_of
+from vines.store import key_of
 
 __all__ = ["Ingredients", "gather", "what_changed"]
 
@@ -99,8 +98,8 @@ def gather(stage: Stage, inputs: Mapping[str, str], origin: str, code: CodeDiges
     )
     form = {
         "kind": spec.name,
-        # through JSON, so that it compares equal to what a pin says
-        "options": json.loads(canonical(msgspec.to_builtins(stage.options))),
+        # as JSON gives it back, so that it compares equal to what a pin says
+        "options": msgspec.json.decode(msgspec.json.encode(stage.options)),
         "params": stage.params,
         "vary": [axis.canonical() for axis in stage.axes],
         "carry": carry,

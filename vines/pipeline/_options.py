@@ -77,14 +77,18 @@ def _fields(form: type[msgspec.Struct]) -> tuple[msgspec.structs.FieldInfo, ...]
     return msgspec.structs.fields(form)
 
 
+@functools.cache
+def _tables(form: type[msgspec.Struct]) -> tuple[tuple[str, type[msgspec.Struct]], ...]:
+    """Return the options that are tables or lists of tables, and the form of these."""
+    inner = ((field.encode_name, next(_inside(field.type, msgspec.Struct), None)) for field in _fields(form))
+    return tuple((name, each) for name, each in inner if each is not None)
+
+
 def _known_inside(table: Mapping[str, Any], form: type[msgspec.Struct], where: str) -> None:
     """See that tables inside a stage, such as its start state, or in a list there, have no unknown key either."""
-    for field in _fields(form):
-        value = table.get(field.encode_name)
-        inner = next(_inside(field.type, msgspec.Struct), None)
-        if inner is None:
-            continue
-        place = f"{where}.{field.encode_name}"
+    for name, inner in _tables(form):
+        value = table.get(name)
+        place = f"{where}.{name}"
         tables = enumerate(value) if isinstance(value, list) else [(None, value)]
         for number, each in tables:
             if isinstance(each, dict):

@@ -169,8 +169,8 @@ class Planner:
 
     def _points(self, prepared: Prepared) -> tuple[str, int, int, int]:
         grid = prepared.grid
-        pool = self.store.pool(prepared.pool_key)
-        if not pool.names():  # the ids, and numpy for them, are only needed where something is there
+        # the key of the pool, the ids, and numpy for them, are only needed where something is there
+        if not self.store.has_pools() or not (pool := self.store.pool(prepared.pool_key)).names():
             return prepared.request, len(grid), 0, 0
         located = pool.locate(grid.ids)
         prepared.damaged = pool.damaged

@@ -143,7 +143,7 @@ def _stage(name: str, table: dict[str, Any], spec: Kind, common: Given, path: Pa
         form = spec.options_of(table)
     except VinesError as error:
         raise type(error)(f"{where}: {error}") from None
-    general = [key for key in GENERAL if _allows(spec, key)]
+    general = _general(spec)
     own_keys = filter(None, (spec.variant, *option_names(form)))
     known(table, [*general, *own_keys], where)
     # a kind may have an option of its own under a general key that it does not take, as basins have refine
@@ -191,11 +191,12 @@ def _kind(table: object, common: Given, system: str, where: str) -> Kind:
         raise type(error)(f"{where}: {error}") from None
 
 
-def _allows(spec: Kind, key: str) -> bool:
+def _general(spec: Kind) -> list[str]:
+    """Return the general keys that a kind allows."""
     grid = spec.vary == "grid"
     allowed = {"carry": spec.carry, "needs": spec.needs, "vary": spec.vary != "none", "zip": grid, "refine": grid}
-    of_parameters = dict.fromkeys(("link", "params", "physical", "system"), bool(spec.parameters))
-    return {**allowed, **of_parameters}.get(key, True)
+    allowed |= dict.fromkeys(("link", "params", "physical", "system"), bool(spec.parameters))
+    return [key for key in GENERAL if allowed.get(key, True)]
 
 
 def _axes(form: object, spec: Kind, where: str, zipped: Iterable[str]) -> tuple[Axis, ...]:

@@ -193,6 +193,10 @@ class Store:
         there = self.result(key)
         return there.manifest["files"] == files and not there.damage()
 
+    def has_pools(self) -> bool:
+        """Whether any point was ever stored."""
+        return self.pools.is_dir()
+
     def pool(self, key: str) -> Pool:
         """Return the pool of a key; it need not exist yet."""
         from vines.store._pools import Pool

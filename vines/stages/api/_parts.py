@@ -118,7 +118,7 @@ def load_parts(
 def _check_name(path: Path, root: Path) -> None:
     """Refuse a file that would take the name, and so the results, of a pipeline that the project has."""
     known = file_of(path.stem, root)
-    if known is not None and known.resolve() != path.resolve():
+    if known is not None and known != path and known.resolve() != path.resolve():
         raise DeclarationError(f"{path}: the pipeline {path.stem!r} is declared in {known} already; rename this file")
 
 

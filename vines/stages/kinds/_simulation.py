@@ -35,12 +35,9 @@ def check_simulation(params: dict[str, float], options: Any) -> None:
         )
 
 
-def check_length(options: msgspec.Struct) -> None:
+def check_length(options: Any) -> None:
     """Refuse runs of years, and random starts that take years together."""
-    values: dict[str, Any] = msgspec.structs.asdict(options)
-    runs = {name: values[name] for name in ("settle", "record", "watch", "patience") if name in values}
-    for name, periods in runs.items():
-        check_periods(name, periods)
-    starts = values.get("random", 0)
-    if starts:
-        check_periods("(settle + record) (1 + random)", (runs["settle"] + runs["record"]) * (1 + starts))
+    for name in ("settle", "record", "watch", "patience"):
+        check_periods(name, getattr(options, name, 0))
+    if starts := getattr(options, "random", 0):
+        check_periods("(settle + record) (1 + random)", (options.settle + options.record) * (1 + starts))
