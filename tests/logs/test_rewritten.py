@@ -368,3 +368,28 @@ def test_cut_file_without_metadata_stays_one_of_which_nobody_knows_the_run(small
     assert (back.kind, back.status, back.provenance) == ("foreign", "unknown", {})
     assert [len(table) for table in back.others.values()] == [60, 60]
     assert "several channels hold the same kind of message" in back.remarks[0]
+
+
+@pytest.mark.parametrize("name", [b"vines.content", b"/stick\x01"])
+def test_hurt_record_of_a_log_without_checksums_is_damage_and_not_an_older_log(name, log, tmp_path):
+    """Neither the digests of the content nor the topics that the status counts may be others than those written."""
+    data = bytearray(rewritten(log.read_bytes(), crcs=False, chunking=False))
+    place = data.index(b"vines.status") + data[data.index(b"vines.status") :].index(b"/stick") + 1
+    at = data.index(name) + len(name) + 60 if name == b"vines.content" else place
+    data[at] ^= 1
+    file = tmp_path / "hurt.mcap"
+    file.write_bytes(data)
+    with pytest.raises(LogError, match="damaged: its SHA-256 does not fit, and"):
+        logs.read(file)
+
+
+def test_rewriter_that_keeps_the_name_of_vines_gets_no_description_made_anew(small, log, tmp_path):
+    """The number of a channel is that of the file, also where its header says that vines wrote it."""
+    data = rewritten(log.read_bytes(), library="vines", chunking=False, first=["/tf", "/curves", "/impact", "/state"])
+    file = tmp_path / "kept.mcap"
+    file.write_bytes(data[: len(data) // 2])
+    back = recovered(file)
+    assert back.states.num_rows > 10
+    for key in TIMES:
+        table = getattr(back, key)
+        same(table, small[key][: table.num_rows])

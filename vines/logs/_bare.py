@@ -183,12 +183,10 @@ def _words(impacts: np.ndarray, sticks: np.ndarray) -> list[Rows]:
     """Return a line an impact and a line a stick."""
     with np.errstate(invalid="ignore"):  # infinite velocities are kept, and shown as nan here
         after = impacts["v1_after"] - impacts["v2_after"]
+    told = (impacts[name].tolist() for name in ("t", "index", "w_dot"))
     lines = [
-        (
-            float(row["t"]),
-            f"{VI_NES.letters([row['side']])} impact {row['index']}   w' {row['w_dot']:+.4f} -> {left:+.4f}",
-        )
-        for row, left in zip(impacts, after, strict=True)
+        (t, f"{letter} impact {index}   w' {before:+.4f} -> {left:+.4f}")
+        for letter, t, index, before, left in zip(VI_NES.letters(impacts["side"]), *told, after.tolist(), strict=True)
     ]
     for row in sticks:
         text = (

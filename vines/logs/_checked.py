@@ -81,7 +81,10 @@ def rewritten(file: Path, found: Found) -> Rewritten:
     missing = [name for name in trusted(DIGESTS, found.metadata[DIGESTS]) if _is_record(name) and not _has(found, name)]
     lines = [f"its record {name} is missing" for name in missing]
     ours: set[int] = set()
-    for topic, written in written_counts(found).items():
+    counts = written_counts(found)
+    if contents and set(counts) != {topic for topic in contents if f"description of {topic}" in contents}:
+        raise LogError(f"{unfit} its status counts other channels than those that were written; {AGAIN}")
+    for topic, written in counts.items():
         here = [number for number, channel in found.topics.items() if channel.topic == topic]
         fitting = [number for number in here if contents and found.digest(number) == contents.get(topic)]
         if fitting or not here:

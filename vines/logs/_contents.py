@@ -118,25 +118,26 @@ def split(data: bytes, indexed: Sequence[np.ndarray] = ()) -> tuple[Places, list
 def _filling(data: bytes, indexed: Sequence[np.ndarray]) -> Places | None:
     """Return where messages begin if those that are indexed are alike in each index, and all that is in a chunk."""
     places: dict[tuple[int, int], np.ndarray] = {}
+    begins = np.zeros(len(data) + 1, bool)
+    begins[-1] = True
     for starts in indexed:
         if not len(starts) or int(starts.max()) + 31 > len(data):
             return None
-        opcode, length, number = _HEAD.unpack_from(data, int(starts[0]))
-        if opcode != _MESSAGE or length < 22 or (number, length) in places:
+        at = starts.astype(np.int64)
+        opcode, length, number = _HEAD.unpack_from(data, int(at[0]))
+        if opcode != _MESSAGE or not 22 <= length <= len(data) - 9 - at.max() or (number, length) in places:
             return None
         # The 11 bytes of opcode, length and channel as two numbers that overlap.
         for offset in (0, 3):
-            heads = np.ndarray(len(data) - 10, "<u8", data, offset, strides=(1,))[starts]
+            heads = np.ndarray(len(data) - 10, "<u8", data, offset, strides=(1,))[at]
             if (heads != heads[0]).any():
                 return None
-        places[number, length] = starts.astype(np.int64)
-    if not places:
-        return None
-    begin = np.concatenate(list(places.values()))
-    end = begin + np.repeat([9 + length for _, length in places], [len(starts) for starts in places.values()])
-    order = np.argsort(begin, kind="stable")
-    begin, end = begin[order], end[order]
-    return places if begin[0] == 0 and end[-1] == len(data) and (end[:-1] == begin[1:]).all() else None
+        places[number, length] = at
+        begins[at] = True
+    # Each ends where another begins, and together they are as long as the chunk: so one follows the other from 0 on.
+    filled = sum(len(at) * (9 + length) for (_, length), at in places.items()) == len(data)
+    chained = begins[0] and all(begins[at + (9 + length)].all() for (_, length), at in places.items())
+    return places if places and filled and chained else None
 
 
 def gather(into: Mapping[int, Messages], data: bytes, places: Places, before: int) -> None:

@@ -21,7 +21,7 @@ from mcap.writer import MCAP0_MAGIC
 
 from vines.logs._channels import CONTENT, DIGESTS, STATUS, Channel
 from vines.logs._chunk import Packed, packed
-from vines.logs._digests import bytes_of, description, digest_of, sealed
+from vines.logs._digests import bytes_of, description, sealed
 from vines.logs._pack import Placed
 
 __all__ = ["LogFile"]
@@ -37,7 +37,7 @@ class LogFile:
         self._stream = stream
         self._offset = 0
         self._crc = 0
-        self._repeated: dict[Opcode, list[records.McapRecord]] = {
+        self._repeated: dict[Opcode, list[bytes]] = {
             opcode: []
             for opcode in (
                 *(Opcode.SCHEMA, Opcode.CHANNEL, Opcode.STATISTICS),
@@ -64,32 +64,35 @@ class LogFile:
         self._offset += len(data)
         return start
 
-    def _record(self, record: records.McapRecord) -> tuple[int, int]:
-        """Write a small record; return where it begins and how long it is."""
+    def _record(self, record: records.McapRecord) -> tuple[int, bytes]:
+        """Write a small record; return where it begins and its bytes."""
         data = bytes_of(record)
-        return self._put(data), len(data)
+        return self._put(data), data
+
+    def _repeat(self, opcode: Opcode, record: records.McapRecord) -> None:
+        self._repeated[opcode].append(bytes_of(record))
 
     def metadata(self, name: str, values: dict[str, str]) -> None:
         # Sorted, as other programs write them: the digest of the record then stays when one rewrites the log.
         record = records.Metadata(name=name, metadata=dict(sorted(values.items())))
-        offset, length = self._record(record)
-        self._digests[name] = digest_of(record)
-        self._repeated[Opcode.METADATA_INDEX].append(records.MetadataIndex(offset=offset, length=length, name=name))
+        offset, written = self._record(record)
+        self._digests[name] = _digest(written)
+        self._repeat(Opcode.METADATA_INDEX, records.MetadataIndex(offset=offset, length=len(written), name=name))
 
     def attachment(self, name: str, media_type: str, data: bytes) -> None:
         record = records.Attachment(create_time=0, log_time=0, name=name, media_type=media_type, data=data)
-        offset, length = self._record(record)
-        self._digests[name] = digest_of(record)
+        offset, written = self._record(record)
+        self._digests[name] = _digest(written)
         index = records.AttachmentIndex(
             offset=offset,
-            length=length,
+            length=len(written),
             log_time=0,
             create_time=0,
             data_size=len(data),
             name=name,
             media_type=media_type,
         )
-        self._repeated[Opcode.ATTACHMENT_INDEX].append(index)
+        self._repeat(Opcode.ATTACHMENT_INDEX, index)
 
     def channel(self, channel: Channel) -> None:
         """Describe a channel of vines."""
@@ -118,9 +121,9 @@ class LogFile:
         self._describe(Opcode.CHANNEL, record, f"channel {record.id} {record.topic}")
 
     def _describe(self, opcode: Opcode, record: records.McapRecord, name: str) -> None:
-        self._record(record)
-        self._digests[name] = digest_of(record)
-        self._repeated[opcode].append(record)
+        _, written = self._record(record)
+        self._digests[name] = _digest(written)
+        self._repeated[opcode].append(written)
 
     def digests(self) -> None:
         """Write the SHA-256 of each record so far, and one of these."""
@@ -151,11 +154,12 @@ class LogFile:
         self._counts.update(made.counts)
         for number, content in made.contents.items():
             self._contents[number].update(content)
-        offset, length = self._record(record)
+        offset, written = self._record(record)
         index_offsets = {number: self._put(index) for number, index in made.indexes.items()}
-        self._repeated[Opcode.CHUNK_INDEX].append(
+        self._repeat(
+            Opcode.CHUNK_INDEX,
             records.ChunkIndex(
-                chunk_length=length,
+                chunk_length=len(written),
                 chunk_start_offset=offset,
                 compression=record.compression,
                 compressed_size=len(record.data),
@@ -164,14 +168,15 @@ class LogFile:
                 message_index_length=sum(map(len, made.indexes.values())),
                 message_index_offsets=index_offsets,
                 uncompressed_size=record.uncompressed_size,
-            )
+            ),
         )
 
     def finish(self) -> None:
         """Write the end of the data section, the summary and the footer, each with its checksum."""
         self._record(records.DataEnd(self._crc))
         first, last = self._span or (0, 0)
-        self._repeated[Opcode.STATISTICS].append(
+        self._repeat(
+            Opcode.STATISTICS,
             records.Statistics(
                 attachment_count=len(self._repeated[Opcode.ATTACHMENT_INDEX]),
                 channel_count=len(self._repeated[Opcode.CHANNEL]),
@@ -182,13 +187,13 @@ class LogFile:
                 message_start_time=first,
                 message_end_time=last,
                 schema_count=len(self._repeated[Opcode.SCHEMA]),
-            )
+            ),
         )
         start = self._offset
         summary = bytearray()
         offsets = bytearray()
         for opcode, group in self._repeated.items():
-            data = b"".join(map(bytes_of, group))
+            data = b"".join(group)
             if data:
                 offsets += bytes_of(
                     records.SummaryOffset(group_opcode=opcode, group_start=start + len(summary), group_length=len(data))
@@ -199,3 +204,7 @@ class LogFile:
         # The checksum of the summary covers the footer too, up to the checksum itself.
         summary += struct.pack("<BQQQ", Opcode.FOOTER, 20, start, offset_start)
         self._stream.write(summary + struct.pack("<I", zlib.crc32(summary)) + MCAP0_MAGIC)
+
+
+def _digest(data: bytes) -> str:
+    return hashlib.sha256(data).hexdigest()
