@@ -42,7 +42,7 @@ from vines.dynamics.parallel._layout import (
     at,
 )
 from vines.dynamics.parallel._rows import modes_of, place_balls, write
-from vines.dynamics.parallel._strike import PASSES, strike
+from vines.dynamics.parallel._strike import PASSES, strike, strike_alone
 from vines.kernels import entry_njit, fused_njit, linked_njit, loop_njit
 
 __all__ = ["set_balls"]
@@ -175,10 +175,16 @@ def _advance(c, state, stop, cap, rows, first):
         place_balls(c, state, x, v, tau)
         move(c, state, tau)
         state[S_X1], state[S_V1] = x, v
-        if tau > 0.0:
-            for i in range(n):
-                state[at(i, B_WALL)] = state[at(i, B_MODE)]
-        if code == CONTACT:
+        if code == CONTACT and modes == 0.0 and tau > 0.0 and hits & (hits - 1) == 0:
+            i = 0
+            while hits > 1:
+                hits >>= 1
+                i += 1
+            state[at(i, B_X2)] = x - state[at(i, B_STEP)] * c.beta[i]
+            count = strike_alone(c, state, i, tau, rows, count)
+            if too_many(state, cap, c.period):
+                return count, EVENT_CAP
+        elif code == CONTACT:
             for i in range(n):
                 if hits & (1 << i):
                     state[at(i, B_X2)] = x - state[at(i, B_STEP)] * c.beta[i]

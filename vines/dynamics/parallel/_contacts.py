@@ -49,13 +49,14 @@ def _look(c, beta, x, v, a, j, k, d5, d6, bound, x2, v2, tau):
 @fused_njit
 def _most_urgent(c, state, x, v, tau):
     """Return the ball that would meet a wall first if nothing changed its velocity."""
-    first, soonest = 0, math.inf
+    first, gap, pace = 0, 1.0, 0.0
     for i in range(len(c.mu)):
         way, speed = free_ball(c, state[at(i, B_V2)], tau)
         w, rate = x - (state[at(i, B_X2)] + way), v - speed
-        left = (c.beta[i] - w if rate > 0.0 else c.beta[i] + w) / abs(rate)
-        if left < soonest and state[at(i, B_MODE)] == 0.0:
-            first, soonest = i, left
+        own = c.beta[i] - w if rate > 0.0 else c.beta[i] + w
+        # Compared without dividing by the rates.
+        if own * pace < gap * abs(rate) and state[at(i, B_MODE)] == 0.0:
+            first, gap, pace = i, own, abs(rate)
     return first
 
 
@@ -96,7 +97,7 @@ def first_hits(c, o, motion, state, tau, stop):
         d6 = sixth(o, *now)
         bound = modulus(d5, i5) + forced
         nearest = least = math.inf
-        hits = 0
+        hits = rooted = only = 0
         a = pull(c, a)
         first = _most_urgent(c, state, x, v, tau)
         for turn_of in range(n):
@@ -116,6 +117,9 @@ def first_hits(c, o, motion, state, tau, stop):
             estimate, h, side = _look(c, c.beta[i], x, v, a, j, k, d5, d6, bound, x2, v2, tau)
             state[at(i, B_STEP)] = side
             state[at(i, B_FOUND)] = estimate
+            if estimate < math.inf:
+                rooted += 1
+                only = i
             nearest = min(nearest, estimate)
             if not h > FEW_ULP * tau:
                 hits |= 1 << i
@@ -124,7 +128,8 @@ def first_hits(c, o, motion, state, tau, stop):
             return (CONTACT, tau, hits, x, v) if tau <= stop else (NO_CONTACT, tau, 0, 0.0, 0.0)
         if nearest <= least and nearest < math.inf:
             best, best_x, best_v = math.inf, 0.0, 0.0
-            for i in range(n):
+            low, high = (0, n) if rooted > 1 else (only, only + 1)
+            for i in range(low, high):
                 estimate = state[at(i, B_FOUND)]
                 if state[at(i, B_MODE)] == 0.0 and estimate <= BEYOND * nearest:
                     x2, v2, side = state[at(i, B_X2)], state[at(i, B_V2)], int(state[at(i, B_STEP)])
@@ -139,7 +144,7 @@ def first_hits(c, o, motion, state, tau, stop):
             if best <= tau + least:
                 if best > stop:
                     return NO_CONTACT, tau, 0, 0.0, 0.0
-                for i in range(n):
+                for i in range(low, high):
                     if state[at(i, B_MODE)] == 0.0 and state[at(i, B_FOUND)] <= best + TOGETHER * best:
                         hits |= 1 << i
                 return CONTACT, best, hits, best_x, best_v

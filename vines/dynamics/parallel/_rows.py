@@ -6,7 +6,7 @@ from vines.dynamics import _advance as col
 from vines.dynamics._flight import advance_phase, derivatives, flight, flown, free_ball
 from vines.dynamics._window import width_of, write_end
 from vines.dynamics.parallel._constants import ParallelConstants, ParallelTable, frame_with
-from vines.dynamics.parallel._layout import B_MODE, B_RUN, B_V2, B_X2, BALL, BEFORE, R_V2, R_X2, TIES, at
+from vines.dynamics.parallel._layout import B_MODE, B_RUN, B_V2, B_WALL, B_X2, BALL, BEFORE, R_V2, R_X2, TIES, at
 from vines.kernels import fused_njit, linked_njit, njit
 
 __all__ = ["modes_of", "place_balls", "write"]
@@ -37,9 +37,11 @@ def write(mu, row, state, kind, side, tau, i, v1, v2, ties, before):
 
 @fused_njit
 def place_balls(c, state, x, v, tau):
-    """Move all balls on by tau, at whose end the frame is at x with velocity v."""
+    """Move all balls on by tau, at whose end the frame is at x with velocity v: only those that ride are on a wall."""
     for i in range(len(c.mu)):
         wall = state[at(i, B_MODE)]
+        if tau > 0.0:
+            state[at(i, B_WALL)] = wall
         if wall != 0.0:
             state[at(i, B_X2)], state[at(i, B_V2)] = x - wall * c.beta[i], v
         else:

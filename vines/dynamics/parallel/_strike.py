@@ -22,9 +22,9 @@ from vines.dynamics.parallel._layout import (
     at,
 )
 from vines.dynamics.parallel._rows import modes_of, write
-from vines.kernels import fused_njit
+from vines.kernels import fused_njit, linked_njit
 
-__all__ = ["PASSES", "strike"]
+__all__ = ["PASSES", "strike", "strike_alone"]
 
 PASSES = 32
 """Times in one instant that balls may be struck until none approaches its wall any more."""
@@ -41,6 +41,19 @@ def _count_hit(state, i, wall):
 
 
 @fused_njit
+def strike_alone(c, state, i, tau, rows, count):
+    """Let one ball hit at the present instant, while no other is on a wall; return how many rows there are then."""
+    wall, before, v2 = state[at(i, B_STEP)], state[S_V1], state[at(i, B_V2)]
+    state[S_V1], state[at(i, B_V2)] = after_impact_kernel(c.law[i], before, v2)
+    state[S_IMPACTS] += 1.0
+    _count_hit(state, i, wall)
+    state[at(i, B_WALL)] = wall
+    state[at(i, B_DECIDE)] = 1.0
+    write(c.mu, rows[count], state, IMPACT, wall, tau, i, before, v2, 0.0, 0.0)
+    return count + 1
+
+
+@linked_njit
 def strike(c, state, hits, tau, rows, count):
     """Let balls hit at the present instant, and write what happens.
 
