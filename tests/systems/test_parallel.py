@@ -10,7 +10,7 @@ from scipy.integrate import solve_ivp
 
 import vines
 from vines.dynamics import tangent_map
-from vines.errors import StateError
+from vines.errors import ParameterError, StateError
 from vines.systems import Parallel
 
 TWO = Parallel(mu=(0.01, 0.01), beta=(1.0, 1.4), A=0.03)
@@ -224,6 +224,17 @@ def test_one_ball_breaks_its_symmetry_where_the_vi_nes_does():
     branch = vines.continue_orbit(orbit, "A", 0.02)
     broken = [each.value for each in branch.bifurcations if each.type == "symmetry_breaking"]
     assert broken == pytest.approx([0.0180076066], abs=1e-9)
+
+
+def test_words_are_those_of_the_system():
+    one = Parallel(mu=(0.01,), A=0.016)
+    assert vines.settle(one).word == "LR"
+    assert str(vines.find_orbit("L1R1", one).word) == "LR"
+    assert str(vines.find_orbit("L2L1R2R1", Parallel(mu=(0.01, 0.01), A=0.02)).word) == "L1L2R1R2"
+    with pytest.raises(ParameterError, match="each hits"):
+        vines.find_orbit("L1R1", TWO)
+    with pytest.raises(ParameterError, match="without number"):
+        vines.find_orbit("LR", TWO)
 
 
 def test_what_cannot_be_is_refused():

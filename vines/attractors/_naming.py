@@ -13,23 +13,22 @@ from vines.attractors._attractor import Attractor
 from vines.dynamics.kernels import room_of
 from vines.dynamics.runs import STATUS, measures_from
 from vines.model import VI_NES, Word
+from vines.orbits import own_word
 
 __all__ = ["attractor_from", "word_of"]
 
-_WORDS: dict[tuple[bytes, int, tuple[tuple[int, ...], ...], bytes], Word] = {}
+_WORDS: dict[tuple[bytes, int, tuple[tuple[int, ...], ...], int], Word] = {}
 
 
 def word_of(sides: npt.NDArray[np.int8], p: int, of: Any = None) -> Word:
     """Return the word of the contacts in one repetition of p forcing periods; each is worked out once."""
     alike = getattr(of, "alike", ())
-    balls = np.abs(sides) if getattr(of, "balls", 0) else 0 * sides
-    key = (sides.tobytes(), p, alike, balls.tobytes())
+    balls = getattr(of, "balls", 0)
+    key = (sides.tobytes(), p, alike, balls)
     word = _WORDS.get(key)
     if word is None:
-        system = VI_NES if of is None else of.system
-        letters = system.letters(sides, balls.tolist())
-        word = Word(f"{letters}/{p}T")
-        word = _WORDS[key] = word.relabelled(alike)[0] if alike else word
+        letters = of.system.letters(sides, np.abs(sides).tolist()) if balls else VI_NES.letters(sides)
+        word = _WORDS[key] = own_word(f"{letters}/{p}T", of)
     return word
 
 
@@ -63,7 +62,7 @@ def attractor_from(
     regime = int(value[v.REGIME])
     measures = measures_from(p, totals)
     known = lyapunov or bool(value[v.KNOWN])
-    room = room_of(p)
+    room, balls = room_of(p), getattr(p, "balls", 0)
     d = room.layout(p).directions
     exponents = np.full(d, math.nan)
     if known:
@@ -78,7 +77,7 @@ def attractor_from(
         regime=v.REGIMES[regime],
         settled=bool(value[v.SETTLED]),
         word=str(word) if word else None,
-        name=word.name if word else None,
+        name=word.named(balls if balls > 1 else 0) if word else None,
         n=word.n if word else None,
         m=word.m if word else None,
         p=word.p if word else None,

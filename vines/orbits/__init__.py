@@ -14,6 +14,7 @@ from vines.orbits._joined import mirror_image
 from vines.orbits._margins import Margin
 from vines.orbits._optimum import Optimum, optimise
 from vines.orbits._orbit import Orbit
+from vines.orbits._own_word import own_word
 from vines.orbits._reduced import Reduced, manifold_amplitude, manifold_range, reduced_orbits, reduced_range
 from vines.orbits._rows import bifurcation_row, branch_row, orbit_row
 from vines.orbits._switch import switch_branch
@@ -47,6 +48,7 @@ __all__ = [
     "mirror_image",
     "optimise",
     "orbit_row",
+    "own_word",
     "reduced_orbits",
     "reduced_range",
     "switch_branch",

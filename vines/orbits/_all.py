@@ -17,6 +17,7 @@ from vines.orbits._equations import newton_kernel
 from vines.orbits._general import ITERATIONS, proper, same
 from vines.orbits._joined import mirror_image
 from vines.orbits._orbit import Orbit
+from vines.orbits._own_word import whole_word
 from vines.orbits._seeds import base_word, doubled_times, harvested_times, random_times, simplex_times
 from vines.orbits._values import marks_of, unit_of
 
@@ -90,7 +91,7 @@ def all_orbits(word: str | Word, p: Any) -> Orbits:
     >>> found.complete, [(orbit.symmetric, orbit.stable) for orbit in found if orbit.admissible]
     (True, [(True, False), (False, True), (False, True)])
     """
-    word = Word(word)
+    word = whole_word(word, p)
     refuse_resonance(p)
     if not isinstance(p, Params):
         return _searched(word, p)

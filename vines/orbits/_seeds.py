@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from itertools import repeat
 from typing import Any
 
 import numpy as np
@@ -44,8 +43,9 @@ def harvested_times(word: Word, p: Any) -> Iterator[Floats]:
         hits = simulate(p, **start, periods=_PERIODS, max_impacts_per_period=200).impacts
         if len(hits) <= N:
             continue
-        system = VI_NES if isinstance(p, Params) else p.system
-        letters = system.letters(hits["side"], hits["ball"].tolist() if "ball" in hits.dtype.names else repeat(0))
+        letters = VI_NES.letters(hits["side"])
+        if any(word.balls):
+            letters = p.system.letters(hits["side"], hits["ball"].tolist())
         width = len(word.letters) // N
         t = np.asarray(hits["t"])
         change = np.abs(t[N:] - t[:-N] - duration)

@@ -42,8 +42,8 @@ from vines.dynamics.parallel._layout import (
     at,
 )
 from vines.dynamics.parallel._rows import modes_of, place_balls, write
-from vines.dynamics.parallel._strike import PASSES, strike
-from vines.kernels import entry_njit, linked_njit, loop_njit
+from vines.dynamics.parallel._strike import PASSES, strike, strike_alone
+from vines.kernels import entry_njit, fused_njit, linked_njit, loop_njit
 
 __all__ = ["set_balls"]
 
@@ -69,10 +69,10 @@ def set_balls(c, state, x1, v1, x2, v2, phase, t):
 @begin.register(ParallelConstants)
 @linked_njit
 def _begin(c, state, rows):
-    write(c, rows[0], state, START, state[at(0, B_WALL)], 0.0, 0, state[S_V1], state[at(0, B_V2)], 0.0, 0.0)
+    write(c.mu, rows[0], state, START, state[at(0, B_WALL)], 0.0, 0, state[S_V1], state[at(0, B_V2)], 0.0, 0.0)
 
 
-@linked_njit
+@fused_njit
 def _merge(c, o, motion, modes, state, rows, count):
     """Let the first ball that is to ride from now on do so; return how many rows there are then."""
     for i in range(len(c.mu)):
@@ -91,7 +91,7 @@ def _merge(c, o, motion, modes, state, rows, count):
             if state[at(k, B_MODE)] != 0.0:
                 state[at(k, B_V2)] = common
         state[at(i, B_X2)] = state[S_X1] - wall * c.beta[i]
-        write(c, rows[count], state, STICK, wall, 0.0, i, v1, v2, 0.0, modes)
+        write(c.mu, rows[count], state, STICK, wall, 0.0, i, v1, v2, 0.0, modes)
         state[at(i, B_RUN)] = 0.0
         return count + 1
     return count
@@ -110,7 +110,7 @@ def _let_go(c, side, state, tau, rows, count):
     for i in range(len(c.mu)):
         if state[at(i, B_STEP)] == RIDES:
             v1, v2 = state[S_V1], state[at(i, B_V2)]
-            write(c, rows[count], state, RELEASE, side, tau, i, v1, v2, 0.0, 0.0)
+            write(c.mu, rows[count], state, RELEASE, side, tau, i, v1, v2, 0.0, 0.0)
             tau = 0.0
             count += 1
     return count
@@ -127,14 +127,18 @@ def _advance(c, state, stop, cap, rows, first):
     count = first
     # One instant may write this many rows.
     size = rows.shape[0] - (PASSES + 1) * n
+    modes = modes_of(c.mu, state)
+    o = frame_with(c, modes)
     while True:
         if count >= size:
             return count, BUFFER_FULL
         left = (stop - state[S_T]) - state[S_T_LOW]
         if left < 0.0:
             return count, COMPLETE
-        modes = modes_of(c, state)
-        o = c.free if modes == 0.0 else frame_with(c, modes)
+        now = modes_of(c.mu, state)
+        if now != modes:
+            modes = now
+            o = frame_with(c, modes)
         motion = flight(c, o, state[S_X1], state[S_V1], state[S_PHASE], state[S_T])
         merged = _merge(c, o, motion, modes, state, rows, count)
         if merged > count:
@@ -171,10 +175,16 @@ def _advance(c, state, stop, cap, rows, first):
         place_balls(c, state, x, v, tau)
         move(c, state, tau)
         state[S_X1], state[S_V1] = x, v
-        if tau > 0.0:
-            for i in range(n):
-                state[at(i, B_WALL)] = state[at(i, B_MODE)]
-        if code == CONTACT:
+        if code == CONTACT and modes == 0.0 and tau > 0.0 and hits & (hits - 1) == 0:
+            i = 0
+            while hits > 1:
+                hits >>= 1
+                i += 1
+            state[at(i, B_X2)] = x - state[at(i, B_STEP)] * c.beta[i]
+            count = strike_alone(c, state, i, tau, rows, count)
+            if too_many(state, cap, c.period):
+                return count, EVENT_CAP
+        elif code == CONTACT:
             for i in range(n):
                 if hits & (1 << i):
                     state[at(i, B_X2)] = x - state[at(i, B_STEP)] * c.beta[i]
@@ -189,5 +199,5 @@ def _advance(c, state, stop, cap, rows, first):
             if too_many(state, cap, c.period):
                 return count, EVENT_CAP
         else:
-            write(c, rows[count], state, START, 0.0, tau, 0, v, state[at(0, B_V2)], 0.0, modes)
+            write(c.mu, rows[count], state, START, 0.0, tau, 0, v, state[at(0, B_V2)], 0.0, modes)
             count += 1

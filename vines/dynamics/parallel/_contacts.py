@@ -8,7 +8,7 @@ from vines.dynamics._contact import BEYOND, CONTACT, FEW_ULP, GAP, MAX_STEPS, NO
 from vines.dynamics._flight import derivatives, fifth, forced_fifth, free_ball, modulus, pull, sixth, turn
 from vines.dynamics._steps import only_root, step_ahead, step_back, taylor_root
 from vines.dynamics.parallel._layout import B_FOUND, B_MODE, B_RELEASED, B_STEP, B_V2, B_WALL, B_X2, at
-from vines.kernels import fused_njit, loop_njit
+from vines.kernels import fused_njit
 
 __all__ = ["first_hits"]
 
@@ -47,6 +47,29 @@ def _look(c, beta, x, v, a, j, k, d5, d6, bound, x2, v2, tau):
 
 
 @fused_njit
+def _most_urgent(c, state, x, v, tau):
+    """Return the ball that would meet a wall first if nothing changed its velocity."""
+    first, gap, pace = 0, 1.0, 0.0
+    for i in range(len(c.mu)):
+        way, speed = free_ball(c, state[at(i, B_V2)], tau)
+        w, rate = x - (state[at(i, B_X2)] + way), v - speed
+        own = c.beta[i] - w if rate > 0.0 else c.beta[i] + w
+        # Compared without dividing by the rates.
+        if own * pace < gap * abs(rate) and state[at(i, B_MODE)] == 0.0:
+            first, gap, pace = i, own, abs(rate)
+    return first
+
+
+@fused_njit
+def _is_clear(c, beta, x, v, a, j, k, bound, x2, v2, tau, span):
+    """Say whether a ball is certain to meet no wall for a while, all terms of its way taken by their size."""
+    way, speed = free_ball(c, v2, tau)
+    bend = 0.5 * abs(a) + span * ((1 / 6) * abs(j) + span * ((1 / 24) * abs(k) + span * ((1 / 120) * bound)))
+    w = x - (x2 + way)
+    return max(abs(w), abs(w + span * (v - speed))) + span * span * bend < beta
+
+
+@fused_njit
 def _any_flies(n, state):
     flying = 0
     for i in range(n):
@@ -54,7 +77,7 @@ def _any_flies(n, state):
     return flying > 0
 
 
-@loop_njit
+@fused_njit
 def first_hits(c, o, motion, state, tau, stop):
     """Search for the first contact of any free ball after tau; see `next_contact`.
 
@@ -74,8 +97,12 @@ def first_hits(c, o, motion, state, tau, stop):
         d6 = sixth(o, *now)
         bound = modulus(d5, i5) + forced
         nearest = least = math.inf
-        hits = 0
-        for i in range(n):
+        hits = rooted = only = 0
+        a = pull(c, a)
+        first = _most_urgent(c, state, x, v, tau)
+        for turn_of in range(n):
+            # The ball that comes to a wall first shortens the time for which the others have to be clear.
+            i = first if turn_of == 0 else turn_of - (turn_of <= first)
             if state[at(i, B_MODE)] != 0.0:
                 continue
             x2, v2, wall = state[at(i, B_X2)], state[at(i, B_V2)], state[at(i, B_WALL)]
@@ -84,9 +111,15 @@ def first_hits(c, o, motion, state, tau, stop):
                 released = state[at(i, B_RELEASED)] != 0.0
                 least = min(least, first_step(c, o, c.beta[i], motion, v2, int(wall), released))
                 continue
-            estimate, h, side = _look(c, c.beta[i], x, v, pull(c, a), j, k, d5, d6, bound, x2, v2, tau)
+            span = min(least, BEYOND * nearest)
+            if span <= c.window and _is_clear(c, c.beta[i], x, v, a, j, k, bound, x2, v2, tau, span):
+                continue
+            estimate, h, side = _look(c, c.beta[i], x, v, a, j, k, d5, d6, bound, x2, v2, tau)
             state[at(i, B_STEP)] = side
             state[at(i, B_FOUND)] = estimate
+            if estimate < math.inf:
+                rooted += 1
+                only = i
             nearest = min(nearest, estimate)
             if not h > FEW_ULP * tau:
                 hits |= 1 << i
@@ -95,7 +128,8 @@ def first_hits(c, o, motion, state, tau, stop):
             return (CONTACT, tau, hits, x, v) if tau <= stop else (NO_CONTACT, tau, 0, 0.0, 0.0)
         if nearest <= least and nearest < math.inf:
             best, best_x, best_v = math.inf, 0.0, 0.0
-            for i in range(n):
+            low, high = (0, n) if rooted > 1 else (only, only + 1)
+            for i in range(low, high):
                 estimate = state[at(i, B_FOUND)]
                 if state[at(i, B_MODE)] == 0.0 and estimate <= BEYOND * nearest:
                     x2, v2, side = state[at(i, B_X2)], state[at(i, B_V2)], int(state[at(i, B_STEP)])
@@ -110,7 +144,7 @@ def first_hits(c, o, motion, state, tau, stop):
             if best <= tau + least:
                 if best > stop:
                     return NO_CONTACT, tau, 0, 0.0, 0.0
-                for i in range(n):
+                for i in range(low, high):
                     if state[at(i, B_MODE)] == 0.0 and state[at(i, B_FOUND)] <= best + TOGETHER * best:
                         hits |= 1 << i
                 return CONTACT, best, hits, best_x, best_v

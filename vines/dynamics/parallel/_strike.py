@@ -22,9 +22,9 @@ from vines.dynamics.parallel._layout import (
     at,
 )
 from vines.dynamics.parallel._rows import modes_of, write
-from vines.kernels import fused_njit, loop_njit
+from vines.kernels import fused_njit, linked_njit
 
-__all__ = ["PASSES", "strike"]
+__all__ = ["PASSES", "strike", "strike_alone"]
 
 PASSES = 32
 """Times in one instant that balls may be struck until none approaches its wall any more."""
@@ -40,7 +40,20 @@ def _count_hit(state, i, wall):
     state[at(i, B_RELEASED)] = 0.0
 
 
-@loop_njit
+@fused_njit
+def strike_alone(c, state, i, tau, rows, count):
+    """Let one ball hit at the present instant, while no other is on a wall; return how many rows there are then."""
+    wall, before, v2 = state[at(i, B_STEP)], state[S_V1], state[at(i, B_V2)]
+    state[S_V1], state[at(i, B_V2)] = after_impact_kernel(c.law[i], before, v2)
+    state[S_IMPACTS] += 1.0
+    _count_hit(state, i, wall)
+    state[at(i, B_WALL)] = wall
+    state[at(i, B_DECIDE)] = 1.0
+    write(c.mu, rows[count], state, IMPACT, wall, tau, i, before, v2, 0.0, 0.0)
+    return count + 1
+
+
+@linked_njit
 def strike(c, state, hits, tau, rows, count):
     """Let balls hit at the present instant, and write what happens.
 
@@ -66,7 +79,7 @@ def strike(c, state, hits, tau, rows, count):
         if hits & (1 << i):
             state[at(i, B_WALL)] = state[at(i, B_STEP)]
     now = hits
-    modes = modes_of(c, state)
+    modes = modes_of(c.mu, state)
     for _ in range(PASSES):
         together = 0
         momentum, mass, only = 0.0, 1.0, 0
@@ -94,7 +107,7 @@ def strike(c, state, hits, tau, rows, count):
                 _count_hit(state, i, wall)
                 state[at(i, B_MODE)] = 0.0
                 state[at(i, B_DECIDE)] = 1.0
-                write(c, rows[count], state, IMPACT, wall, tau, i, before, v2, together - 1.0, modes)
+                write(c.mu, rows[count], state, IMPACT, wall, tau, i, before, v2, together - 1.0, modes)
                 tau, modes = 0.0, 0.0
                 count += 1
         now = 0
@@ -109,6 +122,6 @@ def strike(c, state, hits, tau, rows, count):
         if wall != 0.0 and wall * (state[S_V1] - state[at(i, B_V2)]) < 0.0:
             # The frame was kicked away from under it.
             state[at(i, B_MODE)] = 0.0
-            write(c, rows[count], state, RELEASE, wall, 0.0, i, state[S_V1], state[at(i, B_V2)], 0.0, modes)
+            write(c.mu, rows[count], state, RELEASE, wall, 0.0, i, state[S_V1], state[at(i, B_V2)], 0.0, modes)
             count += 1
     return count, now == 0
