@@ -10,6 +10,7 @@ import pytest
 from vines.dynamics import Scatter, ensemble, simulate
 from vines.dynamics._ensemble import _Runs
 from vines.dynamics._lane_run import WITH_IMPACTS, WITH_MEASURES
+from vines.dynamics._random import fill_normals, normal
 from vines.errors import ParameterError, StateError
 from vines.model import Params
 
@@ -48,6 +49,27 @@ def test_trajectories_draw_from_streams_of_their_own() -> None:
     other = ensemble(P, {"v2": [0.1]}, periods=30, scatter=Scatter(sigma_r=0.05, seed=5))
     assert same.final["x1"][0] != same.final["x1"][1]
     assert same.final["x1"][0] != other.final["x1"][0]
+
+
+def test_forces_drawn_ahead_are_the_numbers_drawn_one_by_one() -> None:
+    ahead = np.empty(3001)
+    fill_normals(7, 3, 5, 2, ahead)
+    assert ahead == pytest.approx([normal(7, 3, 5 + 2 * k) for k in range(len(ahead))], abs=1e-14)
+
+
+@pytest.mark.parametrize("p", [P, Params(mu=0.1, A=0.3), Params(mu=0.5, A=0.3)])
+def test_a_second_harmonic_of_no_size_changes_no_energies(p: Params) -> None:
+    # Without one the integrals are those of the model; with one, forms of their own.
+    one, other = (
+        ensemble(
+            p, {"v2": V2[:3]}, periods=4, record="measures", scatter=Scatter(noise=0.1, second=second, seed=2)
+        ).measures
+        for second in (0.0, 1e-15)
+    )
+    assert one is not None
+    assert other is not None
+    for name in ("base_work", "damper_loss", "kinetic_1", "rms_x1", "max_abs_x1"):
+        assert one[name] == pytest.approx(other[name], rel=1e-8)
 
 
 def test_restitution_has_the_mean_and_spread_asked_for() -> None:

@@ -294,7 +294,8 @@ class _Work:
             if scatter is None:
                 filled = lanes.run_block(*runs, *common, growths, growth_errors, *rest)
             else:
-                filled = scatter_block(*runs, *common, *rest, scatter.numbers(), block.start, np.empty(ROOM))
+                own = np.empty(ROOM)
+                filled = scatter_block(*runs, *common, *rest, scatter.numbers(), block.start, own.ctypes.data)
             if not np.any(self.codes[block] == lanes.OVERFLOW):
                 break
             room *= 2

@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 from vines.dynamics._constants import Oscillator, constants_kernel, oscillator
 from vines.dynamics._integrals import base_per_force
-from vines.kernels import linked_njit, njit
+from vines.kernels import doubles_at, linked_njit, njit
 
 __all__ = [
     "AHEAD",
@@ -187,7 +187,7 @@ def _scattering(o, A, Omega, lam, phase, grid):
 
 
 @linked_njit
-def scatter_constants(parameters, numbers, stream, origin, room):
+def scatter_constants(parameters, numbers, stream, origin, address):
     """Return the `ScatterConstants` of a run.
 
     Parameters
@@ -200,9 +200,10 @@ def scatter_constants(parameters, numbers, stream, origin, room):
         Number of the run.
     origin : float
         Time at which it begins.
-    room : ndarray, shape (ROOM,)
-        Room for what is worked out on the way; kept by whoever calls as long as the constants are used.
+    address : int
+        Where there is room for `ROOM` doubles, kept by whoever calls as long as the constants are used.
     """
+    room = doubles_at(address, ROOM)
     # Nothing drawn yet, nothing summed.
     room[FIRST] = math.inf
     for k in range(SUMS, ROOM):
@@ -234,5 +235,5 @@ def scatter_constants(parameters, numbers, stream, origin, room):
         numbers[5],
         int(numbers[6]),
         stream,
-        room.ctypes.data,
+        address,
     )

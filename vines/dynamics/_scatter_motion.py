@@ -47,7 +47,7 @@ def _draw(c, index):
     place = index - drawn[FIRST]
     if not 0.0 <= place < AHEAD:
         drawn[FIRST], place = index, 0.0
-        fill_normals(c.key, c.stream, 2 * int(index) + 1, 2, drawn[DRAWS:])
+        fill_normals(c.key, c.stream, 2 * int(index) + 1, 2, doubles_at(c.room + 8 * DRAWS, AHEAD))
     return c.noise * drawn[DRAWS + int(place)]
 
 

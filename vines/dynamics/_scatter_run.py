@@ -37,17 +37,30 @@ def _keep_impacts(rows, count, who, events, filled):
 
 
 @njit
-def _alike(one, other):
-    """Say whether two runs have the same parameters."""
-    same = True
-    for k in range(one.shape[0]):
-        same &= one[k] == other[k]
+def _is_like_the_last(parameters, who):
+    same = who > 0
+    for k in range(parameters.shape[1]):
+        same = same and parameters[who, k] == parameters[who - 1, k]
     return same
 
 
 @entry_njit
 def scatter_block(
-    parameters, starts, first, lengths, cap, what, finals, totals, errors, counts, status, events, numbers, base, room
+    parameters,
+    starts,
+    first,
+    lengths,
+    cap,
+    what,
+    finals,
+    totals,
+    errors,
+    counts,
+    status,
+    events,
+    numbers,
+    base,
+    address,
 ):
     """Run a block of trajectories with scatter, the first of which has the number `base`.
 
@@ -63,12 +76,8 @@ def scatter_block(
     values, spread, total = zero_matrix(BATCHES, 3), zero_vector(3), zero_vector(entry.TOTALS)
     for who in range(parameters.shape[0]):
         s, length = starts[who], lengths[who]
-        c = scatter_constants(parameters[who], numbers, base + who, -first[who], room)
-        if (
-            what & lanes.WITH_MEASURES
-            and c.noise > 0.0
-            and not (who > 0 and _alike(parameters[who], parameters[who - 1]))
-        ):
+        c = scatter_constants(parameters[who], numbers, base + who, -first[who], address)
+        if what & lanes.WITH_MEASURES and c.noise > 0.0 and not _is_like_the_last(parameters, who):
             fill_forms(c)
         set_state(state, s[0], s[1], s[2], s[3], s[4], -first[who])
         code, end = col.COMPLETE, 0.0
