@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 
+import msgspec
 import numpy as np
 import pytest
 
@@ -63,8 +64,8 @@ def test_the_residual_is_noise_and_in_metres(found):
     assert found.noise < 1e-6
 
 
-def test_a_base_that_is_wired_the_other_way_round_is_a_fault(run, ringdown):
-    recording = run[0]
+def test_a_base_that_is_wired_the_other_way_round_is_a_fault(ringdown):
+    recording = simulate_rig(msgspec.structs.replace(ALONE, duration=6.0), 11)[0]
     base = recording.role("base_acc")
     turned = replace(recording, channels={**recording.channels, base.name: replace(base, values=-base.values)})
     result = reconstruct(turned, [ringdown])
