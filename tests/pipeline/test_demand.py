@@ -12,7 +12,7 @@ from vines.pipeline import load, plan, run_pipeline
 from vines.pipeline._gather import put_together
 from vines.pipeline._plan import Planner
 
-pytestmark = pytest.mark.long(40)
+pytestmark = pytest.mark.long(12)
 
 TOYS = """
     [stages.up]

@@ -16,7 +16,7 @@ from vines.pipeline import load, plan
 from vines.pipeline._dask import Dask
 from vines.store import Store
 
-pytestmark = pytest.mark.long(60)
+pytestmark = pytest.mark.long(50)
 
 SCRIPT = Path(__file__).with_name("script_of_the_lab.py")
 SWEEP = """

@@ -17,7 +17,7 @@ import pytest
 
 from tests.project import REPOSITORY
 
-pytestmark = pytest.mark.long(60)
+pytestmark = pytest.mark.long(14)
 
 DECLARED = """
 [params]

@@ -16,7 +16,7 @@ from vines import viewer
 from vines.errors import ViewerError
 from vines.viewer._program import served
 
-pytestmark = pytest.mark.long(30)
+pytestmark = pytest.mark.long(40)
 
 
 def listening():

@@ -9,7 +9,7 @@ import pytest
 from vines.rig import reconstruct, ring_down
 from vines.rig.synth import RigSettings, simulate_rig
 
-pytestmark = pytest.mark.long(10)
+pytestmark = pytest.mark.long(9)
 
 ALONE = RigSettings(
     duration=12.0, settle=20.0, sigma_r=0.01, friction=0.002, false=0.15, missed=0.03, acc_cross_axis=0.03,
