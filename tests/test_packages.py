@@ -75,6 +75,8 @@ BLOCK = """
 import sys
 from importlib.machinery import PathFinder
 
+pytestmark = pytest.mark.long(12)
+
 
 class Finder(PathFinder):
     @classmethod

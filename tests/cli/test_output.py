@@ -13,6 +13,8 @@ from pathlib import Path
 import pyarrow.parquet as pq
 import pytest
 
+pytestmark = pytest.mark.long(18)
+
 
 def test_list_and_status(quickstart):
     assert "quickstart" in quickstart.vines("list").stdout

@@ -16,6 +16,8 @@ from vines.dynamics._room import constants
 from vines.dynamics._steps import leaving_step, safe_step
 from vines.model import Params
 
+pytestmark = pytest.mark.long(12)
+
 
 @settings(max_examples=150, deadline=None)
 @given(

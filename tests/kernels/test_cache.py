@@ -14,6 +14,8 @@ from tests.made_once import own_copy
 HELPER = """
 from vines.kernels import fused_njit, linked_njit, new_vector
 
+pytestmark = pytest.mark.long(30)
+
 @fused_njit
 def inner(x):
     return 2.0 * x

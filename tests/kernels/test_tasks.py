@@ -17,6 +17,8 @@ WORK = """
 from typing import NamedTuple
 from vines.kernels import by_type, entry_njit, linked_njit
 
+pytestmark = pytest.mark.long(9)
+
 class Number(NamedTuple):
     value: float
 

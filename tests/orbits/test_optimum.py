@@ -9,7 +9,7 @@ from vines.orbits import find_orbit, optimise, symmetric_fold, symmetric_orbits
 from vines.orbits._box import Box
 from vines.orbits._chart import Chart
 
-pytestmark = pytest.mark.long(18)
+pytestmark = pytest.mark.long(14)
 
 P = Params(mu=0.01, A=0.015)
 

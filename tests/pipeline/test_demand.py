@@ -16,7 +16,7 @@ from vines.pipeline._gather import put_together
 from vines.pipeline._plan import Planner
 from vines.pipeline._worker import compute_apart
 
-pytestmark = pytest.mark.long(40)
+pytestmark = pytest.mark.long(12)
 
 TOYS = """
     [stages.up]

@@ -14,7 +14,7 @@ from vines.errors import RunFailed, UnknownNameError
 from vines.pipeline import load, plan
 from vines.store import Store
 
-pytestmark = pytest.mark.long(40)
+pytestmark = pytest.mark.long(25)
 
 TOYS = """
     title = "toys"

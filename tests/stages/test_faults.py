@@ -8,7 +8,7 @@ import pytest
 
 from tests.project import Project
 
-pytestmark = pytest.mark.long(50)
+pytestmark = pytest.mark.long(18)
 
 DECLARED = """
 [params]

@@ -6,7 +6,7 @@ import time
 
 import pytest
 
-pytestmark = pytest.mark.long(32)
+pytestmark = pytest.mark.long(16)
 
 MOMENTS = ("points/*/0*", "results/*/manifest.json", "pipelines/*.pins.json")
 """Files whose first appearance is the moment to kill: a part of a pool, a first result, a first pin."""

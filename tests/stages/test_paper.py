@@ -11,7 +11,7 @@ import pytest
 from tests.project import Project
 from vines.figures._style import RC
 
-pytestmark = pytest.mark.long(62)
+pytestmark = pytest.mark.long(45)
 
 PIPELINES = Path(__file__).resolve().parents[2] / "pipelines"
 FIGURES = [f"fig{k}" for k in range(2, 12)]

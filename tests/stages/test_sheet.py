@@ -13,6 +13,8 @@ from vines.stages.plots._runs import run_curves
 from vines.stages.plots.sheet import PLOT
 from vines.store import Store
 
+pytestmark = pytest.mark.long(14)
+
 
 @pytest.fixture
 def root(project, monkeypatch):

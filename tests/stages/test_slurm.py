@@ -17,7 +17,7 @@ import pytest
 
 from tests.stages.recipe import assert_as_one_run, write_recipe
 
-pytestmark = pytest.mark.long(60)
+pytestmark = pytest.mark.long(14)
 
 SBATCH = r'''#!PYTHON
 """Queue a job and print its number; the test runs the queue."""

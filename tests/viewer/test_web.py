@@ -16,7 +16,7 @@ from vines import viewer
 from vines.errors import ViewerError
 from vines.viewer._program import served
 
-pytestmark = pytest.mark.long(30)
+pytestmark = pytest.mark.long(40)
 
 
 def listening():
@@ -43,7 +43,7 @@ def test_web_viewer_in_chromium(settled, tmp_path, browser_program):
     with served(recording) as (url, _):
         assert url.startswith("http://127.0.0.1:")
         assert listening() == {"127.0.0.1"}
-        with chromium(browser_program) as browser:
+        with chromium(browser_program, size=(1000, 600)) as browser:
             browser.open(url)
             browser.at_rest(shows=both_ends)  # else out of time: on a busy machine a page without views rests too
             asked = browser.asked()

@@ -18,7 +18,7 @@ from vines.rig.uncertainty import error_ratio
 from vines.rig.verdict._match import candidates, same_pattern
 from vines.rig.verdict._verdict import decide, order
 
-pytestmark = pytest.mark.long(25)
+pytestmark = pytest.mark.long(22)
 
 
 @pytest.fixture(scope="module")
