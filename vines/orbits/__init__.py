@@ -14,7 +14,7 @@ from vines.orbits._margins import Margin
 from vines.orbits._optimum import Optimum, optimise
 from vines.orbits._orbit import Orbit
 from vines.orbits._reduced import Reduced, manifold_amplitude, manifold_range, reduced_orbits, reduced_range
-from vines.orbits._rows import bifurcation_row, branch_row, orbit_row
+from vines.orbits._rows import bifurcation_row, branch_row, orbit_outline, orbit_row
 from vines.orbits._switch import switch_branch
 from vines.orbits._symmetric import symmetric_fold, symmetric_orbits
 from vines.orbits._table import symmetric_table
@@ -45,6 +45,7 @@ __all__ = [
     "manifold_range",
     "mirror_image",
     "optimise",
+    "orbit_outline",
     "orbit_row",
     "reduced_orbits",
     "reduced_range",
