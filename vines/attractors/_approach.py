@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from vines.attractors import _verdict as v
-from vines.attractors._contacts import difference, repetition
+from vines.attractors._contacts import difference, mark, repetition
 from vines.attractors._multipliers import carry_on, multipliers, square_of
 from vines.dynamics.kernels import directions, flow_basis, jump_basis, offset
 from vines.dynamics.kernels import rows as col
@@ -79,7 +79,7 @@ def nearest_orbit(c, rows, kept, p, lag, scale, tolerance):
     guess = new_vector(lag)
     for k in range(lag):
         i = kept[count - lag + k]
-        side[k] = 1 if rows[i, col.SIDE] > 0.0 else -1
+        side[k] = mark(rows, i)
         guess[k] = rows[first, col.PHASE] / c.Omega + (rows[i, col.TIME] - rows[first, col.TIME])
         if k > 0 and not guess[k] > guess[k - 1]:
             return nothing
@@ -102,7 +102,7 @@ def nearest_orbit(c, rows, kept, p, lag, scale, tolerance):
         return nothing
 
     # The tangent map of one repetition, from just after the last contact to just after that of the next one.
-    event = zero_vector(col.ROW)
+    event = zero_vector(rows.shape[1])
     event[col.KIND] = col.IMPACT
     d = len(directions(c))
     Y = identity(d)
@@ -111,6 +111,8 @@ def nearest_orbit(c, rows, kept, p, lag, scale, tolerance):
         flow_basis(c, 0.0, t[k] - before, Y)
         event[col.X1], event[col.V1], event[col.V2] = states[k, 0], states[k, 1], states[k, 3]
         event[col.PHASE] = c.Omega * t[k] % (2.0 * math.pi)
+        if event.shape[0] > col.ROW:
+            event[col.ROW] = abs(side[k])
         jump_basis(c, event, Y)
     roots = complex_vector(d)
     largest = multipliers(Y, roots)
@@ -119,7 +121,7 @@ def nearest_orbit(c, rows, kept, p, lag, scale, tolerance):
 
     # How far the run is from the orbit at one instant, just after its last contact.
     away = new_vector(d)
-    event[col.SIDE] = side[lag - 1]
+    event[col.SIDE] = 1.0 if side[lag - 1] > 0 else -1.0
     offset(c, rows[end], event, guess[lag - 1] - t[lag - 1], scale, away)
     return True, largest, distance, p * _repetitions(Y, away, distance, tolerance)
 

@@ -7,7 +7,14 @@ import numpy as np
 from vines.dynamics.kernels import rows as col
 from vines.kernels import integer_vector, linked_njit, njit
 
-__all__ = ["contacts", "difference", "mirror_difference", "repetition"]
+__all__ = ["contacts", "difference", "mark", "mirror_difference", "repetition"]
+
+
+@njit
+def mark(rows, i):
+    """Return the wall of a contact, times the number of the ball where there are several."""
+    side = 1 if rows[i, col.SIDE] > 0.0 else -1
+    return side * int(rows[i, col.ROW]) if rows.shape[1] > col.ROW else side
 
 
 @linked_njit
@@ -24,6 +31,8 @@ def contacts(rows, n, start):
         if kind == col.IMPACT and rows[i, col.TIME] > start:
             keep[count] = i
             count += 1
+        elif kind == col.STICK and rows.shape[1] > col.ROW:
+            count = _without_chatter(rows, keep, count, i)
         elif kind == col.STICK:
             run = int(rows[i, col.RUN])
             while count > 0 and run > 0 and keep[count - 1] >= i - run:
@@ -37,9 +46,26 @@ def contacts(rows, n, start):
 
 
 @njit
+def _without_chatter(rows, keep, count, i):
+    """Take the impacts of a chatter but the first from the contacts so far, where those of other balls lie between."""
+    run = int(rows[i, col.RUN])
+    own = 0
+    for k in range(count - 1, -1, -1):
+        if own == run:
+            break
+        if rows[keep[k], col.ROW] == rows[i, col.ROW]:
+            own += 1
+            if own < run:
+                for m in range(k, count - 1):
+                    keep[m] = keep[m + 1]
+                count -= 1
+    return count
+
+
+@njit
 def _same_run(rows, i, j):
     """Say whether rows i and j are neighbouring impacts on the same wall, with no other event between."""
-    return j == i + 1 and rows[i, col.SIDE] == rows[j, col.SIDE]
+    return j == i + 1 and mark(rows, i) == mark(rows, j)
 
 
 @linked_njit
@@ -78,7 +104,7 @@ def repetition(rows, kept, span):
     pairs = n - lag
     filled = pairs // lag
     for i in range(pairs - filled * lag, pairs):
-        if rows[kept[i], col.SIDE] != rows[kept[i + lag], col.SIDE]:
+        if mark(rows, kept[i]) != mark(rows, kept[i + lag]):
             return 0, 0
     return (lag, filled) if filled > 0 else (0, 0)
 
@@ -121,7 +147,7 @@ def mirror_difference(rows, kept, lag, span, scale):
     for k in range(lag):
         i = kept[n - 1 - k - half]
         j = kept[n - 1 - k]
-        if rows[i, col.SIDE] != -rows[j, col.SIDE]:
+        if mark(rows, i) != -mark(rows, j):
             return np.inf
         worst = max(worst, abs(rows[j, col.TIME] - rows[i, col.TIME] - 0.5 * span))
         worst = max(worst, abs(rows[j, col.V1] + rows[i, col.V1]) / scale)

@@ -60,8 +60,8 @@ def follow(c, state, elapsed, watch, cap, tolerance, rows, verdict):
         The room, for the next run.
     """
     period = 2.0 * math.pi / c.Omega
-    own = new_vector(col.STATE)
-    for k in range(col.STATE):
+    own = new_vector(state.shape[0])
+    for k in range(state.shape[0]):
         own[k] = state[k]
     d = len(directions(c))
     Y = identity(d)
@@ -76,7 +76,7 @@ def follow(c, state, elapsed, watch, cap, tolerance, rows, verdict):
         length = LONGER[stage] * watch * period
         elapsed = length
         passed += LONGER[stage] * watch
-        count = open_window(own, rows)
+        count = open_window(c, own, rows)
         rows, count, code = run_window(c, own, length, cap, rows, count)
         if code != col.COMPLETE:
             verdict[v.REASON] = v.CAPPED_LATER

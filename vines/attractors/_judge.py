@@ -6,7 +6,7 @@ import math
 
 from vines.attractors import _verdict as v
 from vines.attractors._approach import NO_ORBIT, comes_to_orbit, nearest_orbit, note_coming
-from vines.attractors._contacts import contacts, difference, mirror_difference, repetition
+from vines.attractors._contacts import contacts, difference, mark, mirror_difference, repetition
 from vines.attractors._multipliers import multipliers
 from vines.dynamics.kernels import directions, ringing, tangent_product
 from vines.dynamics.kernels import rows as col
@@ -40,8 +40,8 @@ FOREVER = 1e6
 @cold_njit
 def clear(verdict):
     """Make a verdict say nothing yet."""
-    for k in range(v.VERDICT):
-        verdict[k] = math.nan if v.EXPONENTS <= k < v.MULTIPLIERS_IM + 4 else 0.0
+    for k in range(verdict.shape[0]):
+        verdict[k] = math.nan if k >= v.EXPONENTS else 0.0
     verdict[v.NUDGED] = math.nan
     verdict[v.LYAPUNOV_ERROR] = math.nan
 
@@ -154,8 +154,8 @@ def _repeats(c, rows, kept, p, lag, last, tolerance, verdict):
     for k in range(n):
         size = abs(roots[k])
         nearest = min(nearest, abs(1.0 - roots[k]))
-        verdict[v.MULTIPLIERS_RE + k] = roots[k].real
-        verdict[v.MULTIPLIERS_IM + k] = roots[k].imag
+        verdict[v.EXPONENTS + n + k] = roots[k].real
+        verdict[v.EXPONENTS + 2 * n + k] = roots[k].imag
         verdict[v.EXPONENTS + k] = math.log(size) / span if size > 0.0 else -math.inf
     verdict[v.LYAPUNOV_ERROR] = 0.0
     if largest > 1.0 + UNSTABLE:
@@ -178,7 +178,7 @@ def _repeats(c, rows, kept, p, lag, last, tolerance, verdict):
             return byte_vector(0)
     sides = byte_vector(lag)
     for k in range(lag):
-        sides[k] = 1 if rows[kept[count - lag + k], col.SIDE] > 0.0 else -1
+        sides[k] = mark(rows, kept[count - lag + k])
         verdict[v.LEFT if sides[k] > 0 else v.RIGHT] += 1.0
     verdict[v.REGIME], verdict[v.SETTLED] = v.PERIODIC, 1.0
     verdict[v.P], verdict[v.LAG] = p, lag
@@ -193,8 +193,10 @@ def _without_impact(c, rows, n, tolerance, verdict):
     last = n - 1
     period = 2.0 * math.pi / c.Omega
     verdict[v.REGIME], verdict[v.LYAPUNOV_ERROR] = v.NO_IMPACT, 0.0
-    verdict[v.EXPONENTS], verdict[v.EXPONENTS + 1] = 0.0, 0.0
-    verdict[v.EXPONENTS + 2], verdict[v.EXPONENTS + 3] = -0.5 * c.lam, -0.5 * c.lam
+    d = len(directions(c))
+    for k in range(d):
+        # The balls keep what they are given, in position and in velocity; the oscillator, if it is one, does not.
+        verdict[v.EXPONENTS + k] = 0.0 if k < max(d - 2, 2) else -0.5 * c.lam
     if not note_drift(verdict, period, abs(rows[last, col.A_V2]) if rows[last, col.MODE] == 0.0 else 0.0):
         verdict[v.REGIME] = v.UNSETTLED
         return

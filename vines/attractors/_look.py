@@ -8,7 +8,7 @@ from vines.attractors import _verdict as v
 from vines.attractors._follow import follow
 from vines.attractors._judge import clear, judge_window
 from vines.attractors._window import measure_window
-from vines.dynamics.kernels import constants_at, open_window, run_window, with_room
+from vines.dynamics.kernels import constants_at, open_window, run_window, width_of, with_room
 from vines.dynamics.kernels import rows as col
 from vines.kernels import byte_vector, cold_njit, entry_njit, new_matrix, njit
 
@@ -33,7 +33,7 @@ def _look(c, state, waited, stages, watch, cap, tolerance, rows, room, verdict):
     """
     period = 2.0 * math.pi / c.Omega
     sides = byte_vector(0)
-    count = open_window(state, rows)
+    count = open_window(c, state, rows)
     for stage in range(stages.shape[0]):
         stop = stages[stage] * period if waited == col.COMPLETE else state[col.S_T]
         rows, count, code = run_window(c, state, stop, cap, rows, count)
@@ -55,6 +55,10 @@ def _look(c, state, waited, stages, watch, cap, tolerance, rows, room, verdict):
     verdict[v.FINAL], verdict[v.FINAL + 1] = rows[count, col.X1], rows[count, col.A_V1]
     verdict[v.FINAL + 2], verdict[v.FINAL + 3] = rows[count, col.X2], rows[count, col.A_V2]
     verdict[v.FINAL + 4] = rows[count, col.PHASE]
+    # What a row has of further balls is at its end, and goes to the end of the verdict.
+    more = rows.shape[1] - col.ROW
+    for k in range(more):
+        verdict[verdict.shape[0] - more + k] = rows[count, col.ROW + k]
     return rows, count + 1, room, sides
 
 
@@ -103,10 +107,11 @@ def look_at_block(table, states, waited, spare, stages, watch, cap, tolerance, i
     """
     n = states.shape[0]
     # Taken once: fresh memory costs as much as a short run.
-    rows, room = new_matrix(ROOM, col.ROW), new_matrix(ROOM, col.ROW)
+    width = width_of(table)
+    rows, room = new_matrix(ROOM, width), new_matrix(ROOM, width)
     letters = byte_vector(4 * n)
     written = 0
-    hits = new_matrix(16, col.ROW + 1)
+    hits = new_matrix(16, width + 1)
     filled = 0
     for k in range(n):
         c = constants_at(table, k)
@@ -127,9 +132,9 @@ def look_at_block(table, states, waited, spare, stages, watch, cap, tolerance, i
             hits = with_room(hits, filled, 2 * (filled + count))
         for i in range(1, count):
             if rows[i, col.KIND] == col.IMPACT and rows[i, col.TIME] > 0.0:
-                for j in range(col.ROW):
+                for j in range(width):
                     hits[filled, j] = rows[i, j]
-                hits[filled, col.ROW] = k
+                hits[filled, width] = k
                 filled += 1
     return letters[:written], hits[:filled]
 

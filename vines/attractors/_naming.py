@@ -13,19 +13,22 @@ from vines.attractors._attractor import Attractor
 from vines.dynamics.kernels import room_of
 from vines.dynamics.runs import STATUS, measures_from
 from vines.model import VI_NES, Word
+from vines.orbits import own_word
 
 __all__ = ["attractor_from", "word_of"]
 
-_WORDS: dict[tuple[bytes, int], Word] = {}
+_WORDS: dict[tuple[bytes, int, tuple[tuple[int, ...], ...], int], Word] = {}
 
 
-def word_of(sides: npt.NDArray[np.int8], p: int) -> Word:
+def word_of(sides: npt.NDArray[np.int8], p: int, of: Any = None) -> Word:
     """Return the word of the contacts in one repetition of p forcing periods; each is worked out once."""
-    key = (sides.tobytes(), p)
+    alike = getattr(of, "alike", ())
+    balls = getattr(of, "balls", 0)
+    key = (sides.tobytes(), p, alike, balls)
     word = _WORDS.get(key)
     if word is None:
-        letters = VI_NES.letters(sides)
-        word = _WORDS[key] = Word(letters if p == 1 else f"{letters}/{p}T")
+        letters = of.system.letters(sides, np.abs(sides).tolist()) if balls else VI_NES.letters(sides)
+        word = _WORDS[key] = own_word(f"{letters}/{p}T", of)
     return word
 
 
@@ -59,22 +62,22 @@ def attractor_from(
     regime = int(value[v.REGIME])
     measures = measures_from(p, totals)
     known = lyapunov or bool(value[v.KNOWN])
-    room = room_of(p)
-    d = room.directions(p)
+    room, balls = room_of(p), getattr(p, "balls", 0)
+    d = room.layout(p).directions
     exponents = np.full(d, math.nan)
     if known:
         exponents = verdict[v.EXPONENTS : v.EXPONENTS + d].copy()
     multipliers = None
-    if not math.isnan(value[v.MULTIPLIERS_RE]):
-        multipliers = verdict[v.MULTIPLIERS_RE :][:d] + 1j * verdict[v.MULTIPLIERS_IM :][:d]
-    x1, v1, x2, v2, phase = value[v.FINAL :][:5]
-    final = {**room.leave(p, x1, v1, x2, v2, phase), "phase": phase}
+    if not math.isnan(value[v.EXPONENTS + d]):
+        multipliers = verdict[v.EXPONENTS + d :][:d] + 1j * verdict[v.EXPONENTS + 2 * d :][:d]
+    *at, phase = value[v.FINAL :][:5]
+    final = {**room.leave(p, at, phase, value[v.EXPONENTS + 3 * d :]), "phase": phase}
     return Attractor(
         params=p,
         regime=v.REGIMES[regime],
         settled=bool(value[v.SETTLED]),
         word=str(word) if word else None,
-        name=word.name if word else None,
+        name=word.named(balls if balls > 1 else 0) if word else None,
         n=word.n if word else None,
         m=word.m if word else None,
         p=word.p if word else None,

@@ -14,19 +14,22 @@ from vines.attractors._attractor import Attractor
 from vines.attractors._look import look_at_block
 from vines.attractors._naming import attractor_from, word_of
 from vines.attractors._waiting import next_wait
-from vines.dynamics.kernels import constants, pass_over, set_state, shift_time, table_of
+from vines.dynamics.kernels import constants, pass_over, room_of, shift_time, table_of
 from vines.dynamics.kernels import rows as col
-from vines.dynamics.kernels import totals as entry
 from vines.dynamics.runs import EVENTS_PER_PERIOD, impacts_of, start_of
 from vines.errors import StateError
 
-__all__ = ["NUDGE", "ROUNDS", "Patience", "settle", "settle_from"]
+__all__ = ["APART", "NUDGE", "ROUNDS", "Patience", "settle", "settle_from"]
 
 ROUNDS = 8
 """How often a run may be taken on because it had not arrived."""
 
 NUDGE = 1e-6
 """Change of the ball's velocity that frees a run from an unstable orbit on which it sits exactly."""
+
+
+APART = 1e-9
+"""Difference in velocity with which equal balls start."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,6 +76,7 @@ def settle(
     tolerance: float = 1e-10,
     lyapunov: bool = True,
     max_impacts_per_period: int = EVENTS_PER_PERIOD,
+    apart: float = APART,
     **start: Any,
 ) -> Attractor:
     """Run for `settle` forcing periods, record the next `record`, and say what the run has settled to.
@@ -99,6 +103,9 @@ def settle(
         Whether to give exponents; they are worked out anyhow where the regime depends on them.
     max_impacts_per_period : int
         Cap on events in one forcing period; when it is passed the regime is ``unsettled``, status ``impact_cap``.
+    apart : float
+        By how much more than the one before it each of several equal balls starts in velocity: those that hit together
+        would do so for ever, which no run does that begins beside it. 0 to leave them.
     **start : float
         Start state by the names of the system, as for `vines.dynamics.simulate`.
 
@@ -122,7 +129,10 @@ def settle(
     >>> found.regime, found.name, found.word, found.symmetric
     ('periodic', '2:1', 'LLR', False)
     """
-    begin = start_of(p, start, t, phi)
+    x1, v1, x2, v2, phase = start_of(p, start, t, phi)
+    for group in getattr(p, "alike", ()):
+        v2[np.array(group) - 1] += apart * np.arange(len(group))
+    begin = (x1, v1, x2, v2, phase)
     return _settled(p, begin, t, Patience(settle, record, patience, watch, tolerance, max_impacts_per_period), lyapunov)
 
 
@@ -174,19 +184,21 @@ def settle_from(
 def _settled(
     p: Any, begin: tuple[float, float, float, float, float], t: float, how: Patience, lyapunov: bool
 ) -> Attractor:
-    c = constants(p)
-    states = np.zeros((1, col.STATE))
+    c, room = constants(p), room_of(p)
+    layout = room.layout(p)
+    states = np.zeros((1, layout.state))
     state = states[0]
-    set_state(state, *begin, 0.0)
+    room.begin(c, state, *begin, 0.0)
     table = table_of(p)
-    room = np.empty((256, col.ROW))
-    verdicts, totals = np.empty((1, v.VERDICT)), np.zeros((1, entry.TOTALS))
+    work = np.empty((layout.rows, layout.width))
+    length = v.EXPONENTS + 3 * layout.directions + layout.width - col.ROW
+    verdicts, totals = np.empty((1, length)), np.zeros((1, layout.totals))
     verdict = verdicts[0]
     stages = np.array([float(how.record)])
-    sides, hits = np.empty(0, dtype=np.int8), np.empty((0, col.ROW + 1))
+    sides, hits = np.empty(0, dtype=np.int8), np.empty((0, layout.width + 1))
     wait, spare, ran, nudged = float(how.settle), float(how.patience), 0.0, math.nan
     for turn in range(ROUNDS + 1):
-        waited = np.array([pass_over(c, state, wait * p.period, how.cap, room)])
+        waited = np.array([pass_over(c, state, wait * p.period, how.cap, work)])
         shift_time(state, wait * p.period)
         left = np.array([[spare, math.isnan(nudged)]]) if turn < ROUNDS else np.zeros((1, 2))
         sides, hits = look_at_block(
@@ -198,11 +210,13 @@ def _settled(
             break
         if verdict[v.NEXT] == v.IS_FREED:
             wait, nudged = float(how.settle), float(verdict[v.VALUE])
-            x1, v1, x2, v2, phase = verdict[v.FINAL : v.FINAL + 5].tolist()
-            set_state(state, x1, v1, x2, v2 + NUDGE, phase, 0.0)
+            *at, phase = verdict[v.FINAL : v.FINAL + 5].tolist()
+            there = room.leave(p, at, phase, verdict[length - layout.width + col.ROW :].tolist())
+            x1, v1, x2, v2 = room.enter(p, there, phase)
+            room.begin(c, state, x1, v1, x2, v2 + NUDGE, phase, 0.0)
         else:
             wait = float(next_wait(verdict[v.REMAINING], spare, few_lengths=False))
             spare -= wait
     verdict[v.NUDGED], verdict[v.PERIODS] = nudged, ran - how.record
-    word = word_of(sides, int(verdict[v.P])) if len(sides) else None
-    return attractor_from(p, verdict, totals[0], word, impacts_of(hits), t, lyapunov)
+    word = word_of(sides, int(verdict[v.P]), p) if len(sides) else None
+    return attractor_from(p, verdict, totals[0], word, impacts_of(hits, layout.width > col.ROW), t, lyapunov)

@@ -36,11 +36,13 @@ __all__ = ["REGIMES", "VERDICT", "reason_text"]
     STICKING,
     NEXT,
 ) = range(24)
-EXPONENTS = 24
-MULTIPLIERS_RE = 28
-MULTIPLIERS_IM = 32
-FINAL = 36
+FINAL = 24
+EXPONENTS = 29
+"""First of d exponents, after which come d real and d imaginary parts of multipliers, and what else of the final state
+there is: d numbers are in a disturbance."""
+
 VERDICT = 41
+"""Length for the four numbers of a disturbance of the VI-NES."""
 
 UNSETTLED, PERIODIC, QUASIPERIODIC, CHAOTIC, NO_IMPACT, OPEN = range(6)
 REGIMES = ("unsettled", "periodic", "quasiperiodic", "chaotic", "no_impact")

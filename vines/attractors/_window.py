@@ -26,12 +26,12 @@ def measure_window(c, rows, n, verdict, total):
         stop = _quiet_time(rows, n, span)
         verdict[v.STICKING] = _sticking_share(rows, n, stop - span, stop, period)
         part = window_totals(c, rows, n, stop - span, stop)
-        for j in range(entry.TOTALS):
+        for j in range(total.shape[0]):
             total[j] = part[j]
         return
     verdict[v.STICKING] = _sticking_share(rows, n, 0.0, stop, period)
     width = stop / BATCHES
-    for j in range(entry.TOTALS):
+    for j in range(total.shape[0]):
         total[j] = 0.0
     if not width > 0.0:
         # A run that had to stop before its window began.
@@ -41,6 +41,8 @@ def measure_window(c, rows, n, verdict, total):
     for k in range(BATCHES):
         part = window_totals(c, rows, n, k * width, stop if k == BATCHES - 1 else (k + 1) * width)
         close_batch(ball_mass(c), part, total, values[k])
+        for j in range(entry.TOTALS, total.shape[0]):
+            total[j] += part[j]
     standard_errors(values, errors)
     verdict[v.KINETIC_RATIO_ERROR], verdict[v.MAX_ABS_X1_ERROR], verdict[v.RMS_X1_ERROR] = (
         errors[0],

@@ -41,11 +41,13 @@ __all__ = [
     "advance",
     "begin",
     "law_of",
+    "move",
     "new_state",
     "pass_over",
     "set_state",
     "shift_time",
     "state_now",
+    "too_many",
 ]
 
 # Kinds of rows. START is also written inside a very long flight, where the closed form is started afresh.
@@ -125,7 +127,7 @@ def state_now(c, state, t):
 
 
 @fused_njit
-def _move(c, state, tau):
+def move(c, state, tau):
     """Move time and phase on by tau; time is kept as a sum of two doubles so that it loses nothing over many events."""
     step = tau + state[S_T_LOW]
     t = state[S_T]
@@ -172,12 +174,14 @@ def law_of(c, closing, number):
     return c.law
 
 
+@by_type(Constants)
 @njit
-def begin(state, rows):
+def begin(c, state, rows):
     """Write the row of the start."""
     _write(rows[0], state, START, int(state[S_WALL]), 0.0, state[S_X1], state[S_V1], state[S_X2], state[S_V2])
 
 
+@by_type(Constants)
 @loop_njit
 def advance(c, state, stop, cap, rows, first):
     """Run on to the time `stop` or until `rows` is full.
@@ -219,7 +223,7 @@ def advance(c, state, stop, cap, rows, first):
         if side != 0:
             code, tau, x, v = next_release(c, side, motion, state[S_CLEAR], min(left, AFRESH))
             if code == CONTACT:
-                _move(c, state, tau)
+                move(c, state, tau)
                 _place(state, 0, side, 1.0, x, v, x - side, v)
                 after = flight(c, c.free, x, v, state[S_PHASE], state[S_T])
                 _, _, _, j, _ = derivatives(c.free, c.Omega, *after)
@@ -228,14 +232,14 @@ def advance(c, state, stop, cap, rows, first):
                     state[S_RELEASED] = 0.0
                 _write(rows[count], state, RELEASE, side, tau, x, v, x - side, v)
                 count += 1
-                if _too_many(state, cap, period):
+                if too_many(state, cap, period):
                     return count, EVENT_CAP
                 continue
         else:
             wall = int(state[S_WALL])
             if state[S_DECIDE] != 0.0:
                 state[S_DECIDE] = 0.0
-                if merges(c, wall, max(wall * (v2 - v1), 0.0), motion, x2):
+                if merges(c, c.free, c.r, c.correction, wall, max(wall * (v2 - v1), 0.0), motion, x2):
                     common = (v1 + c.mu * v2) / (1.0 + c.mu)
                     run = state[S_RUN]
                     state[S_RUN] = 0.0
@@ -243,14 +247,14 @@ def advance(c, state, stop, cap, rows, first):
                     _write(rows[count], state, STICK, wall, 0.0, x1, v1, x2, v2)
                     rows[count, RUN] = run
                     count += 1
-                    if _too_many(state, cap, period):
+                    if too_many(state, cap, period):
                         return count, EVENT_CAP
                     continue
             code, tau, hit, x, v = next_contact(
                 c, motion, x2, v2, wall, state[S_RELEASED] != 0.0, state[S_CLEAR], min(left, AFRESH)
             )
             if code == CONTACT:
-                _move(c, state, tau)
+                move(c, state, tau)
                 _, v2 = free_ball(c, v2, tau)
                 after1, after2 = after_impact_kernel(law_of(c, v - v2, state[S_IMPACTS]), v, v2)
                 state[S_IMPACTS] += 1.0
@@ -262,7 +266,7 @@ def advance(c, state, stop, cap, rows, first):
                 state[S_DECIDE] = 1.0
                 _write(rows[count], state, IMPACT, hit, tau, x, v, x - hit, v2)
                 count += 1
-                if _too_many(state, cap, period):
+                if too_many(state, cap, period):
                     return count, EVENT_CAP
                 continue
 
@@ -272,7 +276,7 @@ def advance(c, state, stop, cap, rows, first):
         if left <= AFRESH:
             return count, COMPLETE
         x, v, _, _, _ = derivatives(o, c.Omega, *flown(c, o, motion, tau))
-        _move(c, state, tau)
+        move(c, state, tau)
         if side != 0:
             _place(state, side, side, 0.0, x, v, x - side, v)
         else:
@@ -283,7 +287,7 @@ def advance(c, state, stop, cap, rows, first):
 
 
 @fused_njit
-def _too_many(state, cap, period):
+def too_many(state, cap, period):
     """Count an event of the running period; say whether there were more than `cap`."""
     if state[S_T] - state[S_PERIOD_START] >= period:
         state[S_PERIOD_START] = state[S_T]

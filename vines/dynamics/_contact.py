@@ -38,14 +38,14 @@ BEYOND = 1.125
 
 
 @fused_njit
-def first_step(c, motion, v2, wall, released):
+def first_step(c, o, beta, motion, v2, wall, released):
     """Return the certified step from the wall just left, where the gap is 0 exactly.
 
     After a release w' = w'' = 0 exactly, too.
     """
-    _, v, a, j, k = derivatives(c.free, c.Omega, *motion)
+    _, v, a, j, k = derivatives(o, c.Omega, *motion)
     a = pull(c, a)
-    re, im = fifth(c.free, *motion)
+    re, im = fifth(o, *motion)
     bound = modulus(re, im) + forced_fifth(c, *motion) * c.window
     speed = 0.0 if released else max(wall * (v2 - v), 0.0)
     second = 0.0 if released else wall * a
@@ -53,18 +53,18 @@ def first_step(c, motion, v2, wall, released):
     if own < 0.25 * c.window:
         own = max(own, leaving_step(speed, second, wall * j, max(wall * k, 0.0) + 0.2 * c.window * bound, c.window))
     pace = wall * (v2 - v)
-    span = min(c.window, 3.0 / pace) if pace > 0.0 else c.window
+    span = min(c.window, 3.0 * beta / pace) if pace > 0.0 else c.window
     if pace >= 0.0:
-        return min(own, step_ahead(2.0, pace, -wall * a, -wall * j, -wall * k, bound, span))
-    return min(own, step_back(2.0, -pace, -wall * a, -wall * j, -wall * k, bound, span))
+        return min(own, step_ahead(2.0 * beta, pace, -wall * a, -wall * j, -wall * k, bound, span))
+    return min(own, step_back(2.0 * beta, -pace, -wall * a, -wall * j, -wall * k, bound, span))
 
 
 @fused_njit
-def close_in(c, o, what, motion, x2, v2, side, tau, step, reach):
+def close_in(c, o, what, beta, motion, x2, v2, side, tau, step, reach):
     """Return (tau, x1, v1, x1'', x1''', x1'''') at the only root in [tau, tau + reach], estimated at tau + step.
 
-    It is that of the gap to the wall `side` (GAP), of the force between it and a ball riding on it (FORCE), or of the
-    velocity v1, which has the sign `side` (SPEED).
+    It is that of the gap to the wall `side` of a cavity of half length beta (GAP), of the force between it and a ball
+    riding on it (FORCE), or of the velocity v1, which has the sign `side` (SPEED).
     """
     low = tau
     high = tau + reach
@@ -76,7 +76,7 @@ def close_in(c, o, what, motion, x2, v2, side, tau, step, reach):
         d5, _ = fifth(o, *now)
         if what == GAP:
             way, speed = free_ball(c, v2, tau)
-            gap = 1.0 - side * (x - (x2 + way))
+            gap = beta - side * (x - (x2 + way))
             slope = side * (v - speed)
             d6 = sixth(o, *now)
             step, correction = taylor_root(gap, slope, side * pull(c, a), side * j, side * k, side * d5, side * d6)
@@ -138,7 +138,7 @@ def contact_within(c, motion, x2, v2, wall, released, tau, stop):
     window = c.window
     forced = forced_fifth(c, *motion) * window
     if tau == 0.0 and wall != 0:
-        h = first_step(c, motion, v2, wall, released)
+        h = first_step(c, o, 1.0, motion, v2, wall, released)
         if h > stop:
             return NO_CONTACT, 0.0, 0, 0.0, 0.0
         tau = h
@@ -157,7 +157,7 @@ def contact_within(c, motion, x2, v2, wall, released, tau, stop):
         h, _ = taylor_root(gap, pace, d2, d3, d4, side * d5, side * d6)
         reach = BEYOND * h
         if reach <= window and only_root(gap, pace, d2, d3, d4, bound, reach):
-            found, x, v, _, _, _ = close_in(c, o, GAP, motion, x2, v2, side, tau, h, reach)
+            found, x, v, _, _, _ = close_in(c, o, GAP, 1.0, motion, x2, v2, side, tau, h, reach)
             if found > stop:
                 return NO_CONTACT, tau, 0, 0.0, 0.0
             return CONTACT, found, side, x, v

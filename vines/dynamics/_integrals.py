@@ -19,6 +19,7 @@ from vines.kernels import by_type, fused_njit, linked_njit, loop_njit
 __all__ = [
     "base_per_force",
     "energies_between",
+    "frame_energies",
     "largest_displacement",
     "peak_between",
     "quadratic_forms",
@@ -91,6 +92,15 @@ def segment_integrals(c, mode, x1, v1, v2, phase, length):
 @fused_njit
 def energies_between(c, o, stuck, start, end, v2, length):
     """Return the same from u and G at both ends."""
+    x_square, v_square, work, loss = frame_energies(c, o, start, end, length)
+    if stuck:
+        return x_square, v_square, v_square, (1.0 + c.mu) * work, loss
+    return x_square, v_square, v2 * v2 * length, work, loss
+
+
+@fused_njit
+def frame_energies(c, o, start, end, length):
+    """Return the integrals of x1^2 and v1^2, work in flight and damper loss from u and G at both ends."""
     u0 = complex(start[0], start[1])
     g0 = complex(start[2], start[3])
     u1 = complex(end[0], end[1])
@@ -102,12 +112,7 @@ def energies_between(c, o, stuck, start, end, v2, length):
     c2 = complex(o.c2r, o.c2i)
     sum2 = 1.0 / (c2.real * c2.real + c2.imag * c2.imag)
     base = base_per_force(o, c.Omega, c.lam)
-    x_square, v_square, work, loss = quadratic_forms(
-        o.half, o.gamma, o.stiffness, c.Omega, c.lam, sum2, base, u0, g0, u1, g1, ug, uu, length
-    )
-    if stuck:
-        return x_square, v_square, v_square, (1.0 + c.mu) * work, loss
-    return x_square, v_square, v2 * v2 * length, work, loss
+    return quadratic_forms(o.half, o.gamma, o.stiffness, c.Omega, c.lam, sum2, base, u0, g0, u1, g1, ug, uu, length)
 
 
 @fused_njit
@@ -202,7 +207,7 @@ def peak_between(c, o, motion, end, start, length, best):
             h, _ = taylor_root(gap, slope, -side * j, -side * k, 0.0, 0.0, 0.0)
             reach = BEYOND * h
             if reach <= window and only_root(gap, slope, -side * j, -side * k, -bound, 0.0, reach):
-                tau, x, _, a, j, k = close_in(c, o, SPEED, motion, 0.0, 0.0, int(side), tau, h, reach)
+                tau, x, _, a, j, k = close_in(c, o, SPEED, 1.0, motion, 0.0, 0.0, int(side), tau, h, reach)
                 if tau > length:
                     return best, when
                 if abs(x) > best:

@@ -34,7 +34,7 @@ def fill_lane(c, state, L, i, length):
     step = 0.0
     if wall != 0.0:
         # On the wall itself the gap vanishes with its derivatives after a release: so far the scalar kernel answers.
-        step = first_step(c, (ur, ui, gr, gi), state[col.S_V2], int(wall), released)
+        step = first_step(c, c.free, 1.0, (ur, ui, gr, gi), state[col.S_V2], int(wall), released)
         if step < 1e-8:
             return False
     fastest = max(1.0, c.Omega)
@@ -137,7 +137,7 @@ def may_fly(c, state):
         wall = state[col.S_WALL]
         ur, ui, gr, gi = phasors(c.free, c.Omega, state[col.S_X1], state[col.S_V1], state[col.S_PHASE])
         speed = max(wall * (state[col.S_V2] - state[col.S_V1]), 0.0)
-        return not merges(c, int(wall), speed, (ur, ui, gr, gi), state[col.S_X2])
+        return not merges(c, c.free, c.r, c.correction, int(wall), speed, (ur, ui, gr, gi), state[col.S_X2])
     return True
 
 

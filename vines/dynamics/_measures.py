@@ -111,8 +111,11 @@ class Measures:
 
 def measures_from(p: Any, totals: npt.NDArray[np.float64]) -> Measures:
     """Return the measures of a window from the totals that `window_totals` gives."""
+    room = room_of(p)
+    if room.measures is not None:
+        return room.measures(p, totals)
     t = totals.tolist()
-    mass = room_of(p).mass(p)
+    mass = room.mass(p)
     duration = t[entry.DURATION]
     v1_square, v2_square = t[entry.V1_SQUARE], t[entry.V2_SQUARE]
     per = 1.0 / duration if duration > 0 else math.nan

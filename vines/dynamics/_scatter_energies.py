@@ -15,7 +15,7 @@ from vines.dynamics._flight import flight, modulus, turn
 from vines.dynamics._integrals import NODES, WEIGHTS, peak_between, stays_below
 from vines.dynamics._scatter_constants import ScatterConstants, ScatterOscillator
 from vines.dynamics._scatter_motion import LEFT, end_of, redraw
-from vines.dynamics._totals import add_segment, base_at, event_loss, event_work, stored_energy
+from vines.dynamics._totals import add_segment, base_at, event_loss, event_work, stored_energy, window_totals
 from vines.kernels import fused_njit, linked_njit, njit
 
 __all__: list[str] = []
@@ -27,7 +27,7 @@ def _base_at(c, phase):
     return c.A * np.sin(phase) + c.second * np.sin(2.0 * phase + c.second_phase)
 
 
-for _name in (event_loss, event_work, stored_energy):
+for _name in (event_loss, event_work, stored_energy, window_totals):
     _name.register(ScatterConstants)(_name.first)
 
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 import cmath
 import math
 
-from vines.dynamics._advance import law_of
+from vines.dynamics._advance import advance, begin, law_of
 from vines.dynamics._contact import NO_CONTACT, contact_within, next_contact
 from vines.dynamics._flight import (
     decay,
@@ -30,6 +30,7 @@ from vines.dynamics._random import normal
 from vines.dynamics._scatter_constants import Piece, ScatterConstants, ScatterOscillator, added
 from vines.dynamics._sincos import sincos
 from vines.dynamics._sticking import UNRESOLVED, holds_for, next_release, release_within
+from vines.dynamics._window import write_end
 from vines.kernels import fused_njit, linked_njit, loop_njit, njit
 
 __all__ = ["LEFT", "end_of", "redraw"]
@@ -124,8 +125,8 @@ def redraw(c, o, motion):
     return ur, ui, pr, pi, qr, qi, drawn, c.grid, index + 1.0
 
 
-free_ball.register(ScatterConstants)(free_ball.first)
-pull.register(ScatterConstants)(pull.first)
+for _name in (advance, begin, free_ball, pull, write_end):
+    _name.register(ScatterConstants)(_name.first)
 
 
 @flown.register(ScatterConstants)
@@ -233,7 +234,7 @@ def _next_release(c, side, motion, tau, stop):
         clear = max(tau - begins, 0.0)
         until = min(stop - begins, left)
         if clear < until:
-            code, at, x, v = release_within(c, side, motion, clear, until)
+            code, at, x, v = release_within(c, c.stuck, side, motion, clear, until)
             if code != NO_CONTACT:
                 return code, begins + at, x, v
             clear = at

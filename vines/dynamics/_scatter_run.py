@@ -65,7 +65,7 @@ def scatter_block(
             begins = end
             part += 1
             end = length if part == BATCHES else part * length / BATCHES
-            rows, count, code = run_window(c, state, end, cap, rows, open_window(state, rows))
+            rows, count, code = run_window(c, state, end, cap, rows, open_window(c, state, rows))
             if what & lanes.WITH_MEASURES:
                 sums = window_totals(c, rows, count + 1, begins, rows[count, col.TIME])
                 close_batch(c.mu, sums, total, values[part - 1])

@@ -9,8 +9,8 @@ import numpy as np
 import numpy.typing as npt
 
 from vines.dynamics import _advance as col
-from vines.dynamics._advance import begin, new_state, set_state
-from vines.dynamics._room import constants, start_of
+from vines.dynamics._advance import begin
+from vines.dynamics._room import constants, room_of, start_of
 from vines.dynamics._trajectory import Trajectory
 from vines.dynamics._window import run_window
 from vines.errors import StateError
@@ -24,7 +24,7 @@ STATUS = {col.COMPLETE: "complete", col.EVENT_CAP: "impact_cap", col.STEP_LIMIT:
 
 
 def record(
-    c: Any, state: npt.NDArray[np.float64], stop: float, cap: int, expected: int
+    c: Any, state: npt.NDArray[np.float64], stop: float, cap: int, expected: int, width: int = col.ROW
 ) -> tuple[npt.NDArray[np.float64], str]:
     """Run on to `stop` with every row kept, whatever their number, and a last row for the end.
 
@@ -33,8 +33,8 @@ def record(
     (rows, status)
         Rows from one for the last event before the call to one for the end.
     """
-    rows = np.empty((max(expected, 16), col.ROW))
-    begin(state, rows)
+    rows = np.empty((max(expected, 16), width))
+    begin(c, state, rows)
     rows, count, code = run_window(c, state, stop, cap, rows, 1)
     return rows[: count + 1].copy(), STATUS[code]
 
@@ -84,14 +84,16 @@ def simulate(
     >>> abs(run.measures(last=1).balance) < 1e-14
     True
     """
-    begin = start_of(p, start, t, phi)
+    at = start_of(p, start, t, phi)
     if not (isinstance(periods, int | float) and math.isfinite(periods) and periods > 0):
         raise StateError(f"periods is {periods!r}; give a finite number > 0")
     if max_impacts_per_period < 1:
         raise StateError(f"max_impacts_per_period is {max_impacts_per_period!r}; give an integer >= 1")
     c = constants(p)
-    state = new_state()
-    set_state(state, *begin, float(t))
+    room = room_of(p)
+    layout = room.layout(p)
+    state = np.zeros(layout.state)
+    room.begin(c, state, *at, float(t))
     stop = t + periods * p.period
-    rows, status = record(c, state, stop, max_impacts_per_period, int(4 * periods) + 64)
-    return Trajectory(p, float(phi), float(t), float(rows[-1, col.TIME]), status, rows)
+    rows, status = record(c, state, stop, max_impacts_per_period, int(4 * periods) + layout.rows, layout.width)
+    return (room.trajectory or Trajectory)(p, float(phi), float(t), float(rows[-1, col.TIME]), status, rows)

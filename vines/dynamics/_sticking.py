@@ -20,28 +20,28 @@ UNRESOLVED = 8.0 * 2.220446049250313e-16
 
 
 @fused_njit
-def merges(c, side, speed, motion, x2):
+def merges(c, o, r, correction, side, speed, motion, x2):
     """Say whether a ball leaving `side` at `speed` >= 0 is to be taken as stuck from now on.
 
     It is, if the rest of its chatter changes the common velocity by less than OMITTED while the push keeps its sign,
     or if its flight is too low for double precision; with no speed at all the sign of the push decides.
     """
-    _, _, a, j, k = derivatives(c.free, c.Omega, *motion)
+    _, _, a, j, k = derivatives(o, c.Omega, *motion)
     push = side * pull(c, a)
     jerk = side * j
     if speed == 0.0:
         return push > 0.0 or (push == 0.0 and jerk >= 0.0)
     if push <= 0.0:
         return False
-    height = UNRESOLVED * (terms(c.free, *motion) + abs(x2))
+    height = UNRESOLVED * (terms(o, *motion) + abs(x2))
     cube = speed * speed * speed
     # The hop comes back after speed/push or, where the push grows, after sqrt(2 speed/jerk) at the latest.
     unresolved = speed * speed < height * push or (jerk > 0.0 and 2.0 * cube < height * height * jerk)
-    if not (unresolved or c.correction * cube < OMITTED * push * push):
+    if not (unresolved or correction * cube < OMITTED * push * push):
         return False
-    if unresolved and (jerk >= 0.0 or c.r >= 1.0):
+    if unresolved and (jerk >= 0.0 or r >= 1.0):
         return True
-    rest = 2.0 * speed / (push * (1.0 - c.r))
+    rest = 2.0 * speed / (push * (1.0 - r))
     return rest <= holds_for(c, *motion) and jerk * rest > -0.25 * push and abs(k) * rest * rest < 0.25 * push
 
 
@@ -61,13 +61,12 @@ def next_release(c, side, motion, tau, stop):
     -------
     (code, tau, x1, v1)
     """
-    return release_within(c, side, motion, tau, stop)
+    return release_within(c, c.stuck, side, motion, tau, stop)
 
 
 @fused_njit
-def release_within(c, side, motion, tau, stop):
+def release_within(c, o, side, motion, tau, stop):
     """Return the same where the force does not jump before `stop`."""
-    o = c.stuck
     window = c.window
     forced = forced_fifth(c, *motion) * window
     for _ in range(MAX_STEPS):
@@ -85,7 +84,7 @@ def release_within(c, side, motion, tau, stop):
             reach = BEYOND * h
             # One order lower than in flight: the third derivative of the force is only bounded.
             if reach <= window and only_root(force, slope, bend, -bound, 0.0, 0.0, reach):
-                found, x, v, _, _, _ = close_in(c, o, FORCE, motion, 0.0, 0.0, side, tau, h, reach)
+                found, x, v, _, _, _ = close_in(c, o, FORCE, 1.0, motion, 0.0, 0.0, side, tau, h, reach)
                 return (CONTACT, found, x, v) if found <= stop else (NO_CONTACT, tau, 0.0, 0.0)
         if force == 0.0:
             h = leaving_step(-slope, bend, bound, 0.0, window)

@@ -150,6 +150,7 @@ def add_segment(c, out, mode, begins, x1, v1, v2, phase, length):
         out[T_MAX_ABS_X1] = begins + when
 
 
+@by_type(Constants)
 @linked_njit
 def window_totals(c, rows, n, start, stop):
     """Return the totals of the time window (start, stop] of a run of n rows, the last of which ends it.

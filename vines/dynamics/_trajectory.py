@@ -16,7 +16,7 @@ from vines.dynamics._totals import accumulate, sample_rows, window_totals
 from vines.errors import StateError
 from vines.model import START_NAMES, STATE_NAMES, VI_NES
 
-__all__ = ["EVENT", "IMPACT", "SAMPLE", "STICK", "Trajectory", "impacts_of"]
+__all__ = ["BALL_IMPACT", "EVENT", "IMPACT", "SAMPLE", "STICK", "Trajectory", "impacts_of"]
 
 _ENERGIES = VI_NES.energies
 
@@ -57,10 +57,16 @@ _COLUMN = {
 Table = npt.NDArray[np.void]
 
 
-def impacts_of(rows: npt.NDArray[np.float64]) -> Table:
-    """Return the impacts among rows as a structured array of dtype IMPACT."""
+BALL_IMPACT = np.dtype([*IMPACT.descr, ("ball", "i8"), ("ties", "i8")])
+"""Where there are several balls: the number of the ball, from 1 on, and how many others hit at the same instant."""
+
+
+def impacts_of(rows: npt.NDArray[np.float64], balls: bool = False) -> Table:
+    """Return the impacts among rows as a structured array of dtype IMPACT, BALL_IMPACT where balls have numbers."""
     hits = rows[rows[:, col.KIND] == col.IMPACT]
-    out = np.empty(len(hits), dtype=IMPACT)
+    out = np.empty(len(hits), dtype=BALL_IMPACT if balls else IMPACT)
+    if balls:
+        out["ball"], out["ties"] = hits[:, col.ROW], hits[:, col.ROW + 1]
     for name, column in _COLUMN.items():
         if name != "kind":
             out[name] = hits[:, column]
@@ -106,7 +112,7 @@ class Trajectory:
     @cached_property
     def impacts(self) -> Table:
         """The impacts: t, side (+1 L, -1 R), state and w_dot just before, velocities just after, phase, index."""
-        return impacts_of(self.rows)
+        return impacts_of(self.rows, self.rows.shape[1] > col.ROW)
 
     @cached_property
     def sticks(self) -> Table:
@@ -148,8 +154,12 @@ class Trajectory:
         """State at the end: the coordinates of the system (x1, v1, x2, v2 of the VI-NES), t and phase [rad]."""
         last = self.rows[-1]
         phase = float(last[col.PHASE])
-        x1, v1, x2, v2 = last[[col.X1, col.A_V1, col.X2, col.A_V2]].tolist()
-        return {**room_of(self.params).leave(self.params, x1, v1, x2, v2, phase), "t": self.t_end, "phase": phase}
+        at = last[[col.X1, col.A_V1, col.X2, col.A_V2]].tolist()
+        return {
+            **room_of(self.params).leave(self.params, at, phase, last[col.ROW :].tolist()),
+            "t": self.t_end,
+            "phase": phase,
+        }
 
     def measures(self, last: float | None = None) -> Measures:
         """Return the energy measures of the whole run, or of its last forcing periods.

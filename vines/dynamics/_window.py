@@ -4,15 +4,23 @@ from __future__ import annotations
 
 from vines.dynamics import _advance as col
 from vines.dynamics._advance import advance, begin, state_now
-from vines.kernels import cold_njit, linked_njit, new_matrix, njit
+from vines.dynamics._constants import Constants, ParameterTable
+from vines.kernels import by_type, cold_njit, linked_njit, new_matrix, njit
 
-__all__ = ["open_window", "run_window", "with_room"]
+__all__ = ["open_window", "run_window", "width_of", "with_room", "write_end"]
+
+
+@by_type(ParameterTable)
+@njit
+def width_of(table):
+    """Return the length of the rows of events of a system."""
+    return col.ROW
 
 
 @njit
-def open_window(state, rows):
+def open_window(c, state, rows):
     """Begin a window at the time of the state; return the number of rows that it has."""
-    begin(state, rows)
+    begin(c, state, rows)
     return 1
 
 
@@ -41,18 +49,24 @@ def run_window(c, state, stop, cap, rows, count):
     """
     count, code = advance(c, state, stop, cap, rows, count)
     while code == col.BUFFER_FULL:
-        rows = with_room(rows, count, 2 * count)
+        rows = with_room(rows, count, 2 * rows.shape[0])
         count, code = advance(c, state, stop, cap, rows, count)
     if count == rows.shape[0]:
-        rows = with_room(rows, count, 2 * count)
+        rows = with_room(rows, count, 2 * rows.shape[0])
     end = stop if code == col.COMPLETE else state[col.S_T] + state[col.S_CLEAR]
+    write_end(c, state, end, rows[count])
+    return rows, count, code
+
+
+@by_type(Constants)
+@njit
+def write_end(c, state, end, last):
+    """Write the row of the end of a window, with the state there."""
     x1, v1, x2, v2, phase, tau = state_now(c, state, end)
-    last = rows[count]
     last[col.KIND], last[col.SIDE], last[col.TIME], last[col.TAU] = col.END, 0.0, end, tau
     last[col.PHASE], last[col.MODE], last[col.RUN] = phase, state[col.S_MODE], 0.0
     last[col.X1], last[col.V1], last[col.X2], last[col.V2] = x1, v1, x2, v2
     last[col.A_V1], last[col.A_V2] = v1, v2
-    return rows, count, code
 
 
 @cold_njit

@@ -1,5 +1,6 @@
 """Periodic orbits of words: solution, stability, admissibility, measures, and families of them with bifurcations."""
 
+from vines.orbits import _balls as _balls
 from vines.orbits import _capsule as _capsule
 from vines.orbits._all import Orbits, all_orbits
 from vines.orbits._branch import Bifurcation, Branch
@@ -13,6 +14,7 @@ from vines.orbits._joined import mirror_image
 from vines.orbits._margins import Margin
 from vines.orbits._optimum import Optimum, optimise
 from vines.orbits._orbit import Orbit
+from vines.orbits._own_word import own_word
 from vines.orbits._reduced import Reduced, manifold_amplitude, manifold_range, reduced_orbits, reduced_range
 from vines.orbits._rows import bifurcation_row, branch_row, orbit_outline, orbit_row
 from vines.orbits._switch import switch_branch
@@ -47,6 +49,7 @@ __all__ = [
     "optimise",
     "orbit_outline",
     "orbit_row",
+    "own_word",
     "reduced_orbits",
     "reduced_range",
     "switch_branch",

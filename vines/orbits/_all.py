@@ -17,8 +17,9 @@ from vines.orbits._equations import newton_kernel
 from vines.orbits._general import ITERATIONS, proper, same
 from vines.orbits._joined import mirror_image
 from vines.orbits._orbit import Orbit
+from vines.orbits._own_word import whole_word
 from vines.orbits._seeds import base_word, doubled_times, harvested_times, random_times, simplex_times
-from vines.orbits._values import unit_of
+from vines.orbits._values import marks_of, unit_of
 
 __all__ = ["Orbits", "all_orbits"]
 
@@ -90,7 +91,7 @@ def all_orbits(word: str | Word, p: Any) -> Orbits:
     >>> found.complete, [(orbit.symmetric, orbit.stable) for orbit in found if orbit.admissible]
     (True, [(True, False), (False, True), (False, True)])
     """
-    word = Word(word)
+    word = whole_word(word, p)
     refuse_resonance(p)
     if not isinstance(p, Params):
         return _searched(word, p)
@@ -142,7 +143,7 @@ class _Gathered:
         self.orbits: list[Orbit] = []
         self.nearest = np.inf
         self._duration = word.p * p.period
-        self._side = np.array(word.sides, dtype=np.int64)
+        self._side = marks_of(word)
 
     def solve(self, t: Floats) -> bool:
         """Add what Newton's method finds from impact times, and say whether it converged."""

@@ -14,6 +14,7 @@ from vines.orbits._budget import orbit_measures
 from vines.orbits._floquet import FIXED_TIME, IMPACT_TO_IMPACT, half_map, monodromy, sorted_multipliers, squared
 from vines.orbits._orbit import Orbit
 from vines.orbits._survey import survey_kernel
+from vines.orbits._values import marks_of
 
 __all__ = ["assemble", "asymmetry"]
 
@@ -40,7 +41,7 @@ def assemble(word: Word, p: Any, t: Floats, states: Floats, remark: str = "") ->
     """
     t, states = _canonical(word, p, t, states)
     duration = word.p * p.period
-    side = np.array(word.sides, dtype=np.int64)
+    side = marks_of(word)
     c = constants(p)
     jacobians, residual, clearance, violation, wall = survey_kernel(c, duration, side, t, states)
     symmetric = asymmetry(word, duration, t, states) < _SAME
@@ -72,8 +73,12 @@ def assemble(word: Word, p: Any, t: Floats, states: Floats, remark: str = "") ->
 
 def _canonical(word: Word, p: Any, t: Floats, states: Floats) -> tuple[Floats, Floats]:
     """Rotate to the canonical first impact, the one of least phase if there are several, and shift it into [0, T)."""
-    letters = VI_NES.letters(states[:, X1] - states[:, X2])
-    starts = [k for k in range(len(t)) if letters[k:] + letters[:k] == word.letters]
+    if any(word.balls):
+        # Such orbits are solved for in the canonical order.
+        starts = list(word.rotations())
+    else:
+        letters = VI_NES.letters(states[:, X1] - states[:, X2])
+        starts = [k for k in range(len(t)) if letters[k:] + letters[:k] == word.letters]
     k = min(starts, key=lambda k: (float(t[k] % p.period), k))
     times = np.concatenate([t[k:], t[:k] + word.p * p.period])
     times -= math.floor(times[0] / p.period) * p.period

@@ -90,7 +90,7 @@ class Branch:
     @property
     def values(self) -> npt.NDArray[np.float64]:
         """Values of the parameter at the orbits."""
-        return np.array([getattr(orbit.params, self.parameter) for orbit in self.orbits])
+        return np.array([orbit.params.as_dict()[self.parameter] for orbit in self.orbits])
 
     @property
     def symmetric(self) -> bool:

@@ -9,17 +9,19 @@ import numpy as np
 import numpy.typing as npt
 
 from vines.dynamics import Measures
-from vines.dynamics.kernels import after_impact_kernel, window_totals
+from vines.dynamics.kernels import Constants, after_impact_kernel, window_totals
 from vines.dynamics.kernels import rows as column
 from vines.dynamics.runs import measures_from
-from vines.kernels import entry_njit, linked_njit, zero_matrix
+from vines.kernels import by_type, entry_njit, linked_njit, zero_matrix
 from vines.model import Word
+from vines.orbits._values import marks_of
 
 __all__ = ["orbit_measures", "orbit_rows"]
 
 Floats = npt.NDArray[np.float64]
 
 
+@by_type(Constants)
 @linked_njit
 def orbit_rows(c, duration, side, t, states):
     """Return the rows of events from just after the first impact of a closed orbit to just after its return."""
@@ -55,5 +57,5 @@ def orbit_measures(p: Any, c: Any, word: Word, t: Floats, states: Floats) -> Mea
 
     `Measures.energy_change` is rounding, and with it `Measures.balance`.
     """
-    side = np.array(word.sides, dtype=np.int64)
+    side = marks_of(word)
     return measures_from(p, _totals(c, word.p * p.period, side, t, states))

@@ -57,6 +57,9 @@ def _gravity(c):
     return c.G
 
 
+orbit_rows.register(PairConstants)(orbit_rows.first)
+
+
 @survey_kernel.register(PairConstants)
 @linked_njit
 def _survey(c, duration, side, t, states):

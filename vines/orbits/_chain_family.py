@@ -12,7 +12,7 @@ from vines.dynamics.kernels import constants
 from vines.orbits._assemble import assemble
 from vines.orbits._equations import closing_kernel
 from vines.orbits._orbit import Orbit
-from vines.orbits._values import frequency_of
+from vines.orbits._values import frequency_of, marks_of
 
 __all__ = ["ChainProblem"]
 
@@ -39,7 +39,7 @@ class ChainProblem:
         self.word = orbit.word
         self.parameter = parameter
         self._fixed = orbit.params
-        self._side = np.array(orbit.word.sides, dtype=np.int64)
+        self._side = marks_of(orbit.word)
         n = len(orbit.word) // 2 if orbit.symmetric else len(orbit.word)
         value = orbit.params.as_dict()[parameter]
         self.start = np.append(orbit.t[:n] * frequency_of(orbit.params), value)

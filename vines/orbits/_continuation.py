@@ -97,8 +97,8 @@ def continue_orbit(
     """
     system = VI_NES if isinstance(orbit.params, Params) else orbit.params.system
     system.parameter(parameter)
-    start = getattr(orbit.params, parameter)
-    stop = getattr(orbit.params.replace(**{parameter: stop}), parameter)
+    start = orbit.params.as_dict()[parameter]
+    stop = orbit.params.replace(**{parameter: stop}).as_dict()[parameter]
     if start == stop:
         raise ParameterError(f"stop is {stop:g}, which is where {parameter} is already; give another value")
     low, high = sorted((start, stop) if within is None else within)

@@ -12,6 +12,7 @@ from vines.model import Params, Word
 from vines.orbits._all import Orbits, all_orbits
 from vines.orbits._general import refine, search
 from vines.orbits._orbit import Orbit
+from vines.orbits._own_word import whole_word
 from vines.orbits._symmetric import no_symmetric_orbit
 
 __all__ = ["find_orbit"]
@@ -53,7 +54,7 @@ def find_orbit(word: str | Word, p: Any, guess: Orbit | npt.ArrayLike | None = N
     >>> print(find_orbit("LLR", Params(mu=0.01, A=0.023)).stable)
     True
     """
-    word = Word(word)
+    word = whole_word(word, p)
     if guess is not None:
         return refine(word, p, guess)
     found = all_orbits(word, p)

@@ -15,7 +15,7 @@ from vines.orbits._assemble import assemble, asymmetry
 from vines.orbits._closed_form import refuse_resonance
 from vines.orbits._equations import newton_kernel
 from vines.orbits._orbit import Orbit
-from vines.orbits._values import frequency_of, unit_of
+from vines.orbits._values import frequency_of, marks_of, unit_of
 
 __all__ = ["ITERATIONS", "origin", "proper", "refine", "same", "search"]
 
@@ -28,10 +28,6 @@ _SAME = 1e-6
 
 _NEAR = 1e-3
 """The same at a point where families join, which the degenerate equations there give to half the digits only."""
-
-
-def _sides(word: Word) -> npt.NDArray[np.int64]:
-    return np.array(word.sides, dtype=np.int64)
 
 
 def refine(word: Word, p: Any, guess: Orbit | npt.ArrayLike) -> Orbit:
@@ -57,7 +53,7 @@ def refine(word: Word, p: Any, guess: Orbit | npt.ArrayLike) -> Orbit:
             f"the guess for {word} has to be {len(word)} increasing times within {word.p} forcing periods, "
             f"{duration:.6g}; it is {np.array2string(times, precision=4, threshold=8)}"
         )
-    converged, t, defect, states = newton_kernel(constants(p), duration, _sides(word), times, ITERATIONS)
+    converged, t, defect, states = newton_kernel(constants(p), duration, marks_of(word), times, ITERATIONS)
     if not converged:
         raise OrbitNotFound(
             f"no {word} orbit from this guess at {p}: Newton's method stopped at a defect of {defect / unit_of(p):.2g};"
@@ -76,7 +72,7 @@ def search(word: Word, p: Any) -> tuple[list[Orbit], float]:
 
     The starts are drawn from a fixed seed, uniformly over the flight times and the phase.
     """
-    c, duration, side = constants(p), word.p * p.period, _sides(word)
+    c, duration, side = constants(p), word.p * p.period, marks_of(word)
     rng = np.random.default_rng(len(word))
     found: list[Orbit] = []
     nearest = math.inf
@@ -104,7 +100,7 @@ def _repetition(word: Word, duration: float, t: Floats, states: Floats) -> float
     """Return how far, in any component, an orbit is from the repetition of one with a shorter period."""
     least = math.inf
     for times in range(2, word.p + 1):
-        if word.p % times or len(word) % times:
+        if word.p % times or len(word) % times or word.letters[: len(word.letters) // times] * times != word.letters:
             continue
         shift = len(word) // times
         later = np.append(t[shift:], t[:shift] + duration) - duration / times

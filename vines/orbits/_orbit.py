@@ -155,7 +155,7 @@ class Orbit:
 
     def _after(self) -> Floats:
         """Return v1, v2 just after each impact (paper, eq. (12)), shape (N, 2)."""
-        law = room_of(self.params).law(self.params, 1)
+        law = room_of(self.params).law(self.params, np.maximum(self.word.balls, 1))
         return np.column_stack(after_impact(law, self.states[:, V1], self.states[:, V2]))
 
     def start(self) -> dict[str, float]:
@@ -166,8 +166,9 @@ class Orbit:
         dict
             The coordinates of the system (x1, v1, x2, v2) and t: arguments of `vines.simulate`.
         """
-        (x1, _, x2, _), (v1, v2), phase = self.states[0].tolist(), self._after()[0].tolist(), float(self.phase[0])
-        return {**room_of(self.params).leave(self.params, x1, v1, x2, v2, phase), "t": float(self.t[0])}
+        (x1, _, x2, _), (v1, v2) = self.states[0].tolist(), self._after()[0].tolist()
+        at = room_of(self.params).leave(self.params, (x1, v1, x2, v2), float(self.phase[0]))
+        return {**at, "t": float(self.t[0])}
 
     def __str__(self) -> str:
         kind = [

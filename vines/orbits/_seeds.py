@@ -44,11 +44,14 @@ def harvested_times(word: Word, p: Any) -> Iterator[Floats]:
         if len(hits) <= N:
             continue
         letters = VI_NES.letters(hits["side"])
+        if any(word.balls):
+            letters = p.system.letters(hits["side"], hits["ball"].tolist())
+        width = len(word.letters) // N
         t = np.asarray(hits["t"])
         change = np.abs(t[N:] - t[:-N] - duration)
         for name in STATE_NAMES:
             change = np.maximum(change, np.abs(hits[name][N:] - hits[name][:-N]))
-        reads = np.array([letters[k : k + N] == word.letters for k in range(len(change))])
+        reads = np.array([letters[k * width : (k + N) * width] == word.letters for k in range(len(change))])
         for k in [k for k in np.argsort(change, kind="stable") if reads[k] and change[k] < 0.5][:_BEST]:
             flights = np.diff(t[k : k + N + 1])
             # The stretch is made to close after pT exactly.

@@ -36,13 +36,13 @@ def _gap(c, motion, x2, v2, tau):
 
 
 @njit
-def _crossing(c, motion, x2, v2, side, inside, outside):
+def _crossing(c, beta, motion, x2, v2, side, inside, outside):
     """Return the time in [inside, outside] at which a monotone gap passes the wall."""
     for _ in range(200):
         mid = 0.5 * (inside + outside)
         if mid <= inside or mid >= outside:
             break
-        if side * _gap(c, motion, x2, v2, mid)[0] < 1.0:
+        if side * _gap(c, motion, x2, v2, mid)[0] < beta:
             inside = mid
         else:
             outside = mid
@@ -50,8 +50,8 @@ def _crossing(c, motion, x2, v2, side, inside, outside):
 
 
 @linked_njit
-def inspect_flight(c, side, x1, v1, x2, v2, phase, tau):
-    """Inspect the flight that starts at `side` just after an impact and lasts tau.
+def inspect_flight(c, beta, side, x1, v1, x2, v2, phase, tau):
+    """Inspect a flight in a cavity of half length beta that starts at `side`, or at no wall (0), and lasts tau.
 
     Returns
     -------
@@ -64,18 +64,18 @@ def inspect_flight(c, side, x1, v1, x2, v2, phase, tau):
     clearance = NO_TURNING
     violation = math.nan
     wall = 0
-    if side * speed > 0.0 or (speed == 0.0 and side * push >= 0.0):
+    if side != 0 and (side * speed > 0.0 or (speed == 0.0 and side * push >= 0.0)):
         violation = 0.0
         wall = side
     before = 0.0
     for at in turning_points_kernel(c, motion, v2, tau):
         w, _, bend = _gap(c, motion, x2, v2, at)
         towards = 1 if bend < 0.0 else -1
-        distance = 1.0 - towards * w
+        distance = beta - towards * w
         clearance = min(clearance, distance)
         if distance <= 0.0 and wall == 0:
             wall = towards
-            violation = _crossing(c, motion, x2, v2, towards, before, at)
+            violation = _crossing(c, beta, motion, x2, v2, towards, before, at)
         before = at
     return clearance, violation, wall
 
@@ -130,7 +130,7 @@ def survey_kernel(c, duration, side, t, states):
             abs(v2n - states[k, 3]),
         )
         after, _ = after_impact_kernel(c.law, v1, v2)
-        distance, when, where = inspect_flight(c, side[j], x1, after, x2, v2n, phase, tau)
+        distance, when, where = inspect_flight(c, 1.0, side[j], x1, after, x2, v2n, phase, tau)
         clearance = min(clearance, distance)
         if where != 0 and wall == 0:
             violation = t[j] + when
@@ -166,7 +166,7 @@ def survey_rows(c, rows, side):
             abs(v2 - following[col.V2]),
         )
         distance, when, where = inspect_flight(
-            c, side[j], row[col.X1], row[col.A_V1], row[col.X2], row[col.A_V2], row[col.PHASE], tau
+            c, 1.0, side[j], row[col.X1], row[col.A_V1], row[col.X2], row[col.A_V2], row[col.PHASE], tau
         )
         clearance = min(clearance, distance)
         if where != 0 and wall == 0:

@@ -13,9 +13,9 @@ import numpy.typing as npt
 
 from vines.dynamics.kernels import impact_law_kernel, oscillator
 from vines.kernels import njit
-from vines.model import AMPLITUDE, DAMPING, FREQUENCY, MASS, RESTITUTION, Params
+from vines.model import AMPLITUDE, DAMPING, FREQUENCY, MASS, RESTITUTION, Params, Word
 
-__all__ = ["Essentials", "essentials", "essentials_of", "frequency_of", "unit_of", "values_of"]
+__all__ = ["Essentials", "essentials", "essentials_of", "frequency_of", "marks_of", "unit_of", "values_of"]
 
 
 class Essentials(NamedTuple):
@@ -42,6 +42,11 @@ def values_of(p: Params) -> npt.NDArray[np.float64]:
 def frequency_of(p: Any) -> float:
     """Return the frequency of the forcing of any system."""
     return float(getattr(p, "Omega", 1.0))
+
+
+def marks_of(word: Word) -> npt.NDArray[np.int64]:
+    """Return the wall of each impact of a word, times the number of the ball where balls have numbers."""
+    return np.array([side * max(ball, 1) for side, ball in zip(word.sides, word.balls, strict=True)], dtype=np.int64)
 
 
 def unit_of(p: Any) -> float:

@@ -6,11 +6,22 @@ from vines.dynamics import _totals as entry
 from vines.dynamics._advance import A_V2, V1, V2
 from vines.dynamics._flight import flight, turn
 from vines.dynamics._integrals import segment_integrals
-from vines.dynamics._totals import add_segment, ball_mass, base_at, event_loss, event_work, stored_energy
+from vines.dynamics._totals import (
+    add_segment,
+    ball_mass,
+    base_at,
+    event_loss,
+    event_work,
+    stored_energy,
+    window_totals,
+)
 from vines.dynamics.impact_pair._constants import PairConstants
 from vines.kernels import linked_njit, njit
 
 __all__: list[str] = []
+
+
+window_totals.register(PairConstants)(window_totals.first)
 
 
 @ball_mass.register(PairConstants)

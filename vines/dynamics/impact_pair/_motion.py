@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 
-from vines.dynamics._advance import A_V2, IMPACT, KIND, SIDE, STICK, V1, V2, X1, X2, law_of
+from vines.dynamics._advance import A_V2, IMPACT, KIND, SIDE, STICK, V1, V2, X1, X2, advance, begin, law_of
 from vines.dynamics._contact import next_contact
 from vines.dynamics._flight import (
     derivatives,
@@ -29,13 +29,16 @@ from vines.dynamics._impact_law import after_impact_kernel
 from vines.dynamics._sincos import sincos
 from vines.dynamics._sticking import holds_for, next_release
 from vines.dynamics._tangent import directions, flow_basis, jump_basis, offset
-from vines.dynamics.impact_pair._constants import Capsule, PairConstants
+from vines.dynamics._window import width_of, write_end
+from vines.dynamics.impact_pair._constants import Capsule, PairConstants, PairTable
 from vines.kernels import fused_njit, njit
 
 __all__: list[str] = []
 
-for _name in (law_of, next_contact, next_release, flown):
+for _name in (advance, begin, write_end, law_of, next_contact, next_release, flown):
     _name.register(PairConstants)(_name.first)
+
+width_of.register(PairTable)(width_of.first)
 
 
 @flight.register(PairConstants)

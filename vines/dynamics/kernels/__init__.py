@@ -39,7 +39,7 @@ from vines.dynamics._room import constants, room_of, table_of
 from vines.dynamics._saltation import jacobian_kernel
 from vines.dynamics._tangent import directions, flow_basis, jump_basis, lyapunov_blocks, offset, tangent_product
 from vines.dynamics._totals import ball_mass, segment_state, window_totals
-from vines.dynamics._window import open_window, run_window, with_room
+from vines.dynamics._window import open_window, run_window, width_of, with_room
 
 __all__ = [
     "BATCHES",
@@ -89,6 +89,7 @@ __all__ = [
     "tangent_product",
     "totals",
     "turn",
+    "width_of",
     "window_totals",
     "with_room",
 ]

@@ -1,0 +1,104 @@
+"""Disturbances of the frame and of several balls, (x1, v1, x2_1, v2_1, …), at fixed time.
+
+At an impact the balls that ride are kicked off or struck: they follow the frame until the disturbed impact and fly
+freely after it. Balls that hit together are taken one after the other, the flow being discontinuous there.
+"""
+
+from __future__ import annotations
+
+from vines.dynamics._advance import A_V1, A_V2, IMPACT, KIND, PHASE, SIDE, STICK, V1, V2, X1, X2
+from vines.dynamics._flight import decay, derivatives, flight
+from vines.dynamics._impact_law import after_impact_kernel
+from vines.dynamics._sincos import sincos
+from vines.dynamics._tangent import directions, flow_basis, jump_basis, offset
+from vines.dynamics.parallel._constants import ParallelConstants, frame_with, riding
+from vines.dynamics.parallel._layout import BALL, BEFORE
+from vines.kernels import fused_njit, linked_njit, njit
+
+__all__: list[str] = []
+
+
+@directions.register(ParallelConstants)
+@njit
+def _directions(c):
+    return (0.0, 0.0) + c.mu + c.mu  # noqa: RUF005 — numba knows the length of this sum only
+
+
+@flow_basis.register(ParallelConstants)
+@fused_njit
+def _flow_basis(c, mode, tau, Y):
+    o = c.free.own if mode == 0.0 else frame_with(c, mode).own
+    ride = int(abs(mode))
+    size = decay(o.half * tau)
+    sine, cosine = sincos(o.gamma * tau)
+    sine *= size * o.inverse
+    cosine *= size
+    for j in range(Y.shape[1]):
+        x, v = Y[0, j], Y[1, j]
+        Y[0, j] = (cosine + o.half * sine) * x + sine * v
+        Y[1, j] = -o.stiffness * sine * x + (cosine - o.half * sine) * v
+        for i in range(len(c.mu)):
+            if ride & (1 << i):
+                Y[2 + 2 * i, j], Y[3 + 2 * i, j] = Y[0, j], Y[1, j]
+            else:
+                Y[2 + 2 * i, j] += tau * Y[3 + 2 * i, j]
+
+
+@njit
+def _acceleration(c, o, row, v):
+    return derivatives(o, c.Omega, *flight(c, o, row[X1], v, row[PHASE], 0.0))[2]
+
+
+@jump_basis.register(ParallelConstants)
+@linked_njit
+def _jump_basis(c, row, Y):
+    b = int(row[BALL]) - 1
+    before = row[BEFORE]
+    ride = int(abs(before))
+    if row[KIND] == IMPACT:
+        v1, v2 = row[V1], row[V2]
+        law = c.law[b]
+        after1, after2 = after_impact_kernel(law, v1, v2)
+        o = frame_with(c, before)
+        a = _acceleration(c, o, row, v1)
+        kicked = row[A_V1] != v1
+        a_after = _acceleration(c, c.free if kicked else o, row, after1)
+        closing = v1 - v2
+        for j in range(Y.shape[1]):
+            shift = (Y[0, j] - Y[2 + 2 * b, j]) / closing if closing != 0.0 else 0.0
+            for i in range(len(c.mu)):
+                if kicked and ride & (1 << i):
+                    Y[3 + 2 * i, j] = Y[1, j] - (a + c.G) * shift
+            x1, w1 = Y[0, j] - v1 * shift, Y[1, j] - a * shift
+            x2, w2 = Y[2 + 2 * b, j] - v2 * shift, Y[3 + 2 * b, j] + c.G * shift
+            w1, w2 = after_impact_kernel(law, w1, w2)
+            Y[0, j] = x1 + after1 * shift
+            Y[1, j] = w1 + a_after * shift
+            Y[2 + 2 * b, j] = x2 + after2 * shift
+            Y[3 + 2 * b, j] = w2 - c.G * shift
+    elif row[KIND] == STICK:
+        mass = 1.0 + riding(c, before)
+        share = 1.0 / (mass + c.mu[b])
+        for j in range(Y.shape[1]):
+            x = share * (mass * Y[0, j] + c.mu[b] * Y[2 + 2 * b, j])
+            v = share * (mass * Y[1, j] + c.mu[b] * Y[3 + 2 * b, j])
+            Y[0, j], Y[1, j] = x, v
+            for i in range(len(c.mu)):
+                if i == b or ride & (1 << i):
+                    Y[2 + 2 * i, j], Y[3 + 2 * i, j] = x, v
+
+
+@offset.register(ParallelConstants)
+@njit
+def _offset(c, row, event, late, scale, away):
+    b = int(row[BALL]) - 1
+    v1, v2 = event[V1], event[V2]
+    after1, after2 = after_impact_kernel(c.law[b], v1, v2)
+    a = _acceleration(c, c.free, event, after1)
+    for i in range(away.shape[0]):
+        away[i] = 0.0
+    # Of the other balls the closing equations give no state here.
+    away[0] = (row[X1] - event[X1] - after1 * late) / scale
+    away[1] = (row[A_V1] - after1 - a * late) / scale
+    away[2 + 2 * b] = (row[X2] - (event[X1] - event[SIDE] * c.beta[b]) - after2 * late) / scale
+    away[3 + 2 * b] = (row[A_V2] - after2 + c.G * late) / scale
