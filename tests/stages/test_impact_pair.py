@@ -7,6 +7,7 @@ import pytest
 
 import vines
 from vines.errors import VinesError
+from vines.logs import read
 from vines.stages import load_pipeline, run
 
 PAIR = """
@@ -20,6 +21,11 @@ params.G = 0.05
 vary.B = [0.6, 0.7]
 settle = 200
 harvest = { coefficients = [0.0, 0.0, 0.375] }
+[stages.run]
+kind = "trajectory"
+params = { B = 0.65, G = 0.05 }
+settle = 200
+record = 3
 [stages.chain]
 kind = "sweep"
 params.G = 0.15
@@ -33,6 +39,11 @@ kind = "sweep"
 params = { mu = 0.01 }
 vary.A = [0.015]
 settle = 50
+[stages.diagram]
+kind = "figure"
+plot = "bifurcation"
+panels = ["w_dot", "phase"]
+needs = ["points", "doubling"]
 [stages.doubling]
 kind = "branch"
 word = "LR"
@@ -55,9 +66,15 @@ def pair(project, monkeypatch):
 
 @pytest.mark.long(60)
 def test_tables_hold_the_check_values(pair):
-    pair(PAIR)
+    project = pair(PAIR)
     run("pair")
+    pictures = [path.name for path in (project.root / "data" / "results").rglob("picture.svg")]
+    assert pictures == ["picture.svg"]
     # systems-check-values.md, d3, d4, d5: w', mean impact power, share of the lower end, period doubling
+    (log,) = (project.root / "data" / "results").rglob("*.mcap")
+    kept = read(log)
+    assert kept.system == "impact_pair"
+    assert (kept.parameters, kept.impacts.num_rows) == ({"B": 0.65, "G": 0.05, "r": 0.5}, 6)
     first = vines.query('select * from "pair.points" where B = 0.6').to_pylist()[0]
     assert (first["name"], first["word"], first["ties"]) == ("1:1", "LR", 0)
     assert math.isclose(first["impact_power"], 0.197859747453, abs_tol=1e-11)
@@ -101,6 +118,8 @@ def test_tables_hold_the_check_values(pair):
         (("r = 0.5", "nu = 0.5"), "params: unknown key 'nu'"),
         (("settle = 200", "settle = 200\nstart = { x1 = 0 }"), "unknown coordinate 'x1' of a start"),
         (("settle = 200", "settle = 200\nstart = { w = 2 }"), "w is 2 at the start, allowed is -1 <= w <= 1"),
+        (('panels = ["w_dot", "phase"]', 'panels = ["x1"]'), "unknown panel 'x1'"),
+        (('needs = ["points", "doubling"]', 'needs = ["points", "ball"]'), "one and the same parameter"),
         (("threshold = 1.0", "threshold = -1.0"), "threshold"),
         (('kind = "branch"', 'kind = "curve"\ntype = "fold"'), "the kind 'curve' cannot do the system 'impact_pair'"),
         (('word = "LR"', 'word = "L1"'), "'L1' is not a word of the system"),
@@ -115,6 +134,9 @@ def test_what_cannot_be_is_refused_before_any_work(pair, change, text):
 
 def test_si_units_with_the_tilt_in_degrees(pair):
     si = "[physical]\nhalf_length = 0.1\nomega = 15.7\ntilt = 10.0\n[stages.points]"
-    pair(PAIR.replace("[stages.points]", si).replace("params.G = 0.05\n", "").replace("params.G = 0.15\n", ""))
+    text = PAIR.replace("[stages.points]", si)
+    for given in ("params.G = 0.05\n", "params.G = 0.15\n", ", G = 0.05"):
+        text = text.replace(given, "")
+    pair(text)
     stage = load_pipeline("pair").stages["points"]
     assert stage.params["G"] == vines.systems.ImpactPair.from_physical(half_length=0.1, omega=15.7, tilt=10.0, B=1.0).G

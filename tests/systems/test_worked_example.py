@@ -18,9 +18,8 @@ from vines.places import shipped
 from vines.schema import _tables
 
 PAGE = Path(__file__).resolve().parents[2] / "docs" / "systems.md"
-CACHES = (_declared.read_system, _declared.system_names, _declared._form, _room._room_of) + (
-    *(_tables._names, _tables._of_systems, _tables._table),
-)
+DECLARED = (_declared.read_system, _declared.system_names, _declared._form)
+CACHES = (*DECLARED, _room._room_of, _tables._names, _tables._of_systems, _tables._table)
 
 
 def module(name, code, monkeypatch):
@@ -36,7 +35,7 @@ def added(tmp_path, monkeypatch):
     """Put the three files where they would lie, and forget them afterwards."""
     text = PAGE.read_text("utf-8")
     files = dict(re.findall(r"^`(\S+)`:\n\n```\w+\n(.*?)^```", text, re.MULTILINE | re.DOTALL))
-    assert list(files) == ["schemas/systems/scaled.toml", "vines/systems/_scaled.py", "vines/dynamics/scaled/__init__.py"]
+    assert len(files) == 3
     folder = tmp_path / "schemas"
     shutil.copytree(shipped("schemas"), folder)
     (folder / "systems" / "scaled.toml").write_text(files["schemas/systems/scaled.toml"])

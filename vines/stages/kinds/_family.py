@@ -16,7 +16,13 @@ from vines.schema import OF_EACH_SYSTEM, system_table
 from vines.stages.kinds._simulation import check_length
 from vines.systems import Harvest, parameters
 
-__all__ = ["FamilyBranchOptions", "FamilySweepOptions", "HarvestLaw", "of_systems"]
+__all__ = ["FamilyBranchOptions", "FamilySweepOptions", "FamilyTrajectoryOptions", "HarvestLaw", "of_systems"]
+
+
+Start = Annotated[
+    dict[str, float | list[float]],
+    Meta(description="Start by the names of the system; what is left out is as it declares"),
+]
 
 
 class HarvestLaw(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -30,10 +36,7 @@ class FamilySweepOptions(msgspec.Struct, frozen=True, forbid_unknown_fields=True
     """The settled attractor of each point: `settle` periods, then `record` periods that are classified and measured."""
 
     system: str
-    start: Annotated[
-        dict[str, float | list[float]],
-        Meta(description="Start by the names of the system; what is left out is as it declares"),
-    ] = {}
+    start: Start = {}
     settle: Annotated[int, Meta(ge=0, description="Forcing periods that are left out")] = 400
     record: Annotated[int, Meta(ge=2, description="Forcing periods that are classified and measured")] = 64
     watch: Annotated[
@@ -48,6 +51,19 @@ class FamilySweepOptions(msgspec.Struct, frozen=True, forbid_unknown_fields=True
         ),
     ] = 64
     harvest: Annotated[HarvestLaw | None, Meta(description="What impacts yield, for the harvested power")] = None
+
+
+class FamilyTrajectoryOptions(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """One run of the simulator: `settle` periods unrecorded, then `record` periods into an MCAP log."""
+
+    system: str
+    start: Start = {}
+    settle: Annotated[int, Meta(ge=0, description="Forcing periods that are left out")] = 400
+    record: Annotated[int, Meta(ge=2, description="Forcing periods in the log")] = 10
+    per_period: Annotated[int, Meta(ge=2, description="Samples of the state in a forcing period")] = 200
+    bare: Annotated[
+        bool, Meta(description="Whether the log also carries what a viewer without vines understands (docs/logs.md)")
+    ] = True
 
 
 class FamilyBranchOptions(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
