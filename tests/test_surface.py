@@ -102,6 +102,7 @@ KINDS = [
     "sweep",
     "synth",
     "trajectory",
+    "transient",
 ]
 VIEWS = ["bifurcations", "branches", "checks", "comparisons", "impacts", "logs", "orbits", "points"]
 

@@ -120,28 +120,10 @@ def test_names_of_several_balls(text, canonical, name, symmetric):
     assert (str(word), word.name, word.symmetric) == (canonical, name, symmetric)
 
 
-@pytest.mark.parametrize(
-    "text",
-    BAD=[
-        "",
-        "lr",
-        "LXR",
-        "LR/",
-        "LR/0T",
-        "LR/2",
-        "LR/-1T",
-        "LR\n",
-        " LR",
-        "2:1",
-        "L1R",
-        "LR2",
-        "L0R0",
-        "L12R1",
-        3,
-        None,
-    ]
-    @ pytest.mark.parametrize("text", BAD),
-)
+BAD = ["", "lr", "LXR", "LR/", "LR/0T", "LR/2", "LR/-1T", "LR\n", " LR", "2:1", "L1R", "LR2", "L0R0", "L12R1", 3, None]
+
+
+@pytest.mark.parametrize("text", BAD)
 def test_bad_words_are_refused_in_one_line(text):
     with pytest.raises(ParameterError, match="is not a word") as caught:
         Word(text)

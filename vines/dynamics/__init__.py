@@ -4,6 +4,7 @@ Flight, impact and sticking in closed form, events found for certain, and what f
 tangent maps. Importing this room loads numba but compiles nothing.
 """
 
+from vines.dynamics._decay import Decay, decay
 from vines.dynamics._ensemble import Ensemble, ensemble
 from vines.dynamics._maps import P1, P2, P3, P4, Mapped, impact_map
 from vines.dynamics._measures import Measures
@@ -22,12 +23,14 @@ __all__ = [
     "P2",
     "P3",
     "P4",
+    "Decay",
     "Ensemble",
     "Mapped",
     "Measures",
     "Scatter",
     "Trajectory",
     "ball_locked",
+    "decay",
     "ensemble",
     "impact_map",
     "jacobian",

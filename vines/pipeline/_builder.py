@@ -47,8 +47,12 @@ class Declaration:
         Name of the pipeline; its results are pinned under it.
     title, source : str
         What it is, and which figure or section it reproduces.
-    params : mapping of str to float, optional
+    params : mapping of str to float or list of float, optional
         Parameters of every stage that takes them.
+    system : str, optional
+        The system of every stage that takes parameters; the VI-NES if left out.
+    physical : mapping of str to float or list of float, optional
+        Quantities in SI units from which parameters follow.
 
     Examples
     --------
@@ -59,10 +63,19 @@ class Declaration:
     """
 
     def __init__(
-        self, name: str, *, title: str = "", source: str = "", params: Mapping[str, Number] | None = None
+        self,
+        name: str,
+        *,
+        title: str = "",
+        source: str = "",
+        params: Mapping[str, Number | Sequence[Number]] | None = None,
+        system: str | None = None,
+        physical: Mapping[str, Number | Sequence[Number]] | None = None,
     ) -> None:
         self.name = name
-        self.form: dict[str, Any] = {"title": title, "source": source, "params": dict(params or {}), "stages": {}}
+        self.form: dict[str, Any] = {"title": title, "source": source, "params": _plain(params or {}), "stages": {}}
+        self.form |= {} if system is None else {"system": system}
+        self.form |= {"physical": _plain(physical)} if physical else {}
 
     def stage(
         self,
@@ -83,7 +96,7 @@ class Declaration:
         params, vary, needs
             As in TOML.
         **rest
-            ``carry``, ``zip``, ``refine``, and the options of the kind.
+            ``system``, ``physical``, ``link``, ``carry``, ``zip``, ``refine``, and the options of the kind.
 
         Raises
         ------

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from graphlib import CycleError, TopologicalSorter
 from pathlib import Path
@@ -14,6 +14,7 @@ from vines.errors import DeclarationError, UnknownNameError, nearest
 if TYPE_CHECKING:
     import msgspec
 
+    from vines.model import Expression
     from vines.pipeline._axes import Axis
     from vines.pipeline._kinds import Kind
 
@@ -111,6 +112,8 @@ class Stage:
         Axes that run together.
     refine : Refine or None
         Where points are added to the grid.
+    links : dict of str to Expression
+        Parameters that follow from varied ones, each after those that it needs itself.
     """
 
     name: str
@@ -122,6 +125,7 @@ class Stage:
     needs: tuple[str, ...]
     zipped: tuple[tuple[str, ...], ...] = ()
     refine: Refine | None = None
+    links: dict[str, Expression] = field(default_factory=dict)
 
     @property
     def after(self) -> tuple[str, ...]:

@@ -3,18 +3,22 @@
 from __future__ import annotations
 
 import inspect
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from typing import Any
 
 import msgspec
 
 from vines import schema
+from vines.model import VI_NES, most_balls, system_names
 from vines.pipeline._kinds import Kind, kinds
 from vines.pipeline._names import NAME
+from vines.pipeline._parameters import quantities, stems
 
 __all__ = ["json_schema"]
 
 _NUMBER = {"type": "number"}
+_NUMBERS = {"anyOf": [_NUMBER, {"type": "array", "items": _NUMBER, "minItems": 1}]}
+_SYSTEM = "The system, vi_nes if nothing is said"
 
 
 def json_schema() -> dict[str, Any]:
@@ -24,7 +28,9 @@ def json_schema() -> dict[str, Any]:
     together, are checked when the declaration is read.
     """
     known = kinds()
-    parameters = sorted({name for each in known.values() for name in each.parameters})
+    every = [each for spec in known.values() for each in _all_systems(spec).values()]
+    parameters = sorted({name for each in every for name in stems(each.parameters)})
+    physical = sorted({name for each in every for name in quantities(each)})
     return {
         "$schema": "https://json-schema.org/draft/2020-12/schema",
         "title": "A pipeline of vines",
@@ -45,8 +51,10 @@ def json_schema() -> dict[str, Any]:
                 "type": "object",
                 "description": "Parameters of every stage that takes them",
                 "additionalProperties": False,
-                "properties": dict.fromkeys(parameters, _NUMBER),
+                "properties": dict.fromkeys(parameters, _NUMBERS),
             },
+            "physical": _physical(physical),
+            "system": {"enum": list(system_names()), "description": _SYSTEM},
             "stages": {
                 "type": "object",
                 "propertyNames": {"pattern": f"^{NAME.pattern}$"},
@@ -54,25 +62,52 @@ def json_schema() -> dict[str, Any]:
                     "type": "object",
                     "required": ["kind"],
                     "properties": {"kind": {"enum": sorted(known)}},
-                    "allOf": [
-                        {
-                            "if": {"properties": {"kind": {"const": name}}},
-                            "then": {"$ref": f"#/$defs/{name}"},
-                        }
-                        for name in sorted(known)
-                    ],
+                    "allOf": [each for name in sorted(known) for each in _choices(known[name])],
                 },
             },
         },
         "not": {"required": ["pipelines", "stages"]},
-        "$defs": {key: form for name in sorted(known) for key, form in _kind(known[name])} | {"axis": _axis()},
+        "$defs": {
+            key: form
+            for name in sorted(known)
+            for system, spec in _all_systems(known[name]).items()
+            for key, form in _kind(spec, _key(name, system))
+        }
+        | {"axis": _axis()},
     }
 
 
-def _kind(spec: Kind) -> Iterator[tuple[str, Any]]:
+def _all_systems(spec: Kind) -> dict[str, Kind]:
+    """Return what a kind is for each system that it can do, with as many balls as there may be."""
+    if not spec.parameters:
+        return {spec.system: spec}
+    return {spec.system: spec} | {name: spec.of_system(name, most_balls(name)) for name in spec.systems}
+
+
+def _key(kind: str, system: str) -> str:
+    return kind if system == VI_NES.name else f"{kind}.{system}"
+
+
+def _choices(spec: Kind) -> Iterator[dict[str, Any]]:
+    """Yield which form a stage of a kind has: that of its system, or of any where the file may name the system."""
+    is_kind = {"kind": {"const": spec.name}}
+    if not spec.systems:
+        yield {"if": {"properties": is_kind}, "then": {"$ref": f"#/$defs/{spec.name}"}}
+        return
+    forms = {name: {"$ref": f"#/$defs/{_key(spec.name, name)}"} for name in _all_systems(spec)}
+    for name, form in forms.items():
+        named = {"properties": is_kind | {"system": {"const": name}}, "required": ["system"]}
+        yield {"if": named, "then": form}
+    yield {
+        "if": {"properties": is_kind, "not": {"required": ["system"]}},
+        "then": {"anyOf": list(forms.values())},
+    }
+
+
+def _kind(spec: Kind, called: str) -> Iterator[tuple[str, Any]]:
     """Yield the definitions of a kind: of its stages, and where a key names a variant, of the stages of each."""
     if spec.variants is None:
-        yield spec.name, _stage(spec, spec.options)
+        yield called, _stage(spec, spec.options)
         return
     variants = spec.variants.all()
     key, names = spec.variant, sorted(variants)
@@ -109,8 +144,17 @@ def _stage(spec: Kind, options: type[msgspec.Struct]) -> dict[str, Any]:
             "type": "object",
             "description": "Fixed parameters of this stage",
             "additionalProperties": False,
-            "properties": dict.fromkeys(axes, _NUMBER),
+            "properties": dict.fromkeys(stems(axes), _NUMBERS if spec.balls else _NUMBER),
         }
+        properties["system"] = {"const": spec.system, "description": _SYSTEM}
+        properties["link"] = {
+            "type": "object",
+            "description": "Parameters that follow from others, such as '0.02 - mu_1'",
+            "additionalProperties": False,
+            "properties": {key: {"type": "string"} for key in axes},
+        }
+        if named := quantities(spec):
+            properties["physical"] = _physical(named)
     if spec.vary != "none":
         form = {"$ref": "#/$defs/axis"} if spec.vary == "grid" else _range(("from", "to"))
         properties["vary"] = {
@@ -147,9 +191,8 @@ def _stage(spec: Kind, options: type[msgspec.Struct]) -> dict[str, Any]:
 def _options(options: type[msgspec.Struct]) -> dict[str, Any]:
     """Return the options of a stage; structs inside them stand where they are used."""
     (reference,), parts = msgspec.json.schema_components([options], ref_template="{name}")
-    return {
-        name: _inlined(form, parts) for name, form in parts[reference["$ref"]]["properties"].items() if name != "kind"
-    }
+    properties = parts[reference["$ref"]]["properties"]
+    return {name: _inlined(form, parts) for name, form in properties.items() if name not in ("kind", "system")}
 
 
 def _inlined(form: Any, parts: dict[str, Any]) -> Any:
@@ -159,6 +202,15 @@ def _inlined(form: Any, parts: dict[str, Any]) -> Any:
             return {**_inlined(parts[form["$ref"]], parts), **{key: form[key] for key in form if key != "$ref"}}
         return {key: _inlined(value, parts) for key, value in form.items()}
     return [_inlined(each, parts) for each in form] if isinstance(form, list) else form
+
+
+def _physical(names: Iterable[str]) -> dict[str, Any]:
+    return {
+        "type": "object",
+        "description": "Quantities in SI units, angles in degrees, from which parameters follow",
+        "additionalProperties": False,
+        "properties": dict.fromkeys(names, _NUMBERS),
+    }
 
 
 def _range(keys: tuple[str, ...]) -> dict[str, Any]:

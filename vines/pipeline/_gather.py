@@ -13,6 +13,7 @@ import numpy as np
 
 from vines import schema
 from vines.errors import StoreError
+from vines.pipeline._links import with_links
 from vines.pipeline._plan import Prepared
 from vines.store import Located, Part, Pool, Store, TableFile, describe_table
 
@@ -185,7 +186,7 @@ def _logs(
     if "name" in schema.table(primary).names:
         rows: Any = pq.read_table(folder / f"{primary}.parquet", columns=["point_id", "name"])
         names = dict(zip(rows.column("point_id").to_pylist(), rows.column("name").to_pylist(), strict=True))
-    columns = grid.columns(range(len(grid)))
+    columns = with_links(prepared.stage, grid.columns(range(len(grid))))
     found = []
     for i, point in enumerate(grid.ids.hex()):
         part = parts[located.part[i]]

@@ -32,7 +32,7 @@ class Ingredients:
     ----------
     form : dict
         ``kind``, ``options``, ``params``, ``vary``, ``carry``, ``inputs``, ``tables``, ``files``, ``code``, and where
-        there are such ``zip``, ``refine`` and ``messages`` (the digest of the schema of logs).
+        there are such ``zip``, ``refine``, ``link`` and ``messages`` (the digest of the schema of logs).
     files : tuple of Path
         The files that the kind named.
     """
@@ -113,6 +113,8 @@ def gather(stage: Stage, inputs: Mapping[str, str], origin: str, code: CodeDiges
         form["zip"] = [list(names) for names in stage.zipped]
     if stage.refine is not None:
         form["refine"] = stage.refine.canonical()
+    if stage.links:
+        form["link"] = {name: formula.canonical for name, formula in stage.links.items()}
     if spec.logs:
         form["messages"] = _digest(shipped("schemas") / "vines.v1.binpb")
     return Ingredients(form, tuple(files))
@@ -135,6 +137,7 @@ def what_changed(before: Mapping[str, Any], now: Mapping[str, Any]) -> str:
     if before.get("carry") != now.get("carry"):
         found.append(f"carry {_carry(before.get('carry'))} → {_carry(now.get('carry'))}")
     found += _values(before.get("refine", {}), now.get("refine", {}), "refine.")
+    found += _values(before.get("link", {}), now.get("link", {}), "link.")
     if before.get("zip") != now.get("zip"):
         found.append(f"zip {_shown(before.get('zip'))} → {_shown(now.get('zip'))}")
     old, new = dict(before.get("inputs", [])), dict(now.get("inputs", []))

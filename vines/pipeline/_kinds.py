@@ -8,7 +8,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
 from vines.doors import Register
-from vines.errors import DeclarationError, VinesError
+from vines.errors import DeclarationError, UnknownNameError, VinesError, nearest
+from vines.model import VI_NES, system_names
 
 if TYPE_CHECKING:
     import msgspec
@@ -69,6 +70,14 @@ class Kind:
     kernels : tuple of str, or callable
         The kinds of tasks whose compiled kernels the body asks for, so that they are compiled before the run, and no
         others; ``kernels(options, carried)`` where it depends on the stage.
+    systems : mapping of str to callable
+        What it is for each other system that it can do beside the VI-NES: ``make(balls)`` returns the kind of the same
+        name with the parameters, options, tables and body for that system with so many numbered balls (0 where none
+        has a number). Its options have the field ``system``, which so belongs to the key.
+    system : str
+        The system that it is for.
+    balls : int
+        How many balls of that system have numbers.
     """
 
     name: str
@@ -91,6 +100,9 @@ class Kind:
     again: Literal["", "points", "starts"] = ""
     scaled: tuple[str, ...] = ()
     kernels: tuple[str, ...] | Callable[[Any, bool], tuple[str, ...]] = ()
+    systems: Mapping[str, Callable[[int], Kind]] = field(default_factory=dict)
+    system: str = VI_NES.name
+    balls: int = 0
 
     def __post_init__(self) -> None:
         if self.shape == "points" and (not self.tables or self.needs or self.pictures or self.vary == "range"):
@@ -126,6 +138,29 @@ class Kind:
             return self.variants.get(str(table[self.variant])).options
         except VinesError as error:
             raise type(error)(f"{self.variant}: {error}") from None
+
+    def of_system(self, system: str, balls: int) -> Kind:
+        """Return the kind for a system: itself for the VI-NES.
+
+        Raises
+        ------
+        DeclarationError
+            If it cannot do that system; the message lists the systems that it can do, and the kinds that can do this.
+        UnknownNameError
+            If there is no such system; the message names the nearest.
+        """
+        if system == VI_NES.name:
+            return self
+        if system not in system_names():
+            raise UnknownNameError(f"unknown system {system!r}: {nearest(system, system_names())}")
+        if system not in self.systems:
+            others = sorted(name for name, each in kinds().items() if system in each.systems)
+            raise DeclarationError(
+                f"the kind {self.name!r} cannot do the system {system!r}; it can do "
+                f"{', '.join(sorted([VI_NES.name, *self.systems]))}; kinds that can do {system!r}: "
+                f"{', '.join(others) or 'none'}"
+            )
+        return self.systems[system](balls)
 
     def bodies(self, options: Any) -> tuple[str, ...]:
         """Return everything whose code counts in the keys of a stage with these options, as `body`."""

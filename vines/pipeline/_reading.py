@@ -12,19 +12,22 @@ from pathlib import Path
 from typing import Any
 
 from vines.errors import DeclarationError, VinesError, nearest
+from vines.model import VI_NES
 from vines.pipeline._axes import Axis, exact, read_axis
 from vines.pipeline._declaration import Pipeline, Stage
 from vines.pipeline._include import with_included
 from vines.pipeline._kinds import Kind, kind
+from vines.pipeline._links import linked_values
 from vines.pipeline._names import NAME, RESERVED
 from vines.pipeline._options import known, option_names, read_options
+from vines.pipeline._parameters import Given, balls_of, read_params
 from vines.pipeline._points import read_carry, read_refine, read_zipped
 from vines.places import find_root
 
 __all__ = ["GENERAL", "TOP", "load", "read_form"]
 
-TOP = ("include", "params", "source", "stages", "title")
-GENERAL = ("carry", "kind", "needs", "params", "refine", "vary", "zip")
+TOP = ("include", "params", "physical", "source", "stages", "system", "title")
+GENERAL = ("carry", "kind", "link", "needs", "params", "physical", "refine", "system", "vary", "zip")
 
 
 def load(path: Path, overrides: Mapping[str, Any] | None = None, *, root: Path | None = None) -> Pipeline:
@@ -87,9 +90,10 @@ def read_form(
     tables = _table(form.get("stages", {}), f"{path}: stages")
     if not tables:
         raise DeclarationError(f"{path}: no stages; declare at least one as [stages.NAME]")
-    kinds = {stage: _kind(table, f"{path}: stages.{stage}") for stage, table in tables.items()}
-    common = _table(form.get("params", {}), f"{path}: params")
-    known(common, sorted({p for each in kinds.values() for p in each.parameters}), f"{path}: params")
+    common = Given.read(form, f"{path}: ")
+    system = _text(form.get("system", VI_NES.name), f"{path}: system")
+    kinds = {stage: _kind(table, common, system, f"{path}: stages.{stage}") for stage, table in tables.items()}
+    common.check(kinds.values())
     stages = {stage: _stage(stage, tables[stage], kinds[stage], common, path) for stage in tables}
     title, source = (_text(form.get(key, ""), f"{path}: {key}") for key in ("title", "source"))
     pipeline = Pipeline(name, title, source, path, root or find_root(), stages)
@@ -128,7 +132,7 @@ def _value(value: Any) -> Any:
         return value
 
 
-def _stage(name: str, table: dict[str, Any], spec: Kind, common: dict[str, Any], path: Path) -> Stage:
+def _stage(name: str, table: dict[str, Any], spec: Kind, common: Given, path: Path) -> Stage:
     where = f"{path}: stages.{name}"
     if not NAME.fullmatch(name):
         raise DeclarationError(f"{where}: a stage cannot be called {name!r}; a name is [a-z][a-z0-9_]*")
@@ -144,8 +148,11 @@ def _stage(name: str, table: dict[str, Any], spec: Kind, common: dict[str, Any],
     zipped = read_zipped(shared["zip"], shared.get("vary", {}), f"{where}.zip") if "zip" in shared else ()
     axes = _axes(shared.get("vary", {}), spec, where, {name for names in zipped for name in names})
     _check_zipped(zipped, axes, where)
-    params = _params(shared.get("params", {}), spec, common, axes, path, where)
+    given = Given.read(shared, f"{where}.")
+    params, links = read_params(spec, axes, given, common, shared.get("link", {}), where)
     own = {key: value for key, value in table.items() if key not in general}
+    if "system" in option_names(form):
+        own["system"] = spec.system
     plain = {key: _plain(value, f"{where}.{key}") for key, value in own.items()}
     options = read_options(plain, form, where)
     carry = read_carry(shared["carry"], axes, shared["vary"], f"{where}.carry") if "carry" in shared else None
@@ -157,24 +164,34 @@ def _stage(name: str, table: dict[str, Any], spec: Kind, common: dict[str, Any],
         raise DeclarationError(f'{where}.needs is {needs!r}; list names of stages, such as ["up"]')
     if len(set(needs)) < len(needs):
         raise DeclarationError(f"{where}.needs names a stage twice; once is enough")
-    return Stage(name, spec, options, params, axes, carry, tuple(needs), zipped, refine)
+    return Stage(name, spec, options, params, axes, carry, tuple(needs), zipped, refine, links)
 
 
-def _kind(table: object, where: str) -> Kind:
+def _kind(table: object, common: Given, system: str, where: str) -> Kind:
     stage = _table(table, where)
     if "kind" not in stage:
         raise DeclarationError(f"{where}: 'kind' is missing; every stage has one, such as kind = \"sweep\"")
     try:
-        return kind(_text(stage["kind"], f"{where}.kind"))
+        spec = kind(_text(stage["kind"], f"{where}.kind"))
     except DeclarationError as error:
         text = str(error)
         raise DeclarationError(text if text.startswith(where) else f"{where}.kind: {text}") from None
+    if not spec.parameters:
+        return spec
+    own = Given.read(stage, f"{where}.")
+    system = _text(stage.get("system", system), f"{where}.system")
+    names = [*own.params, *own.physical, *_table(stage.get("vary", {}), f"{where}.vary"), *stage.get("link", {})]
+    try:
+        return spec.of_system(system, balls_of(system, [*names, *common.params, *common.physical]))
+    except VinesError as error:
+        raise type(error)(f"{where}: {error}") from None
 
 
 def _allows(spec: Kind, key: str) -> bool:
     grid = spec.vary == "grid"
-    allowed = {"carry": spec.carry, "needs": spec.needs, "vary": spec.vary != "none", "params": bool(spec.parameters)}
-    return {**allowed, "zip": grid, "refine": grid}.get(key, True)
+    allowed = {"carry": spec.carry, "needs": spec.needs, "vary": spec.vary != "none", "zip": grid, "refine": grid}
+    of_parameters = dict.fromkeys(("link", "params", "physical", "system"), bool(spec.parameters))
+    return {**allowed, **of_parameters}.get(key, True)
 
 
 def _axes(form: object, spec: Kind, where: str, zipped: Iterable[str]) -> tuple[Axis, ...]:
@@ -198,29 +215,6 @@ def _check_zipped(zipped: tuple[tuple[str, ...], ...], axes: tuple[Axis, ...], w
             raise DeclarationError(f"{where}.zip: {', '.join(names)} take the same values twice; each point is once")
 
 
-def _params(
-    form: object, spec: Kind, common: dict[str, Any], axes: tuple[Axis, ...], path: Path, where: str
-) -> dict[str, float]:
-    own = _table(form, f"{where}.params")
-    known(own, spec.parameters, f"{where}.params")
-    varied = {axis.name for axis in axes}
-    params: dict[str, float] = {}
-    for name, default in spec.parameters.items():
-        if name in own and name in varied:
-            raise DeclarationError(f"{where}: {name} is both fixed under params and varied; keep one of them")
-        if name in varied:
-            continue
-        if name in own:
-            params[name] = float(exact(own[name], f"{where}.params.{name}"))
-        elif name in common:
-            params[name] = float(exact(common[name], f"{path}: params.{name}"))
-        elif default is not None:
-            params[name] = float(default)
-        else:
-            raise DeclarationError(f"{where}: parameter {name!r} is missing; give it under [params] or vary.{name}")
-    return params
-
-
 def _check_needs(stage: Stage, stages: Mapping[str, Stage], where: str) -> None:
     for need in stage.needs:
         if need not in stages:
@@ -242,13 +236,16 @@ def _check_needs(stage: Stage, stages: Mapping[str, Stage], where: str) -> None:
 
 
 def _check_box(stage: Stage, where: str) -> None:
-    if stage.kind.check is None:
+    if stage.kind.check is None and not stage.links:
         return
     ends = [[(axis.name, end) for end in _extremes(axis)] for axis in stage.axes]
     for corner in itertools.product(*ends):
-        params = {name: {**stage.params, **dict(corner)}[name] for name in stage.kind.parameters}
         try:
-            stage.kind.check(params, stage.options)
+            there = {**stage.params, **dict(corner)}
+            there |= {name: float(value) for name, value in linked_values(stage.links, there).items()}
+            params = {name: there[name] for name in stage.kind.parameters}
+            if stage.kind.check is not None:
+                stage.kind.check(params, stage.options)
         except VinesError as error:
             raise type(error)(f"{where}: {error}") from None
 

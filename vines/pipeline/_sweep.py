@@ -13,6 +13,7 @@ from vines.pipeline._engine import Engine
 from vines.pipeline._events import Event, Report
 from vines.pipeline._grid import Grid
 from vines.pipeline._jobs import Points
+from vines.pipeline._links import with_links
 from vines.pipeline._plan import Prepared
 from vines.pipeline._work import Chunk, Work
 from vines.pipeline._worker import Done, Task
@@ -166,7 +167,9 @@ class Sweep:
             tables=stage.kind.tables,
             options=stage.options,
             provenance=self._provenance,
-            points=Points(grid.fixed(), grid.columns(chunk.places), grid.ids.take(np.asarray(chunk.places))),
+            points=Points(
+                grid.fixed(), with_links(stage, grid.columns(chunk.places)), grid.ids.take(np.asarray(chunk.places))
+            ),
             carry=stage.carry.axis if stage.carry is not None else None,
             start=chunk.start,
             broken="a point before it in the carried chain failed" if chunk.broken else "",

@@ -12,7 +12,7 @@ from msgspec import Meta
 from vines.errors import ParameterError, StateError
 from vines.model import VI_NES, Params
 
-__all__ = ["Start", "check_simulation"]
+__all__ = ["Start", "check_length", "check_simulation"]
 
 MOST_PERIODS = 10_000_000
 """Forcing periods of one point that nobody computes by mistake: it takes a minute, and a sweep has hundreds."""
@@ -32,7 +32,7 @@ class Start(_State, frozen=True, forbid_unknown_fields=True):
 def check_simulation(params: dict[str, float], options: Any) -> None:
     """Refuse parameters that the model cannot have, and a start outside the cavity."""
     Params(**params)
-    _check_length(msgspec.structs.asdict(options))
+    check_length(msgspec.structs.asdict(options))
     if options.start == "random":
         return
     gap = options.start.x1 - options.start.x2
@@ -42,7 +42,8 @@ def check_simulation(params: dict[str, float], options: Any) -> None:
         )
 
 
-def _check_length(values: Mapping[str, Any]) -> None:
+def check_length(values: Mapping[str, Any]) -> None:
+    """Refuse options that name more periods than a point should have."""
     for name in ("settle", "record", "watch"):
         if values.get(name, 0) > MOST_PERIODS and not os.environ.get(ALLOWED_BY):
             raise ParameterError(

@@ -1,0 +1,196 @@
+"""What a declaration gives of parameters: numbers and lists, quantities in SI units, and formulas."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any
+
+from vines.errors import DeclarationError, VinesError
+from vines.model import Expression, dimensionless, most_balls, read_system, system_names
+from vines.pipeline._axes import Axis, exact
+from vines.pipeline._kinds import Kind
+from vines.pipeline._links import linked_values, read_links
+from vines.pipeline._options import known
+
+__all__ = ["Given", "balls_of", "quantities", "read_params", "stems"]
+
+_NUMBERED = re.compile(r".*_([1-9])")
+
+
+@dataclass(frozen=True, slots=True)
+class Given:
+    """Parameters and quantities as a file or a stage gives them, lists by the numbers of the balls.
+
+    Attributes
+    ----------
+    params, physical : dict of str to Fraction
+        Dimensionless numbers, and quantities in SI units.
+    where : str
+        File and stage, for messages.
+    """
+
+    params: dict[str, Fraction]
+    physical: dict[str, Fraction]
+    where: str
+
+    @classmethod
+    def read(cls, form: Mapping[str, Any], where: str) -> Given:
+        """Read ``params`` and ``physical``.
+
+        Raises
+        ------
+        DeclarationError
+            If one is no table, or has something that is no number.
+        """
+        params, physical = (_flat(form.get(key, {}), f"{where}{key}") for key in ("params", "physical"))
+        return cls(params, physical, where)
+
+    def check(self, kinds: Iterable[Kind]) -> None:
+        """Refuse what no kind takes.
+
+        Raises
+        ------
+        DeclarationError
+            With the first name, and the nearest that is allowed.
+        """
+        specs = list(kinds)
+        known(self.params, sorted({name for each in specs for name in stems(each.parameters)}), f"{self.where}params")
+        allowed = {name for each in specs for name in quantities(each)}
+        known(self.physical, sorted(allowed), f"{self.where}physical")
+
+
+def balls_of(system: str, names: Iterable[str]) -> int:
+    """Return how many balls a declaration numbers; 0 where the balls of a system have no numbers.
+
+    Examples
+    --------
+    >>> balls_of("parallel", ["A", "mu_1", "beta_3"]), balls_of("impact_pair", ["B"])
+    (3, 0)
+    """
+    if system not in system_names() or not most_balls(system):
+        return 0
+    return max((int(found[1]) for name in names if (found := _NUMBERED.fullmatch(name))), default=1)
+
+
+def read_params(
+    spec: Kind, axes: tuple[Axis, ...], own: Given, common: Given, link: object, where: str
+) -> tuple[dict[str, float], dict[str, Expression]]:
+    """Return the fixed parameters of a stage, defaults filled in, and the formulas of those that vary with others.
+
+    What a stage says counts before what its file says. A number for a parameter that every ball has stands for all.
+
+    Raises
+    ------
+    DeclarationError
+        If a name is unknown, given twice, or missing.
+    ParameterError
+        If a quantity in SI units is out of its range.
+    """
+    known(own.params, stems(spec.parameters), f"{where}.params")
+    if not isinstance(link, Mapping):
+        raise DeclarationError(f"{where}.link is {link!r}; a table of formulas is needed here")
+    known(own.physical, quantities(spec), f"{where}.physical")
+    varied = {axis.name for axis in axes}
+    mine, theirs = (_spread(given.params, spec) for given in (own, common))
+    made = _from_physical(spec, own, common, where)
+    taken = dict.fromkeys(varied, "vary") | dict.fromkeys(made, "physical") | dict.fromkeys(mine, "params")
+    links = read_links(link, spec.parameters, taken, f"{where}.link")
+    for name in mine:
+        if name in varied:
+            raise DeclarationError(f"{where}: {name} is both fixed under params and varied; keep one of them")
+    for name in made:
+        if name in varied or name in mine or name in theirs:
+            raise DeclarationError(f"{where}: {name} is given, and also follows from physical; keep one of them")
+    values: dict[str, Fraction] = {}
+    for name, default in spec.parameters.items():
+        if name in varied or name in links:
+            continue
+        if name in mine or name in made or name in theirs:
+            values[name] = {**theirs, **made, **mine}[name]
+        elif default is not None:
+            values[name] = exact(default, name)
+        else:
+            raise DeclarationError(f"{where}: parameter {name!r} is missing; give it under [params] or vary.{name}")
+    free, bound = _split(links, varied)
+    if bound and spec.vary == "range":
+        name = next(iter(bound))
+        raise DeclarationError(
+            f"{where}.link.{name}: it would change along vary, and the kind {spec.name!r} follows in the varied "
+            "parameters alone; give a number"
+        )
+    try:
+        values |= linked_values(free, values)
+    except VinesError as error:
+        raise DeclarationError(f"{where}.link: {error}") from None
+    return {name: float(values[name]) for name in spec.parameters if name in values}, bound
+
+
+def _split(
+    links: Mapping[str, Expression], varied: Iterable[str]
+) -> tuple[dict[str, Expression], dict[str, Expression]]:
+    """Return the formulas of fixed parameters alone, and the others."""
+    moving = set(varied)
+    free: dict[str, Expression] = {}
+    bound: dict[str, Expression] = {}
+    for name, formula in links.items():
+        if moving.intersection(formula.names):
+            moving.add(name)
+            bound[name] = formula
+        else:
+            free[name] = formula
+    return free, bound
+
+
+def _from_physical(spec: Kind, own: Given, common: Given, where: str) -> dict[str, Fraction]:
+    allowed = quantities(spec)
+    given = {name: value for name, value in {**common.physical, **own.physical}.items() if name in allowed}
+    if not given:
+        return {}
+    numbers = {name: float(value) for name, value in given.items()}
+    try:
+        made = dimensionless(read_system(spec.system, spec.balls), numbers)
+    except VinesError as error:
+        raise type(error)(f"{where}.physical: {error}") from None
+    return {name: exact(value, name) for name, value in made.items() if name in spec.parameters}
+
+
+def quantities(spec: Kind) -> list[str]:
+    """Return the quantities in SI units that a kind may be given: none if it takes no parameters of its system."""
+    if not spec.system:
+        return []
+    system = read_system(spec.system, spec.balls)
+    if not set(spec.parameters) <= {each.name for each in system.parameters}:
+        return []
+    formulas = " ".join(each.physical for each in system.parameters)
+    return [each.name for each in (*system.rig, *system.run) if re.search(rf"\b{each.name}\b", formulas)]
+
+
+def stems(parameters: Iterable[str]) -> list[str]:
+    """Return names of parameters, and those that stand for one of each ball."""
+    names = list(parameters)
+    return [*names, *dict.fromkeys(name[:-2] for name in names if _NUMBERED.fullmatch(name) and name[:-2] not in names)]
+
+
+def _spread(given: Mapping[str, Fraction], spec: Kind) -> dict[str, Fraction]:
+    """Return what is given, a number for a parameter of every ball once for each that has none of its own."""
+    found = {name: value for name, value in given.items() if name in spec.parameters}
+    for name, value in given.items():
+        if name not in spec.parameters:
+            own = (each for each in spec.parameters if _NUMBERED.fullmatch(each) and each[:-2] == name)
+            found |= {each: value for each in own if each not in found}
+    return found
+
+
+def _flat(form: object, where: str) -> dict[str, Fraction]:
+    if not isinstance(form, Mapping):
+        raise DeclarationError(f"{where} is {form!r}; a table of keys is needed here")
+    found: dict[str, Fraction] = {}
+    for name, value in form.items():
+        if isinstance(value, list):
+            found |= {f"{name}_{k}": exact(each, f"{where}.{name}[{k - 1}]") for k, each in enumerate(value, start=1)}
+        else:
+            found[name] = exact(value, f"{where}.{name}")
+    return found
