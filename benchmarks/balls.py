@@ -1,6 +1,7 @@
 """Cost of an impact with several balls: ``python -m benchmarks.balls``. It needs numpy and numba and nothing else.
 
-All run the kernels of `vines.dynamics.parallel`, the VI-NES its own; times are those of the processor, the least of seven in turn.
+All run the kernels of `vines.dynamics.parallel`, the VI-NES its own. Events are found and written over each other, as
+in a transient; times are those of the processor, the least of seven in turn.
 """
 
 from __future__ import annotations
@@ -8,7 +9,12 @@ from __future__ import annotations
 import time
 from typing import Any
 
+import numpy as np
+
 import vines
+from vines.dynamics._advance import S_IMPACTS, pass_over
+from vines.dynamics._room import constants, room_of, start_of
+from vines.dynamics.runs import EVENTS_PER_PERIOD
 from vines.systems import Parallel
 
 BALLS = (1, 2, 4, 8)
@@ -18,10 +24,14 @@ CASES = {"A = .03": (0.03, 1.0), "A = .1, Omega = 1.17": (0.1, 1.17)}
 
 
 def once(p: Any, v2: Any) -> float:
-    """Return µs an impact of one run of which every event is kept."""
+    """Return µs an impact of one run."""
+    c, room = constants(p), room_of(p)
+    layout = room.layout(p)
+    state, rows = np.zeros(layout.state), np.empty((layout.rows, layout.width))
+    room.begin(c, state, *start_of(p, {"v2": v2}, 0.0, 0.0), 0.0)
     began = time.process_time()
-    run = vines.simulate(p, v2=v2, periods=PERIODS)
-    return (time.process_time() - began) / len(run.impacts) * 1e6
+    pass_over(c, state, PERIODS * p.period, EVENTS_PER_PERIOD, rows)
+    return (time.process_time() - began) / state[S_IMPACTS] * 1e6
 
 
 def main() -> None:

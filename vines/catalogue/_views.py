@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterable
+from collections.abc import Callable, Collection, Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any, NamedTuple
 
 from vines import schema
@@ -25,6 +26,15 @@ _TYPES = {
 }
 
 
+_SHARED = ("all_orbits", "all_points")
+"""Views of what the tables of all systems have."""
+_MADE = {
+    "impact_power": "(impact_loss_left + impact_loss_right)/duration",
+    "ties": "0",
+}
+"""What the tables of the VI-NES do not have because it follows from what they have."""
+
+
 def quote(name: str) -> str:
     """Return a name as SQL quotes it.
 
@@ -36,7 +46,14 @@ def quote(name: str) -> str:
     return '"' + name.replace('"', '""') + '"'
 
 
-def select(spec: Table, pipeline: str, stage: str, source: str | None, there: Collection[str]) -> str:
+def select(
+    spec: Table,
+    pipeline: str,
+    stage: str,
+    source: str | None,
+    there: Collection[str],
+    made: Mapping[str, str] = MappingProxyType({}),
+) -> str:
     """Return the query for the rows of one stage.
 
     Parameters
@@ -49,9 +66,13 @@ def select(spec: Table, pipeline: str, stage: str, source: str | None, there: Co
         What to read from; ``None`` for no rows.
     there : collection of str
         Columns that the source has. A result stored under an earlier schema may lack some; they are null.
+    made : mapping of str to str
+        SQL for columns that it lacks.
     """
     columns = [
-        quote(column.name) if column.name in there else f"CAST(NULL AS {_TYPES[column.dtype]}) AS {quote(column.name)}"
+        quote(column.name)
+        if column.name in there
+        else f"CAST({made.get(column.name, 'NULL')} AS {_TYPES[column.dtype]}) AS {quote(column.name)}"
         for column in spec.columns
     ]
     names = f"{text(pipeline)} AS pipeline, {text(stage)} AS stage"
@@ -159,6 +180,7 @@ def list_views(
         return str(result.folder / file) if place is None else place(pipeline, stage, file)
 
     pieces: dict[str, list[Source]] = {name: [] for name, spec in schema.tables().items() if spec.stored}
+    shared: dict[str, list[Source]] = {name: [] for name in _SHARED}
     logs: list[str] = []
     single: list[View] = []
     for pipeline, stage, result in results:
@@ -174,9 +196,14 @@ def list_views(
             called = f"{pipeline}.{stage}" if i == 0 else f"{pipeline}.{stage}.{name}"
             short = (pipeline, stage) if i == 0 else ()
             single.append(View(called, (pipeline.lower(), stage.lower()), (piece,), short=short))
+            common = f"all_{schema.table(name).like}"
+            if common in shared:
+                made = _MADE | {"system": text(schema.table(name).system)}
+                query = select(schema.table(common), pipeline, stage, place_of, about["columns"], made)
+                shared[common].append(Source(name, path, pipeline, result.key, query))
     whole = [
         View(name, (name,), tuple(found), empty=select(schema.table(name), "", "", None, ()))
-        for name, found in pieces.items()
+        for name, found in (pieces | shared).items()
     ]
     return [*whole, View("logs", ("logs",), empty=_logs(logs)), *single]
 

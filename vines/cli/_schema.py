@@ -45,7 +45,13 @@ def command(table: str | None, declaration: bool, markdown: bool, as_json: bool)
         ]
         click.echo(
             json.dumps(
-                {"table": table, "version": found.version, "description": found.description, "columns": rows},
+                {
+                    "table": table,
+                    "version": found.version,
+                    "description": found.description,
+                    "walls": found.walls,
+                    "columns": rows,
+                },
                 indent=2,
             )
         )
@@ -58,6 +64,9 @@ def command(table: str | None, declaration: bool, markdown: bool, as_json: bool)
         [[c.name, c.dtype, c.unit, c.description, c.allowed, c.source] for c in found.columns],
         wrap=3,
     )
+    for letter, wall in found.walls.items():
+        click.echo(f"\n{letter}: {wall}", nl=False)
+    click.echo("\n" if found.walls else "", nl=False)
 
 
 def _list(as_json: bool) -> None:

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
-from vines.model import Params
+from vines.dynamics._room import room_of
 
 __all__ = ["ball_locked", "no_ball"]
 
 
-def no_ball(p: Params) -> float:
+def no_ball(p: Any) -> float:
     """Return the steady amplitude of x1 when there is no ball.
 
     The oscillator x1'' + lam x1' + x1 = A sin + lam Omega A cos (paper, eq. (8)) answers with
@@ -17,24 +18,26 @@ def no_ball(p: Params) -> float:
 
     Examples
     --------
+    >>> from vines.model import Params
     >>> print(f"{no_ball(Params(mu=0.01, A=0.02)):.6f}")
     1.667069
     """
     return _amplitude(p, 1.0)
 
 
-def ball_locked(p: Params) -> float:
-    """Return the steady amplitude of x1 when the ball is fixed to the oscillator, whose mass is then 1 + mu.
+def ball_locked(p: Any) -> float:
+    """Return the steady amplitude of x1 when all balls are fixed to the oscillator, whose mass is then 1 + mu.
 
     Examples
     --------
+    >>> from vines.model import Params
     >>> print(f"{ball_locked(Params(mu=0.01, A=0.02)):.6f}")
     1.280589
     """
-    return _amplitude(p, 1.0 + p.mu)
+    return _amplitude(p, 1.0 + room_of(p).mass(p))
 
 
-def _amplitude(p: Params, mass: float) -> float:
+def _amplitude(p: Any, mass: float) -> float:
     damping = p.lam * p.Omega
     detuning = math.hypot(1.0 - mass * p.Omega**2, damping)
     return p.A * math.hypot(1.0, damping) / detuning if detuning > 0.0 else math.inf

@@ -1,6 +1,6 @@
 """What the figures call quantities and parameters. Declarations are checked against these names: no heavy import."""
 
-from vines.model import VI_NES
+from vines.model import VI_NES, most_balls, read_system, system_names
 
 __all__ = ["ERRORS", "MEASURES", "NAMES", "PANELS", "RIG_PANELS", "RUN_PANELS", "SYMBOLS"]
 
@@ -23,8 +23,12 @@ RIG_PANELS = ("max_abs_x1", "kinetic_ratio", "w_dot", "phase")
 RUN_PANELS = ("ends", "gap", "phase_plane")
 """Panels that show runs: displacements of the cavity's ends and the ball, gap and relative velocity, their plane."""
 
-SYMBOLS = {each.name: each.symbol for each in VI_NES.parameters}
-NAMES = {each.name: each.label for each in VI_NES.parameters}
+_PARAMETERS = [
+    *(each for name in system_names() for each in read_system(name, most_balls(name)).parameters),
+    *VI_NES.parameters,  # a name that several systems have is called as there
+]
+SYMBOLS = {each.name: each.symbol for each in _PARAMETERS}
+NAMES = {each.name: each.label for each in _PARAMETERS}
 
 ERRORS = {
     "max_abs_x1": r"error of $\max|x_1|$",

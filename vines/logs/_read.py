@@ -36,6 +36,7 @@ from vines.logs._decode import differing_fields, table
 from vines.logs._foreign import foreign_tables
 from vines.logs._unpack import CHUNK_LIMIT, Unpacker
 from vines.logs._walk import AGAIN, BROKEN, Found, line_of, walk
+from vines.model import VI_NES
 
 if TYPE_CHECKING:
     import pyarrow as pa
@@ -75,6 +76,8 @@ class Log:
         The word of an orbit, else empty.
     attractor : str
         What the run settles to, if its writer knew.
+    system : str
+        The system of the run.
     declaration : str or None
         The TOML text that declared the run.
     status : str
@@ -105,6 +108,7 @@ class Log:
     parameters: dict[str, float]
     word: str
     attractor: str
+    system: str
     declaration: str | None
     status: str
     recovered: dict[str, str]
@@ -284,6 +288,7 @@ def _log(file: Path, found: Found, verdict: _Verdict, tables: dict[int, pa.Table
         parameters=parameters,
         word=about.get("word", ""),
         attractor=about.get("attractor", ""),
+        system=about.get("system", VI_NES.name),
         declaration=None if declaration is None else declaration.data.decode(),
         status=verdict.status,
         recovered=salvaged,

@@ -34,6 +34,7 @@ def write_run(
     orbit: np.ndarray | None = None,
     word: str | None = None,
     attractor: str | None = None,
+    system: str | None = None,
     bare: bool = True,
 ) -> Path:
     """Write a run as an MCAP log, whole or not at all; the same input gives the same bytes.
@@ -59,6 +60,8 @@ def write_run(
         Its word.
     attractor : str, optional
         What the run settles to, such as ``"1:1"`` or ``"chaotic"``.
+    system : str, optional
+        The system of the run, kept in the metadata ``vines.run``; the VI-NES if left out.
     bare : bool
         Whether the log also carries the channels with which it explains itself in a viewer without vines.
 
@@ -82,6 +85,8 @@ def write_run(
         about |= {"kind": "orbit", "word": word or ""}
     if attractor is not None:
         about["attractor"] = attractor
+    if system is not None:
+        about["system"] = system
     if bare:
         rows += bare_rows(*(each.values for each in rows[:3]), name, parameters)
     return write_rows(path, rows, about, provenance, parameters, declaration)

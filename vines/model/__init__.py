@@ -23,7 +23,7 @@ from vines.model._vi_nes import (
     X1,
     X2,
 )
-from vines.model._words import Word
+from vines.model._words import Word, word_for
 
 __all__ = [
     "AMPLITUDE",
@@ -54,4 +54,5 @@ __all__ = [
     "most_balls",
     "read_system",
     "system_names",
+    "word_for",
 ]

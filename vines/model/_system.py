@@ -11,7 +11,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from vines.errors import ParameterError, nearest
+from vines.errors import ParameterError, StateError, nearest
 
 __all__ = ["Body", "Contact", "Coordinate", "Energies", "Parameter", "Range", "Symmetry", "System", "finite"]
 
@@ -209,6 +209,10 @@ class System:
         In the order in which types n:m count them.
     mirror : Symmetry
     energies : Energies
+    met : tuple of Coordinate
+        As `state`, of an impact: coordinates of the ball that hits, without a number.
+    without : tuple of str
+        Columns of the common tables that the tables of this system do not have.
     """
 
     name: str
@@ -223,6 +227,8 @@ class System:
     contacts: tuple[Contact, ...]
     mirror: Symmetry
     energies: Energies
+    met: tuple[Coordinate, ...]
+    without: tuple[str, ...] = ()
 
     @property
     def state(self) -> tuple[Coordinate, ...]:
@@ -247,6 +253,34 @@ class System:
                 return parameter
         known = [parameter.name for parameter in self.parameters]
         raise ParameterError(f"unknown parameter {name!r}: {nearest(str(name), known)}")
+
+    def started(self, given: Mapping[str, Any]) -> dict[str, float]:
+        """Return a whole start, by name, of one that leaves out what is as declared.
+
+        A coordinate that each ball has may be given by its name without a number, as one number or one a ball.
+
+        Raises
+        ------
+        StateError
+            If a name is unknown, a value out of its range, or there are not as many as balls.
+        """
+        found = {each.name: each for each in self.start}
+        values = {name: each.start for name, each in found.items()}
+        for name, value in given.items():
+            of_balls = [each for each in found if each.rpartition("_")[0] == name]
+            several = list(value) if isinstance(value, list | tuple) else [value] * max(len(of_balls), 1)
+            names = [name] if name in found else of_balls
+            if not names:
+                raise StateError(f"unknown coordinate {name!r} of a start: {nearest(name, found)}")
+            if len(several) != len(names):
+                raise StateError(f"{name} has {len(several)} values at the start; give one, or {len(names)}")
+            values.update(zip(names, several, strict=True))
+        for name, each in found.items():
+            number = finite(name, values[name])
+            if not each.allowed.holds(number):
+                raise StateError(f"{name} is {number:g} at the start, allowed is {each.allowed.of(name)}")
+            values[name] = number
+        return values
 
     @property
     def alphabet(self) -> str:

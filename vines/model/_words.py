@@ -8,9 +8,10 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 
 from vines.errors import ParameterError
+from vines.model._system import System
 from vines.model._vi_nes import VI_NES
 
-__all__ = ["Word"]
+__all__ = ["Word", "word_for"]
 
 _LEFT, _RIGHT = (contact.letter for contact in VI_NES.contacts)
 _SIGNS = {contact.letter: contact.sign for contact in VI_NES.contacts}
@@ -226,6 +227,31 @@ class Word:
 
     def __repr__(self) -> str:
         return f"Word({str(self)!r})"
+
+
+def word_for(text: str | Word, system: System) -> Word:
+    """Return a word of a system; one numbered ball may also do without its number.
+
+    Raises
+    ------
+    ParameterError
+        If the text is no word, or has impacts that the system does not have.
+
+    Examples
+    --------
+    >>> word_for("L1R1", VI_NES)
+    Traceback (most recent call last):
+    vines.errors.ParameterError: 'L1R1' is not a word of the system 'vi_nes', which has the impacts L, R
+    """
+    word = Word(text)
+    known = [contact.letter for contact in system.contacts]
+    if system.balls == 1:
+        known += sorted({letter[0] for letter in known})
+    if not set(_impacts(word.letters)) <= set(known):
+        raise ParameterError(
+            f"{str(text)!r} is not a word of the system {system.name!r}, which has the impacts {', '.join(known)}"
+        )
+    return word
 
 
 def _impacts(letters: str) -> list[str]:

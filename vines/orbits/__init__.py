@@ -16,7 +16,7 @@ from vines.orbits._optimum import Optimum, optimise
 from vines.orbits._orbit import Orbit
 from vines.orbits._own_word import own_word
 from vines.orbits._reduced import Reduced, manifold_amplitude, manifold_range, reduced_orbits, reduced_range
-from vines.orbits._rows import bifurcation_row, branch_row, orbit_row
+from vines.orbits._rows import bifurcation_row, branch_row, orbit_outline, orbit_row
 from vines.orbits._switch import switch_branch
 from vines.orbits._symmetric import symmetric_fold, symmetric_orbits
 from vines.orbits._table import symmetric_table
@@ -47,6 +47,7 @@ __all__ = [
     "manifold_range",
     "mirror_image",
     "optimise",
+    "orbit_outline",
     "orbit_row",
     "own_word",
     "reduced_orbits",

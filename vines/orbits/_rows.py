@@ -9,7 +9,7 @@ from vines.model import X1
 from vines.orbits._branch import Bifurcation, Branch
 from vines.orbits._orbit import Orbit
 
-__all__ = ["bifurcation_row", "branch_row", "orbit_row"]
+__all__ = ["bifurcation_row", "branch_row", "orbit_outline", "orbit_row"]
 
 Row = dict[str, Any]
 
@@ -25,9 +25,24 @@ def orbit_row(orbit: Orbit, branch_id: str | None = None) -> Row:
     >>> row["name"], row["side"], len(row["t"])
     ('1:1', [1, -1], 2)
     """
-    p, measures = orbit.params, orbit.measures
+    p = orbit.params
     x1, v1, x2, v2 = orbit.states.T
     free = no_ball(p)
+    return {
+        **orbit_outline(orbit, branch_id),
+        "x1": x1.tolist(),
+        "v1": v1.tolist(),
+        "x2": x2.tolist(),
+        "v2": v2.tolist(),
+        "x1_no_ball": free,
+        "x1_locked": ball_locked(p),
+        "reduction": orbit.measures.max_abs_x1 / free,
+    }
+
+
+def orbit_outline(orbit: Orbit, branch_id: str | None = None) -> Row:
+    """Return what tables of orbits of every system tell of one; columns with one value an impact are lists."""
+    p, measures = orbit.params, orbit.measures
     return {
         "orbit_id": orbit.orbit_id,
         "branch_id": branch_id,
@@ -43,10 +58,6 @@ def orbit_row(orbit: Orbit, branch_id: str | None = None) -> Row:
         **p.as_dict(),
         "t": orbit.t.tolist(),
         "side": orbit.side.tolist(),
-        "x1": x1.tolist(),
-        "v1": v1.tolist(),
-        "x2": x2.tolist(),
-        "v2": v2.tolist(),
         "w_dot": orbit.w_dot.tolist(),
         "phase": orbit.phase.tolist(),
         "multipliers_re": orbit.multipliers.real.tolist(),
@@ -58,9 +69,6 @@ def orbit_row(orbit: Orbit, branch_id: str | None = None) -> Row:
         "kinetic_ratio": measures.kinetic_ratio,
         "max_abs_x1": measures.max_abs_x1,
         "rms_x1": measures.rms_x1,
-        "x1_no_ball": free,
-        "x1_locked": ball_locked(p),
-        "reduction": measures.max_abs_x1 / free,
         "duration": measures.duration,
         "base_work": measures.base_work,
         "damper_loss": measures.damper_loss,

@@ -7,19 +7,16 @@ from collections.abc import Mapping
 from typing import Any
 
 from vines.errors import SchemaError, nearest
-from vines.model import VI_NES, Coordinate, Parameter
+from vines.model import VI_NES, Coordinate, Parameter, System
 
 __all__ = ["expand", "names_of"]
 
-_GROUPS: dict[str, tuple[Parameter, ...] | tuple[Coordinate, ...]] = {
-    "parameters": VI_NES.parameters,
-    "state": VI_NES.state,
-    "start": VI_NES.start,
-}
+_GROUPS = {"parameters": "parameters", "state": "met", "start": "start"}
+"""Rows with a state are of impacts: it is that of the ball that hits."""
 
 
-def names_of(group: str) -> tuple[str, ...]:
-    """Return the names in a group of the declaration.
+def names_of(group: str, system: System = VI_NES) -> tuple[str, ...]:
+    """Return the names in a group of the declaration of a system.
 
     Examples
     --------
@@ -31,13 +28,17 @@ def names_of(group: str) -> tuple[str, ...]:
     SchemaError
         If there is none of that name.
     """
+    return tuple(each.name for each in _group(group, system))
+
+
+def _group(group: str, system: System) -> tuple[Parameter, ...] | tuple[Coordinate, ...]:
     if group not in _GROUPS:
         raise SchemaError(f"unknown group {group!r} of columns: {nearest(group, _GROUPS)}")
-    return tuple(each.name for each in _GROUPS[group])
+    return getattr(system, _GROUPS[group])
 
 
-def expand(form: Mapping[str, Any]) -> list[dict[str, Any]]:
-    """Return the columns that an entry of a table's file stands for: itself, or those of a group.
+def expand(form: Mapping[str, Any], system: System = VI_NES) -> list[dict[str, Any]]:
+    """Return the columns that an entry of a table's file stands for: itself, or those of a group of a system.
 
     Parameters
     ----------
@@ -45,6 +46,8 @@ def expand(form: Mapping[str, Any]) -> list[dict[str, Any]]:
         A column with ``values`` listed or those of a group (``values = "parameters"``); or ``of``, a group, with
         names to leave out (``without``), what to put before names (``prefix``) and after descriptions (``when``), and
         the type if it is not float64 (``dtype``).
+    system : System
+        Whose.
 
     Raises
     ------
@@ -58,13 +61,12 @@ def expand(form: Mapping[str, Any]) -> list[dict[str, Any]]:
     """
     values = form.get("values", ())
     if "of" not in form:
-        return [{**form, "values": names_of(values) if isinstance(values, str) else tuple(values)}]
+        return [{**form, "values": names_of(values, system) if isinstance(values, str) else tuple(values)}]
     known = ("of", "without", "prefix", "when", "dtype")
     for key in form:
         if key not in known:
             raise SchemaError(f"unknown key {key!r} beside 'of': {nearest(key, known)}")
-    names_of(form["of"])
-    return [_column(each, form) for each in _GROUPS[form["of"]] if each.name not in form.get("without", ())]
+    return [_column(each, form) for each in _group(form["of"], system) if each.name not in form.get("without", ())]
 
 
 def _column(each: Parameter | Coordinate, form: Mapping[str, Any]) -> dict[str, Any]:

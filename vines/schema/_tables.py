@@ -14,16 +14,19 @@ from typing import TYPE_CHECKING, Any
 
 from vines.doors import brought
 from vines.errors import PlugInError, SchemaError, UnknownNameError, nearest
+from vines.model import VI_NES, most_balls, read_system, system_names
 from vines.places import shipped
 from vines.schema._declared import expand
 
 if TYPE_CHECKING:
     import pyarrow as pa
 
-__all__ = ["Column", "Table", "arrow_schema", "cast", "digest", "table", "tables"]
+__all__ = ["OF_EACH_SYSTEM", "Column", "Table", "arrow_schema", "cast", "digest", "system_table", "table", "tables"]
 
 GROUP = "vines.tables"
 """Entry points of packages that bring tables: the name is that of the table, the value a package with its file."""
+OF_EACH_SYSTEM = ("bifurcations", "branches", "impacts", "orbits", "points")
+"""Tables that every system has: the VI-NES under these names, another one with its name before them."""
 DTYPES = ("bool", "float64", "int8", "int64", "list<float64>", "list<int8>", "string")
 
 
@@ -94,6 +97,8 @@ class Table:
         ``point_id`` first.
     stored : bool
         False for what is made from manifests when asked, such as ``logs``.
+    system : str
+        The system that its rows are of.
     """
 
     name: str
@@ -101,6 +106,32 @@ class Table:
     version: int
     columns: tuple[Column, ...]
     stored: bool
+    system: str = VI_NES.name
+
+    @property
+    def like(self) -> str:
+        """What the table is called for the VI-NES.
+
+        Examples
+        --------
+        >>> table("impact_pair_points").like, table("points").like
+        ('points', 'points')
+        """
+        return self.name if self.system == VI_NES.name else self.name.removeprefix(f"{self.system}_")
+
+    @property
+    def walls(self) -> dict[str, str]:
+        """What the letters of words and the signs of sides mean; empty where there are none.
+
+        Examples
+        --------
+        >>> table("impact_pair_impacts").walls["L"]
+        'lower end of the capsule, side +1'
+        """
+        if not {"word", "side"} & set(self.names):
+            return {}
+        contacts = read_system(self.system, most_balls(self.system)).contacts
+        return {each.letter: f"{each.text}, side {each.sign:+d}" for each in contacts}
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -113,8 +144,8 @@ def tables() -> dict[str, Table]:
 
     Examples
     --------
-    >>> [name for name in tables() if name.startswith("bi")]
-    ['bifurcations']
+    >>> [name for name in tables() if "bif" in name]
+    ['bifurcations', 'impact_pair_bifurcations', 'parallel_bifurcations']
     """
     return {name: _table(name) for name in dict.fromkeys([*_names(), *brought(GROUP)])}
 
@@ -254,12 +285,59 @@ def _from_python(values: Any, kind: pa.DataType) -> Any:
 
 @functools.cache
 def _names() -> tuple[str, ...]:
-    return tuple(sorted(path.stem for path in shipped("schemas").glob("*.toml")))
+    return tuple(sorted([*(path.stem for path in shipped("schemas").glob("*.toml")), *_of_systems()]))
+
+
+@functools.cache
+def _of_systems() -> dict[str, tuple[str, str]]:
+    """Return the tables that each system beside the VI-NES has of its own, with the table each is like."""
+    others = [name for name in system_names() if name != VI_NES.name]
+    return {f"{system}_{base}": (system, base) for system in others for base in OF_EACH_SYSTEM}
+
+
+def system_table(system: str, base: str) -> str:
+    """Return what a table of :data:`OF_EACH_SYSTEM` is called for a system.
+
+    Examples
+    --------
+    >>> system_table("vi_nes", "points"), system_table("impact_pair", "points")
+    ('points', 'impact_pair_points')
+    """
+    return base if system == VI_NES.name else f"{system}_{base}"
+
+
+def _of_system(name: str) -> Table:
+    """Return a table like one of the VI-NES: with the names of the system, and what every other system has beside."""
+    called, base = _of_systems()[name]
+    system = read_system(called, most_balls(called))
+    folder = shipped("schemas")
+    form = tomllib.loads((folder / f"{base}.toml").read_text("utf-8"))
+    more = folder / "systems" / "columns" / f"{base}.toml"
+    entries = [*form["columns"], *(tomllib.loads(more.read_text("utf-8"))["columns"] if more.exists() else ())]
+    # a coordinate may be called as a column that the common table has anyhow
+    expanded = [each for entry in entries for own in _of_balls(entry, system.balls) for each in expand(own, system)]
+    columns = {each["name"]: each for each in reversed(expanded)}
+    kept = [each for each in reversed(columns.values()) if each["name"] not in system.without]
+    about = f"Of the system {called}: {form['description'][:1].lower()}{form['description'][1:]}"
+    return Table(name, about, form["version"], tuple(Column(**each) for each in kept), True, called)
+
+
+def _of_balls(entry: dict[str, Any], balls: int) -> list[dict[str, Any]]:
+    """Return an entry, or one a ball where it is said to be there for each."""
+    if "each" not in entry:
+        return [entry]
+    rest = {key: value for key, value in entry.items() if key != "each"}
+    return [
+        rest | {"name": f"{rest['name']}_{ball}", "description": f"{rest['description']}, ball {ball}"}
+        for ball in range(1, balls + 1)
+    ]
 
 
 @functools.cache
 def _table(name: str) -> Table:
     """Read a table when it is first asked for: what a plan needs is a few of them."""
+    if name in _of_systems():
+        return _of_system(name)
     file = (shipped("schemas") if name in _names() else _folder(name)) / f"{name}.toml"
     spec = _read(file.name, tomllib.loads(file.read_text("utf-8")))
     if spec.name != name:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import dataclasses
 import json
 
+from vines.model import VI_NES
 from vines.schema._tables import table
 
 __all__ = ["toml"]
@@ -21,6 +22,7 @@ def toml(name: str) -> str:
     """
     spec = table(name)
     head = {"name": spec.name, "version": spec.version, "description": spec.description, "stored": spec.stored}
+    head |= {} if spec.system == VI_NES.name else {"system": spec.system}
     lines = _pairs(head)
     for column in spec.columns:
         given = {key: value for key, value in dataclasses.asdict(column).items() if value not in (None, ())}

@@ -18,7 +18,8 @@ Made from the {what}s themselves by `vines {what}s --markdown > docs/reference_{
 """
 _KINDS = """\
 [pipelines.md](pipelines.md) explains declarations and the keys that all kinds share: `kind`, `params`, `vary`, `zip`,
-`refine`, `carry`, `needs`."""
+`refine`, `carry`, `needs`, `system`, `physical`, `link`. Parameters and options are those for the VI-NES; with another system
+parameters are those of the system, `start` has its names, and points take `harvest`."""
 _PLOTS = """\
 A stage of the kind `figure` names a plot as `plot = "..."` and the stages that it draws as `needs = [...]`;
 [pipelines.md](pipelines.md) explains how."""
@@ -64,6 +65,8 @@ def _facts(kind: Kind) -> Iterator[str]:
     if kind.parameters:
         listed = (f"`{name}`{'' if value is None else f' = {value:.10g}'}" for name, value in kind.parameters.items())
         yield f"- parameters: {', '.join(listed)}"
+    if kind.systems:
+        yield f"- systems: {', '.join(f'`{name}`' for name in (kind.system, *kind.systems))} ([systems.md](systems.md))"
     varies = {"grid": "values, over which it makes a grid", "range": "a range"}
     if kind.vary in varies:
         yield f"- `vary.X`: {varies[kind.vary]}{'; `carry` is allowed' if kind.carry else ''}"

@@ -41,7 +41,9 @@ class PointsAgain:
     @staticmethod
     def can(result: Result) -> bool:
         """Say whether points of this result can be computed again from their rows."""
-        return kind(result.manifest["kind"]).again == "points"
+        spec = kind(result.manifest["kind"])
+        # for another system the kind is another one, with tables of that system
+        return spec.again == "points" and set(result.tables) <= set(spec.tables)
 
     def compare(self, result: Result, table: str, place: int) -> Comparison:
         """Compute the point of a row again and compare the rows that it has in the table.
@@ -99,7 +101,8 @@ def _compute(result: Result, row: dict[str, Any]) -> dict[str, list[dict[str, An
 
     form: Any = result.manifest["ingredients"]
     spec = kind(form["kind"])
-    varied = {axis[0]: np.array([row[axis[0]]]) for axis in form["vary"]}
+    names = [*(axis[0] for axis in form["vary"]), *form.get("link", ())]
+    varied = {name: np.array([row[name]]) for name in names}
     fixed = {name: form["params"].get(name, 0.0) for name in spec.parameters}
     carry = None if form["carry"] is None else form["carry"]["axis"]
     with tempfile.TemporaryDirectory() as folder:

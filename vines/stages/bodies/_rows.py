@@ -7,13 +7,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from vines.dynamics import ball_locked, no_ball
-from vines.model import START_NAMES, STATE_NAMES, Word
+from vines.model import STATE_NAMES, Word
 
 if TYPE_CHECKING:
     from vines.attractors import Attractor
     from vines.model import Params
 
-__all__ = ["impact_rows", "outline", "point_row"]
+__all__ = ["impact_rows", "measured_outline", "measured_row", "outline", "point_row"]
 
 
 def point_row(
@@ -43,14 +43,31 @@ def point_row(
         With which the start was drawn, if it was.
     """
     p = attractor.params
-    m = attractor.measures
     return {
         **outline(attractor),
+        **measured_row(point_id, attractor, start, carry=carry, before=before, seed=seed),
+        "x1_no_ball": no_ball(p),
+        "x1_locked": ball_locked(p),
+    }
+
+
+def measured_row(
+    point_id: str,
+    attractor: Attractor,
+    start: dict[str, float],
+    *,
+    carry: str | None,
+    before: float,
+    seed: int | None = None,
+) -> dict[str, Any]:
+    """Return what the points of every system tell beside `measured_outline`; arguments as of `point_row`."""
+    m = attractor.measures
+    return {
         "point_id": point_id,
-        **p.as_dict(),
+        **attractor.params.as_dict(),
         "carry": carry,
         "seed": seed,
-        **{name: start[name] for name in START_NAMES},
+        **start,
         "settle_periods": before + attractor.transient,
         "record_periods": attractor.recorded,
         "settled": attractor.settled,
@@ -60,8 +77,6 @@ def point_row(
         "kinetic_2": m.kinetic_2,
         "max_abs_x1_error": attractor.max_abs_x1_error,
         "rms_x1_error": attractor.rms_x1_error,
-        "x1_no_ball": no_ball(p),
-        "x1_locked": ball_locked(p),
         "impacts_left": m.impacts_left,
         "impacts_right": m.impacts_right,
         "sticking_share": attractor.sticking_share,
@@ -81,8 +96,14 @@ def point_row(
 
 def outline(attractor: Attractor) -> dict[str, Any]:
     """Return what every table of attractors tells of one: name, word, measures, where it ended."""
-    m = attractor.measures
     yardstick = no_ball(attractor.params)
+    largest = attractor.measures.max_abs_x1
+    return {**measured_outline(attractor), "reduction": largest / yardstick if yardstick > 0 else None}
+
+
+def measured_outline(attractor: Attractor) -> dict[str, Any]:
+    """Return what tables of attractors of every system tell of one."""
+    m = attractor.measures
     return {
         "regime": attractor.regime,
         "name": attractor.name,
@@ -95,10 +116,9 @@ def outline(attractor: Attractor) -> dict[str, Any]:
         "kinetic_ratio": m.kinetic_ratio,
         "max_abs_x1": m.max_abs_x1,
         "rms_x1": m.rms_x1,
-        "reduction": m.max_abs_x1 / yardstick if yardstick > 0 else None,
         "impacts_per_period": m.impacts_per_period,
         "sticks_per_period": m.sticks_per_period,
-        **{f"end_{name}": attractor.final[name] for name in START_NAMES},
+        **{f"end_{name}": value for name, value in attractor.final.items() if name != "t"},
     }
 
 

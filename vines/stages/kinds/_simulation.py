@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Annotated, Any
 
 import msgspec
@@ -11,7 +12,7 @@ from vines.bounds import check_periods
 from vines.errors import StateError
 from vines.model import VI_NES, Params
 
-__all__ = ["Start", "check_simulation"]
+__all__ = ["Start", "check_length", "check_simulation"]
 
 _State = msgspec.defstruct(
     "_State", [(each.name, Annotated[float, Meta(description=each.text)], each.start) for each in VI_NES.state]
@@ -25,7 +26,7 @@ class Start(_State, frozen=True, forbid_unknown_fields=True):
 def check_simulation(params: dict[str, float], options: Any) -> None:
     """Refuse parameters that the model cannot have, and a start outside the cavity."""
     Params(**params)
-    check_length(options)
+    check_length(msgspec.structs.asdict(options))
     if options.start == "random":
         return
     gap = options.start.x1 - options.start.x2
@@ -35,9 +36,9 @@ def check_simulation(params: dict[str, float], options: Any) -> None:
         )
 
 
-def check_length(options: Any) -> None:
-    """Refuse runs of years, and random starts that take years together."""
+def check_length(values: Mapping[str, Any]) -> None:
+    """Refuse options that make runs of years, and random starts that take years together."""
     for name in ("settle", "record", "watch", "patience"):
-        check_periods(name, getattr(options, name, 0))
-    if starts := getattr(options, "random", 0):
-        check_periods("(settle + record) (1 + random)", (options.settle + options.record) * (1 + starts))
+        check_periods(name, values.get(name, 0))
+    if starts := values.get("random", 0):
+        check_periods("(settle + record) (1 + random)", (values["settle"] + values["record"]) * (1 + starts))

@@ -8,7 +8,7 @@ import msgspec
 from msgspec import Meta
 
 from vines.errors import ParameterError
-from vines.model import Params, Word
+from vines.model import VI_NES, Params, word_for
 from vines.pipeline import Kind
 from vines.stages.kinds._parameters import PARAMETERS
 
@@ -43,7 +43,7 @@ def _check(params: dict[str, float], options: AtlasOptions) -> None:
     if not along.start < along.stop:
         raise ParameterError(f"amplitude is {along.start:g} to {along.stop:g}, allowed is from < to")
     for word in options.words:
-        Word(word)
+        word_for(word, VI_NES)
 
 
 KIND = Kind(

@@ -59,7 +59,7 @@ class BasinsOptions(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 def _check(params: dict[str, float], options: BasinsOptions) -> None:
     Params(**params)
-    check_length(options)
+    check_length(msgspec.structs.asdict(options))
     cells = options.x.count * options.y.count
     if cells > MOST_CELLS:
         raise ParameterError(f"x and y make {cells} cells, allowed are {MOST_CELLS} before they are halved")

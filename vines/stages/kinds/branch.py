@@ -7,9 +7,10 @@ from typing import Annotated, Literal
 import msgspec
 from msgspec import Meta
 
-from vines.model import Params, Word
+from vines.model import VI_NES, Params, word_for
 from vines.pipeline import Kind, Pipeline, Stage
 from vines.stages.kinds._checks import check_axes
+from vines.stages.kinds._family import FamilyBranchOptions, of_systems
 from vines.stages.kinds._parameters import PARAMETERS
 
 __all__ = ["KIND", "BranchOptions"]
@@ -36,7 +37,7 @@ class BranchOptions(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 def _check(params: dict[str, float], options: BranchOptions) -> None:
     Params(**params)
-    Word(options.word)
+    word_for(options.word, VI_NES)
 
 
 def _fits(stage: Stage, pipeline: Pipeline) -> None:
@@ -44,7 +45,7 @@ def _fits(stage: Stage, pipeline: Pipeline) -> None:
     check_axes(stage, 1, "a branch is followed in one parameter", "give one vary.X")
 
 
-KIND = Kind(
+_VI_NES = Kind(
     name="branch",
     summary="a family of periodic orbits with multipliers and bifurcations",
     shape="whole",
@@ -56,4 +57,12 @@ KIND = Kind(
     check=_check,
     kernels=("orbits",),
     fits=_fits,
+)
+
+KIND = of_systems(
+    _VI_NES,
+    ("impact_pair", "parallel"),
+    FamilyBranchOptions,
+    "vines.stages.bodies._family_branch:compute",
+    ("orbits", "branches", "bifurcations"),
 )

@@ -7,7 +7,7 @@ from typing import Annotated, Literal
 import msgspec
 from msgspec import Meta
 
-from vines.model import Params, Word
+from vines.model import VI_NES, Params, word_for
 from vines.pipeline import Kind, Pipeline, Stage
 from vines.stages.kinds._checks import check_axes
 from vines.stages.kinds._parameters import PARAMETERS
@@ -34,7 +34,7 @@ class CurveOptions(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 def _check(params: dict[str, float], options: CurveOptions) -> None:
     Params(**params)
-    Word(options.word)
+    word_for(options.word, VI_NES)
 
 
 def _fits(stage: Stage, pipeline: Pipeline) -> None:

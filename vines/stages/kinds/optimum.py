@@ -8,7 +8,7 @@ import msgspec
 from msgspec import Meta
 
 from vines.errors import ParameterError
-from vines.model import Params, Word
+from vines.model import VI_NES, Params, word_for
 from vines.pipeline import Kind
 from vines.stages.kinds._parameters import PARAMETERS
 
@@ -29,7 +29,7 @@ class OptimumOptions(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 def _check(params: dict[str, float], options: OptimumOptions) -> None:
     Params(**{name: value for name, value in params.items() if name != "b"})
-    Word(options.word)
+    word_for(options.word, VI_NES)
     if not params["b"] > 0:
         raise ParameterError(f"b is {params['b']:g}, allowed is b > 0: it is the half length of the cavity")
 

@@ -8,6 +8,7 @@ import msgspec
 from msgspec import Meta
 
 from vines.pipeline import Kind
+from vines.stages.kinds._family import FamilySweepOptions, of_systems
 from vines.stages.kinds._parameters import PARAMETERS
 from vines.stages.kinds._simulation import Start, check_simulation
 
@@ -46,7 +47,7 @@ def _kernels(options: SweepOptions, carried: bool) -> tuple[str, ...]:
     return ("one_run",) if alone else ("one_run", "lanes", "many_runs")
 
 
-KIND = Kind(
+_VI_NES = Kind(
     name="sweep",
     summary="the settled attractor, impacts and energy measures of each point of a grid",
     shape="points",
@@ -59,4 +60,12 @@ KIND = Kind(
     check=check_simulation,
     kernels=_kernels,
     again="points",
+)
+
+KIND = of_systems(
+    _VI_NES,
+    ("impact_pair", "parallel"),
+    FamilySweepOptions,
+    "vines.stages.bodies._family_sweep:compute",
+    ("points", "impacts"),
 )

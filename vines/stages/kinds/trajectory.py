@@ -8,6 +8,7 @@ import msgspec
 from msgspec import Meta
 
 from vines.pipeline import Kind
+from vines.stages.kinds._family import FamilyTrajectoryOptions, of_systems
 from vines.stages.kinds._parameters import PARAMETERS
 from vines.stages.kinds._simulation import Start, check_simulation
 
@@ -26,7 +27,7 @@ class TrajectoryOptions(msgspec.Struct, frozen=True, forbid_unknown_fields=True)
     ] = True
 
 
-KIND = Kind(
+_VI_NES = Kind(
     name="trajectory",
     summary="one run of the simulator, as an MCAP log",
     shape="points",
@@ -40,4 +41,12 @@ KIND = Kind(
     check=check_simulation,
     kernels=("one_run", "runs"),
     again="points",
+)
+
+KIND = of_systems(
+    _VI_NES,
+    ("impact_pair",),
+    FamilyTrajectoryOptions,
+    "vines.stages.bodies._family_trajectory:compute",
+    ("points", "impacts"),
 )

@@ -10,6 +10,7 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.compute as pc
 
+from vines import schema
 from vines.figures import BranchLine, ImpactDots, Marker
 from vines.model import Word
 from vines.stages.plots._caption import listed, shared_params
@@ -39,33 +40,39 @@ def diagram_parts(
         Types of bifurcations that are marked; all if empty.
     """
     axis, shared = stages[0].axes[0], shared_params(stages)
-    branches = [stage for stage in stages if "orbits" in stage.tables]
+    branches = [stage for stage in stages if _called(stage, "orbits")]
     # Events, which are no bifurcations, are marked only where they do not crowd.
     events = len(branches) == 1
     chosen = [(stage, _chosen(stage, families)) for stage in branches]
     return (
-        [_dots(stage, axis, shared) for stage in stages if "impacts" in stage.tables],
+        [_dots(stage, axis, shared) for stage in stages if _called(stage, "impacts")],
         [line for stage, rows in chosen for line in _lines(stage, rows, axis, shared, mirror)],
         [mark for stage, rows in chosen for mark in _markers(stage, rows, axis, marks, events=events, mirror=mirror)],
     )
 
 
+def _called(stage: Input, like: str) -> str:
+    """Return what a table of the VI-NES is called for the system of a stage; empty if the stage has none such."""
+    return next((name for name in stage.tables if schema.table(name).like == like), "")
+
+
 def _chosen(stage: Input, families: Collection[str]) -> list[dict[str, Any]]:
     """Return the rows of the branches that are drawn."""
-    return [row for row in stage.table("branches").to_pylist() if not families or family_label(row) in families]
+    rows = stage.table(_called(stage, "branches")).to_pylist()
+    return [row for row in rows if not families or family_label(row) in families]
 
 
 def _dots(stage: Input, axis: str, shared: dict[str, float]) -> ImpactDots:
-    impacts = stage.table("impacts")
+    impacts = stage.table(_called(stage, "impacts"))
     column = _numpy(impacts)
     return ImpactDots(
         x=column(axis),
         side=column("side"),
         values={
             "w_dot": column("w_dot"),
-            "dt": column("dt_next") * column("Omega") / (2 * math.pi),
-            "x1": column("x1"),
+            "dt": column("dt_next") * _frequency(impacts) / (2 * math.pi),
             "phase": column("phase"),
+            **_displacement(impacts, column),
         },
         label=_label("simulation", stage, shared),
         repeats=_repeats(impacts),
@@ -77,7 +84,7 @@ def _repeats(impacts: pa.Table) -> np.ndarray:
     if not impacts.num_rows:
         return np.ones(0)
     point = impacts["point_id"].combine_chunks().dictionary_encode().indices.to_numpy()
-    flight = _numpy(impacts)("dt_next") * _numpy(impacts)("Omega")
+    flight = _numpy(impacts)("dt_next") * _frequency(impacts)
     kept = np.bincount(point, weights=flight)
     return (kept.max() / kept)[point]
 
@@ -86,7 +93,7 @@ def _lines(
     stage: Input, branches: Iterable[dict[str, Any]], axis: str, shared: dict[str, float], mirror: bool
 ) -> Iterable[BranchLine]:
     """Yield a line for each impact of the orbits of each branch, and of their mirror images if these have one word."""
-    orbits = stage.table("orbits")
+    orbits = stage.table(_called(stage, "orbits"))
     for branch in branches:
         mine = orbits.filter(pc.field("branch_id") == branch["branch_id"])
         x = _numpy(mine)(axis)
@@ -142,14 +149,14 @@ def _markers(
 ) -> Iterable[Marker]:
     """Yield the bifurcations on some branches."""
     drawn = {branch["branch_id"]: _has_image(branch) for branch in branches}
-    for row in stage.table("bifurcations").to_pylist():
+    for row in stage.table(_called(stage, "bifurcations")).to_pylist():
         if row["branch_id"] not in drawn or (row["type"] == EVENT and not events):
             continue
         if marks and row["type"] not in marks:
             continue
-        period = 2 * math.pi / row["Omega"]
+        period = 2 * math.pi / row.get("Omega", 1.0)
         t = np.array(row["t"])
-        values = {name: np.array(row[name]) for name in ("w_dot", "phase", "x1")}
+        values = {name: np.array(row[name]) for name in ("w_dot", "phase", "x1") if name in row}
         values["dt"] = np.diff(t, append=t[0] + Word(row["word"]).p * period) / period
         if mirror and drawn[row["branch_id"]]:
             values = {name: np.append(value, _image(values)[name]) for name, value in values.items()}
@@ -164,21 +171,22 @@ def _has_image(branch: Mapping[str, Any]) -> bool:
 
 def _image(values: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
     """Return the quantities of the mirror images (x, t) -> (-x, t + half a forcing period)."""
-    return {
+    turned = {
         "w_dot": -values["w_dot"],
-        "x1": -values["x1"],
         "dt": values["dt"],
         "phase": (values["phase"] + math.pi) % (2 * math.pi),
     }
+    return turned | ({"x1": -values["x1"]} if "x1" in values else {})
 
 
 def _per_impact(orbits: pa.Table) -> tuple[dict[str, np.ndarray], np.ndarray]:
     """Return the quantities of each impact as (orbits, impacts) arrays, and the side of each impact."""
-    period = 2 * math.pi / _numpy(orbits)("Omega")
+    period = 2 * math.pi / _frequency(orbits)
     t = _matrix(orbits, "t")
     span = orbits["p"].to_numpy() * period
     dt = np.diff(t, axis=1, append=(t[:, 0] + span)[:, None]) / period[:, None]
-    values = {name: _matrix(orbits, name) for name in ("w_dot", "x1", "phase")} | {"dt": dt}
+    values = {name: _matrix(orbits, name) for name in ("w_dot", "x1", "phase") if name in orbits.column_names}
+    values |= {"dt": dt}
     starts = Word(orbits["word"][0].as_py()).rotations()
     return _threaded(values, starts), _matrix(orbits, "side")[0]
 
@@ -199,6 +207,16 @@ def _threaded(values: dict[str, np.ndarray], starts: tuple[int, ...]) -> dict[st
         shifts[i] = starts[int(np.argmin(distances))]
     places = (np.arange(known.shape[2]) + shifts[:, None]) % known.shape[2]
     return {name: np.take_along_axis(matrix, places, axis=1) for name, matrix in values.items()}
+
+
+def _frequency(table: pa.Table) -> np.ndarray:
+    """Return the frequency of the forcing, 1 for a system whose time is the phase."""
+    return table["Omega"].to_numpy() if "Omega" in table.column_names else np.ones(table.num_rows)
+
+
+def _displacement(table: pa.Table, column: Any) -> dict[str, np.ndarray]:
+    """Return the displacement at impacts, for a system that has one."""
+    return {"x1": column("x1")} if "x1" in table.column_names else {}
 
 
 def _matrix(orbits: pa.Table, name: str) -> np.ndarray:

@@ -7,7 +7,9 @@ from typing import TYPE_CHECKING, Annotated
 
 from msgspec import Meta
 
+from vines.errors import DeclarationError
 from vines.figures import PANELS
+from vines.model import most_balls, read_system
 from vines.stages.plots._checks import check_panels, check_window, one_axis
 from vines.stages.plots._plot import Plot, PlotOptions
 
@@ -34,9 +36,13 @@ class BifurcationOptions(PlotOptions, frozen=True, tag="bifurcation"):
 
 
 def _check(stage: Stage, pipeline: Pipeline) -> None:
-    check_panels(stage.options, PANELS)
     check_window(stage.options)
     one_axis(stage, pipeline)
+    systems = sorted({pipeline.stages[name].kind.system for name in stage.needs})
+    if len(systems) > 1:
+        raise DeclarationError(f"a bifurcation diagram shows one system, the stages are of {', '.join(systems)}")
+    without = read_system(systems[0], min(most_balls(systems[0]), 1)).without
+    check_panels(stage.options, [panel for panel in PANELS if panel not in without])
 
 
 def _draw(inputs: Mapping[str, Input], options: BifurcationOptions) -> Figure:

@@ -1,0 +1,56 @@
+"""Balls in parallel cavities in pipelines: lists, links, columns of each ball, words and the check values."""
+
+import pytest
+
+import vines
+from vines.stages import run
+
+SPLIT = """
+title = "one mass over two cavities"
+system = "parallel"
+[params]
+A = 0.03
+beta = [1.0, 1.4]
+[stages.points]
+kind = "sweep"
+vary.mu_1 = [0.01]
+link.mu_2 = "0.02 - mu_1"
+start = { v2 = [0.1, -0.3] }
+settle = 800
+record = 16
+[stages.branch]
+kind = "branch"
+word = "L1L2R1R2"
+points = 3
+params.mu = [0.01, 0.01]
+vary.A = { from = 0.03, to = 0.0305 }
+"""
+
+
+@pytest.mark.long(90)
+def test_tables_hold_the_check_values_ball_by_ball(project, monkeypatch):
+    monkeypatch.setenv("VINES_ROOT", str(project.root))
+    (project.root / "pipelines" / "split.toml").write_text(SPLIT)
+    run("split")
+    # systems-check-values.md, a3
+    (point,) = vines.table("parallel_points").to_pylist()
+    assert (point["status"], point["word"], point["name"]) == ("ok", "L1L2R1R2", "1:1|1:1")
+    assert (point["mu_1"], point["mu_2"], point["beta_2"], point["mu_3"]) == (0.01, 0.01, 1.4, None)
+    assert (point["v2_1"], point["v2_2"]) == (0.1, -0.3)
+    ratios, powers = ([point[f"{name}_{ball}"] for ball in (1, 2)] for name in ("kinetic_ratio", "impact_power"))
+    assert ratios == pytest.approx([0.066644811441, 0.103992311198], abs=1e-10)
+    assert powers == pytest.approx([0.001195989198, 0.001866217012], abs=1e-11)
+    assert point["max_abs_x1"] == pytest.approx(0.513485645719, abs=1e-10)
+    assert point["reduction"] == pytest.approx(0.513485645719 / vines.no_ball(vines.Params(mu=0.01, A=0.03)), rel=1e-9)
+    hits = vines.query("select ball, side, w_dot from parallel_impacts order by index").to_pylist()
+    assert {(hit["ball"], hit["side"]): round(abs(hit["w_dot"]), 9) for hit in hits} == {
+        (1, 1): 1.146405485,
+        (2, 1): 1.432041813,
+        (1, -1): 1.146405485,
+        (2, -1): 1.432041813,
+    }
+    orbits = vines.query("select * from parallel_orbits where A = 0.03").to_pylist()
+    assert orbits[0]["stable"]
+    assert orbits[0]["kinetic_ratio_2"] == pytest.approx(0.103992311198, abs=1e-10)
+    both = vines.query("select distinct system, name from all_points union select system, name from all_orbits")
+    assert both.to_pylist() == [{"system": "parallel", "name": "1:1|1:1"}]

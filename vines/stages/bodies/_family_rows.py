@@ -1,0 +1,122 @@
+"""From what the science returns to rows of the tables of a system beside the VI-NES."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from vines import schema
+from vines.dynamics import Measures, ball_locked, no_ball
+from vines.model import Parameters
+from vines.orbits import orbit_outline
+from vines.stages.bodies._rows import measured_outline, measured_row
+from vines.stages.bodies._sweep import representative
+from vines.systems import Harvest, parameters
+
+if TYPE_CHECKING:
+    from vines.attractors import Attractor
+    from vines.orbits import Orbit
+    from vines.stages.kinds._family import HarvestLaw
+
+__all__ = ["family_impacts", "family_orbit", "family_point", "only_own", "parameters_of"]
+
+
+def parameters_of(system: str, values: Mapping[str, float]) -> Parameters:
+    """Return parameters of a system from their flat names."""
+    return parameters(system).of(values)
+
+
+def family_point(
+    point_id: str, attractor: Attractor, start: dict[str, float], carry: str | None, law: HarvestLaw | None
+) -> dict[str, Any]:
+    """Return the row of the system's ``points`` for one simulated point.
+
+    Parameters
+    ----------
+    point_id : str
+        Id of the point.
+    attractor : Attractor
+        What the simulation settled to.
+    start : dict
+        Start of the run: the coordinates of the system and the phase of the forcing [rad].
+    carry : str or None
+        The carried axis.
+    law : HarvestLaw or None
+        What impacts yield.
+    """
+    repeats = attractor.settled and bool(attractor.p)
+    periods = float(attractor.p or 0) if repeats else attractor.recorded
+    hits = representative(attractor, 0)[:-1] if repeats else attractor.impacts
+    return only_own(
+        attractor.params,
+        "points",
+        measured_outline(attractor)
+        | measured_row(point_id, attractor, start, carry=carry, before=0)
+        | _powers(attractor.measures, hits, periods * attractor.params.period, law)
+        | _of_balls(attractor.measures)
+        | _yardsticks(attractor.params, attractor.measures),
+    )
+
+
+def family_orbit(orbit: Orbit, branch_id: str | None, law: HarvestLaw | None) -> dict[str, Any]:
+    """Return the row of the system's ``orbits``; what each impact has is a list."""
+    p = orbit.params
+    lists = {name: values.tolist() for name, values in _at_impacts(orbit.impacts).items()}
+    powers = _powers(orbit.measures, orbit.impacts, orbit.period, law) | _of_balls(orbit.measures)
+    values = orbit_outline(orbit, branch_id) | lists | powers | _yardsticks(p, orbit.measures)
+    return only_own(p, "orbits", values)
+
+
+def family_impacts(point_id: str, p: Parameters, impacts: np.ndarray) -> list[dict[str, Any]]:
+    """Return rows of the system's ``impacts``; the last impact has no successor and is left out."""
+    kept = impacts[:-1]
+    columns = _at_impacts(kept) | {"index": np.arange(len(kept)), "dt_next": np.diff(impacts["t"])}
+    lists = {name: values.tolist() for name, values in columns.items()}
+    fixed = {"point_id": point_id, **p.as_dict(), "attractor": 0, "ball": 0}
+    return [
+        only_own(p, "impacts", fixed | dict(zip(lists, row, strict=True))) for row in zip(*lists.values(), strict=True)
+    ]
+
+
+def _at_impacts(impacts: np.ndarray) -> dict[str, np.ndarray]:
+    """Return what is known of impacts, under all names that systems may have for it."""
+    found = {name: impacts[name] for name in impacts.dtype.names or ()}
+    return found | {"w": impacts["x1"] - impacts["x2"]}
+
+
+def _powers(measures: Measures, hits: np.ndarray, duration: float, law: HarvestLaw | None) -> dict[str, Any]:
+    """Return the mean power of the impacts, and what of it the law harvests on each side."""
+    ties = getattr(measures, "ties", 0)
+    found: dict[str, Any] = {"impact_power": measures.impact_loss / measures.duration, "ties": ties}
+    if law is not None:
+        energy = Harvest(law.threshold, law.coefficients).energy(hits["w_dot"])
+        found["harvested_left"] = float(energy[hits["side"] > 0].sum()) / duration
+        found["harvested_right"] = float(energy[hits["side"] < 0].sum()) / duration
+    return found
+
+
+def _of_balls(measures: Measures) -> dict[str, float]:
+    """Return what is told of each ball where balls have numbers."""
+    found: dict[str, float] = {}
+    for number, each in enumerate(getattr(measures, "balls", ()), start=1):
+        found[f"kinetic_ratio_{number}"] = each.kinetic_ratio
+        loss = each.impact_loss_left + each.impact_loss_right
+        found[f"impact_power_{number}"] = loss / measures.duration
+    return found
+
+
+def _yardsticks(p: Any, measures: Measures) -> dict[str, float | None]:
+    """Return what the displacement is compared with, where the frame is not driven itself."""
+    if "x1_no_ball" in p.system.without:
+        return {}
+    free = no_ball(p)
+    reduction = measures.max_abs_x1 / free if free > 0 else None
+    return {"x1_no_ball": free, "x1_locked": ball_locked(p), "reduction": reduction}
+
+
+def only_own(p: Parameters, base: str, values: Mapping[str, Any]) -> dict[str, Any]:
+    """Return what the system's table has columns for."""
+    names = set(schema.table(schema.system_table(p.system.name, base)).names)
+    return {name: value for name, value in values.items() if name in names}

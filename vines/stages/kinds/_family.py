@@ -1,0 +1,134 @@
+"""What kinds are for the systems beside the VI-NES: their parameters, starts, tables and code."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import replace
+from functools import partial
+from typing import Annotated, Any
+
+import msgspec
+from msgspec import Meta
+
+from vines.model import read_system, word_for
+from vines.pipeline import Kind
+from vines.schema import OF_EACH_SYSTEM, system_table
+from vines.stages.kinds._simulation import check_length
+from vines.systems import Harvest, parameters
+
+__all__ = ["FamilyBranchOptions", "FamilySweepOptions", "FamilyTrajectoryOptions", "HarvestLaw", "of_systems"]
+
+
+Start = Annotated[
+    dict[str, float | list[float]],
+    Meta(description="Start by the names of the system; what is left out is as it declares"),
+]
+
+
+class HarvestLaw(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """What an impact yields: the sum of c_k |w'|^k from a threshold of |w'| on."""
+
+    coefficients: Annotated[tuple[float, ...], Meta(min_length=1, description="c_0, c_1, …")]
+    threshold: Annotated[float, Meta(ge=0, description="Impact speed below which nothing is yielded")] = 0.0
+
+
+class FamilySweepOptions(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """The settled attractor of each point: `settle` periods, then `record` periods that are classified and measured."""
+
+    system: str
+    start: Start = {}
+    settle: Annotated[int, Meta(ge=0, description="Forcing periods that are left out")] = 400
+    record: Annotated[int, Meta(ge=2, description="Forcing periods that are classified and measured")] = 64
+    watch: Annotated[
+        int,
+        Meta(ge=16, description="Where nothing repeats: forcing periods more before a Lyapunov exponent is believed"),
+    ] = 512
+    keep: Annotated[
+        int,
+        Meta(
+            ge=0,
+            description="Recorded periods whose impacts are kept, of a periodic attractor one repetition; 0 keeps none",
+        ),
+    ] = 64
+    harvest: Annotated[HarvestLaw | None, Meta(description="What impacts yield, for the harvested power")] = None
+
+
+class FamilyTrajectoryOptions(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """One run of the simulator: `settle` periods unrecorded, then `record` periods into an MCAP log."""
+
+    system: str
+    start: Start = {}
+    settle: Annotated[int, Meta(ge=0, description="Forcing periods that are left out")] = 400
+    record: Annotated[int, Meta(ge=2, description="Forcing periods in the log")] = 10
+    per_period: Annotated[int, Meta(ge=2, description="Samples of the state in a forcing period")] = 200
+    bare: Annotated[
+        bool, Meta(description="Whether the log also carries what a viewer without vines understands (docs/logs.md)")
+    ] = True
+
+
+class FamilyBranchOptions(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """The family of periodic orbits of one word that `find_orbit` chooses at the start of the range, to its end."""
+
+    system: str
+    word: Annotated[str, Meta(description="Word of the impacts, such as LR")]
+    points: Annotated[
+        int,
+        Meta(ge=2, description="Evenly spaced values of the parameter that have an orbit on every sheet of a branch"),
+    ] = 400
+    harvest: Annotated[HarvestLaw | None, Meta(description="What impacts yield, for the harvested power")] = None
+
+
+def of_systems(
+    kind: Kind, systems: Iterable[str], options: type[msgspec.Struct], body: str, tables: tuple[str, ...]
+) -> Kind:
+    """Return a kind that can do other systems too.
+
+    Parameters
+    ----------
+    kind : Kind
+        What it is for the VI-NES.
+    systems : iterable of str
+        The systems.
+    options : type of msgspec.Struct
+        Its options there, with the field ``system``.
+    body : str
+        As of `Kind`.
+    tables : tuple of str
+        Its tables as the VI-NES calls them.
+    """
+
+    def make(system: str, balls: int) -> Kind:
+        return replace(
+            kind,
+            options=options,
+            body=body,
+            tables=tuple(system_table(system, name) if name in OF_EACH_SYSTEM else name for name in tables),
+            parameters={each.name: each.default for each in read_system(system, balls).parameters},
+            check=_check,
+            code=_code,
+            kernels=(),
+            again="",
+            systems={},
+            system=system,
+            balls=balls,
+        )
+
+    return replace(kind, systems={system: partial(make, system) for system in systems})
+
+
+def _check(params: dict[str, float], options: Any) -> None:
+    """Refuse parameters, starts, words and laws that the system cannot have."""
+    p = parameters(options.system).of(params)
+    values = msgspec.structs.asdict(options)
+    if "word" in values:
+        word_for(values["word"], p.system)
+    if values.get("harvest") is not None:
+        Harvest(options.harvest.threshold, options.harvest.coefficients)
+    check_length(values)
+    p.system.started(values.get("start", {}))
+
+
+def _code(options: Any) -> tuple[str, ...]:
+    """Return where the system's kernels and parameters are: they are looked up by its name, which no import shows."""
+    form = parameters(options.system)
+    return (f"vines.dynamics.{options.system}:ROOM", f"{form.__module__}:{form.__name__}")
