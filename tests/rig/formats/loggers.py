@@ -331,7 +331,7 @@ LOGGERS: dict[str, Case] = {
     "ragged_at_once": Case((HEAD + "0.0,0.01\n" + rows(PLAIN)).encode(), refused="line 2 is no row"),
     "ragged_soon": Case((HEAD + "0.0,0.01,1.5\n0.001,0.1\n" + rows(PLAIN)).encode(), refused="line 3 is no row"),
     "damaged_decimal_comma": Case(
-        (comma(rows("{a};{b}", times=T[:99])) + "-1,,280;0\n" + comma(rows("{a};{b}"))).encode(), refused="line 100 is no"
+        (comma(rows("{a};{b}", times=T[:99])) + "-1,,280;0\n" + comma(rows("{a};{b}"))).encode(), refused="line 100 is"
     ),
     "decimal_commas_parted_by_commas": Case(
         comma("".join(f"{a + 3:.4f},{b + 3:.4f},\n" for a, b in zip(LO, BASE, strict=True)))
