@@ -328,6 +328,15 @@ LOGGERS: dict[str, Case] = {
         refused="no rows of numbers; its end",
     ),
     "ragged": Case((HEAD + rows(PLAIN) + "0.24,0.1\n" + "0.241,0.1,0.2\n" * 30).encode(), refused="line 242 "),
+    "ragged_at_once": Case((HEAD + "0.0,0.01\n" + rows(PLAIN)).encode(), refused="line 2 is no row"),
+    "ragged_soon": Case((HEAD + "0.0,0.01,1.5\n0.001,0.1\n" + rows(PLAIN)).encode(), refused="line 3 is no row"),
+    "damaged_decimal_comma": Case(
+        (comma(rows("{a};{b}", times=T[:99])) + "-1,,280;0\n" + comma(rows("{a};{b}"))).encode(), refused="line 100 is"
+    ),
+    "decimal_commas_parted_by_commas": Case(
+        comma("".join(f"{a + 3:.4f},{b + 3:.4f},\n" for a, b in zip(LO, BASE, strict=True)))
+        .encode(), refused="may part two columns or be a decimal sign",
+    ),
     "head_again": Case((HEAD + rows(PLAIN) + HEAD + rows(PLAIN)).encode(), refused="line 242 is no row"),
     "only_a_head": Case(HEAD.encode(), refused="no rows"),
     "binary": Case(bytes(range(256)) * 20, refused="zero bytes"),

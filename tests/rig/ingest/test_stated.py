@@ -140,7 +140,7 @@ def test_counts_need_what_one_count_is(ingest):
 def test_a_layout_is_stated_once_a_file(ingest):
     both = "".join(f"{512 + k % 7},{v:.0f}\n" for k, v in enumerate(3500 + 1000 * VOLTS))
     other = {"name": "base", "role": "base_disp", "field": "1"}
-    with pytest.raises(RigError, match=r"run ring_1: lo, base: raw/rec\.csv: the comma in .* may part two columns"):
+    with pytest.raises(RigError, match=r"run ring_1: lo, base: raw/rec\.csv: a comma in .* may part two columns"):
         ingest(both, other, fs="10240", field="2", scale="1e-3")
     stated = {"dialect": "separator=comma decimal=point"}
     ingest(both, {**other, "fs": "10240", "scale": "1e-3"}, fs="10240", field="2", scale="1e-3", **stated)

@@ -17,7 +17,8 @@ __all__ = ["COUNTS", "Layout", "find_layout"]
 
 _SHORTEST = 2
 _ROWS_IN_A_HEAD = 3
-"""So many lines that look like samples above one that does not: it is damage among samples, not the end of a head."""
+"""So many lines that look like samples above one that does not: it is damage among samples, not the end of a head.
+Where rows have several fields one is enough; a number alone may stand in a head."""
 _NAMES = ("tracename", "trace name", "channel name", "signal name", "name", "channel", "ch")
 _UNITS = ("vunit", "unit", "units")
 """Labels of rows of names and of units, where the first column is one of labels, as Yokogawa writes them."""
@@ -107,24 +108,30 @@ def find_layout(lines: Lines, stated: Mapping[str, Any]) -> Layout:
             fitting.append((_score(kinds), _placed(lines, separator, decimal, kinds, stated)))
         except RigError as error:
             refused.append((_score(kinds), error))
+    worse = max((score for score, _ in refused), default=-1)
+    # Where a layout that fits better holds damage, one that leaves digits unread is no way out.
+    fitting = [one for one in fitting if one[0] >= worse or "text" not in one[1].kinds]
     if fitting:
-        return _the_one([layout for _, layout in sorted(fitting, key=lambda one: -one[0])], lines)
+        return _the_one([layout for _, layout in sorted(fitting, key=lambda one: -one[0])], lines, stated)
     if refused:
         raise max(refused, key=lambda one: one[0])[1]
     raise RigError(f"no rows of numbers; its end is {_short(lines.last[-1])}")
 
 
-def _the_one(fitting: list[Layout], lines: Lines) -> Layout:
-    """Return the layout with most columns of numbers, unless a comma may be a decimal sign as well."""
+def _the_one(fitting: list[Layout], lines: Lines, stated: Mapping[str, Any]) -> Layout:
+    """Return the layout with most columns of numbers, unless its commas may be decimal signs as well."""
     best = fitting[0]
     single = next((each for each in fitting if not each.separator and each.decimal == ","), None)
-    if single is None or best.head or best is single:
-        return best
-    if single.head and single.names[0].unit:
+    if single is not None and single.head and single.names[0].unit and not best.head:
         return single
+    rows = [split_line(line, ",") for line in lines.last[-_SHORTEST:]]
+    count = len(best.kinds) - (best.kinds[-1] == "empty")
+    pairs = count % 2 == 0 and all(cell.isdecimal() for row in rows for cell in row[1:count:2])
+    if best.separator != "," or best.head or "decimal" in stated or not pairs:
+        return best
     raise RigError(
-        f"the comma in {_short(lines.last[-1])} may part two columns or be a decimal sign: write separator=comma or "
-        "separator=none decimal=comma into the column dialect of channels.tsv"
+        f"a comma in {_short(lines.last[-1])} may part two columns or be a decimal sign: write decimal=point with "
+        "separator=comma, or decimal=comma with separator=none, into the column dialect of channels.tsv"
     )
 
 
@@ -199,15 +206,26 @@ def _named_rows(
     if cells is None:
         if names > 1:
             raise RigError(_unequal(lines, place, names, kinds))
+        parts = [cell for cell in split_line(lines.first[place - 1], separator) if cell]
+        if parts and set(kinds_of([parts], decimal)) <= {"number", "stamp"}:
+            raise RigError(_odd(lines, place))
         return _Row(), _Row()
     counted = [cell for cell, kind in zip(cells, kinds, strict=False) if kind in ("number", "stamp")]
-    if all(is_number(cell, decimal) for cell in counted):
-        raise RigError(f"line {place} is no row like those below it, and no head: {_short(lines.first[place - 1])}")
+    figures = sum(is_number(cell, decimal) for cell in counted)
+    words = rows[1][1] if len(rows) > 1 else None
+    # A head may hold numbers, but hardly below another that holds none: it is a row that was damaged.
+    below = words is not None and not any(is_number(cell, decimal) for cell in words)
+    if figures == len(counted) or (figures and below):
+        raise RigError(_odd(lines, place))
     if units_row([cell for cell, kind in zip(cells, kinds, strict=False) if kind == "number"]):
         above = rows[1] if len(rows) > 1 else None
         named = _Row(above[0], tuple(above[1])) if above is not None and above[1] is not None else _Row()
         return named, _Row(place, tuple(cells))
     return _Row(place, tuple(cells)), _Row()
+
+
+def _odd(lines: Lines, place: int) -> str:
+    return f"line {place} is no row like those below it, and no head: {_short(lines.first[place - 1])}"
 
 
 def _unequal(lines: Lines, place: int, names: int, kinds: Sequence[str]) -> str:
@@ -238,8 +256,9 @@ def _first_row(lines: Lines, separator: str, decimal: str, kinds: Sequence[str])
     ]
     odd = max((k for k, (_, row) in enumerate(told) if not row), default=-1)
     above = [row for _, row in told[: odd + 1]]
-    if sum(above) >= _ROWS_IN_A_HEAD:
-        place = next(place for k, (place, row) in enumerate(told) if not row and sum(above[:k]) >= _ROWS_IN_A_HEAD)
+    most = _ROWS_IN_A_HEAD if len(kinds) == 1 else 1
+    if sum(above) >= most:
+        place = next(place for k, (place, row) in enumerate(told) if not row and sum(above[:k]) >= most)
         raise RigError(f"line {place} is no row like those about it: {_short(lines.first[place - 1])}")
     if odd + 1 >= len(told):
         raise RigError(f"no rows of samples in its first {len(lines.first)} lines")
