@@ -74,7 +74,7 @@ def test_a_result_is_there_with_its_manifest_and_stays_as_it_is(tmp_path):
 def test_damage_is_found(tmp_path):
     result = commit(Store(tmp_path), "k" * 64)
     (result.folder / "note.txt").write_text("hellO")
-    assert result.damage() == ["note.txt is damaged: its checksum differs from the manifest's"]
+    assert result.damage() == ["note.txt is damaged: its checksum differs from that of what was written"]
     (result.folder / "note.txt").unlink()
     assert result.damage() == ["note.txt is missing"]
 

@@ -91,6 +91,8 @@ def _wait(child: int, heard: set[signal.Signals]) -> int:
             ended, status = os.waitpid(child, os.WNOHANG)
             if ended:
                 code = os.waitstatus_to_exitcode(status)
+                if code < 0 and end != float("inf"):  # it was told to stop before it could hear
+                    return STOPPED
                 return code if code >= 0 else 128 - code
         elif end == float("inf"):
             end = time.monotonic() + _PATIENCE
