@@ -25,7 +25,7 @@ record = 16
 [stages.run]
 kind = "trajectory"
 vary.A = [0.0155]
-settle = 20
+settle = SETTLE
 record = 4
 [stages.picture]
 kind = "figure"
@@ -110,7 +110,9 @@ def plain(project, name):
     for stage, pin in pins.items():
         for key in ("result", "pool"):
             name = name.replace(pin.get(key, stage), stage)
-    return re.sub(r"[0-9a-f]{20}\.mcap", "<point>.mcap", re.sub(r"\d{8}-[0-9a-f]{12}", "<part>", name))
+    for pattern, word in ((r"[0-9a-f]{20}\.mcap", "<point>.mcap"), (r"\d{8}-[0-9a-f]{12}", "<part>")):
+        name = re.sub(pattern, word, name)
+    return re.sub(r"\d{8}T\d{6}-small-\d+", "<time>-small-<process>", name)
 
 
 def contents(project, name="small"):
