@@ -86,6 +86,10 @@ def test_a_declaration_that_needs_itself(project):
         (["view", "quickstart.symmetric_run"], "run"),
         (["view", "missing.mcap"], "missing.mcap"),
         (["check", "quickstart"], "run"),
+        (["diff", "quickstart.up", "quickstart.up", "--rtol", "nan"], "nan is not a finite number"),
+        (["diff", "quickstart.up", "quickstart.up", "--atol", "inf"], "inf is not a finite number"),
+        (["view", "quickstart.symmetric_run", "--png", "a.png", "--at", "nan"], "nan is not a finite number"),
+        (["solve", "LR", "--mu", "0.01", "--A", "inf"], "inf is not a finite number"),
         (["check", "quickstrt"], "quickstrt"),
     ],
 )
@@ -104,6 +108,22 @@ def test_arguments_are_checked_where_nothing_is_left_to_do(quickstart):
         done = quickstart.vines("run", "quickstart", "--shard", shard, check=False)
         assert (done.returncode, done.stdout, done.stderr.count("\n")) == (2, "", 1)
         assert f"--shard '{shard}' is not i/n with 1 <= i <= n" in done.stderr
+    for address in ("node1", "tcp://node1", "node1:port"):
+        done = quickstart.vines("run", "quickstart", "--engine", "dask", "--scheduler", address, check=False)
+        assert (done.returncode, done.stdout) == (2, "")
+        assert done.stderr == f"vines: --scheduler {address} is not an address such as tcp://node1:8786\n"
+
+
+def test_a_declaration_that_cannot_be_read_is_told_as_that(project):
+    (project.root / "pipelines" / "mine.toml").symlink_to("mine.toml")
+    (project.root / "pipelines" / "folder.toml").mkdir()
+    listed = project.vines("list").stdout
+    assert "mine.toml cannot be read: Too many levels of symbolic links" in " ".join(listed.split())
+    assert "folder.toml cannot be read: Is a directory" in " ".join(listed.split())
+    assert "quickstart" in listed
+    assert "never" in project.vines("status", "quickstart").stdout
+    told = json.loads(project.vines("status", "--json").stdout)
+    assert "Is a directory" in told["folder"]["error"]
 
 
 def test_an_error_of_the_system_is_explained_by_what_caused_it(project, monkeypatch):

@@ -1,7 +1,11 @@
-"""Faults in every file that the store writes: each command names them or mends them, and none is ever wrong."""
+"""Faults in every file that the store writes: each command names them or mends them, and none is ever wrong.
+
+``python -m benchmarks.faults`` writes what each command does to docs/damage.md.
+"""
 
 import json
 import random
+import re
 import shutil
 
 import pytest
@@ -15,14 +19,18 @@ DECLARED = """
 mu = 0.01
 [stages.up]
 kind = "sweep"
-vary.A = [0.015]
+vary.A = [0.015, 0.016]
 settle = SETTLE
 record = 16
 [stages.run]
 kind = "trajectory"
 vary.A = [0.0155]
-settle = 20
+settle = SETTLE
 record = 4
+[stages.picture]
+kind = "figure"
+plot = "bifurcation"
+needs = ["up"]
 """
 SQL = "select pipeline, stage, A, kinetic_ratio, name from points where pipeline = 'small' order by stage, A"
 OTHER = "select A, kinetic_ratio, name from other.up order by A"
@@ -37,7 +45,7 @@ def truncate(path, twin):
 
 
 def flip(path, twin):
-    data = bytearray(path.read_bytes())
+    data = bytearray(path.read_bytes() or b"\0")  # the lock is empty
     place = random.Random(path.name).randrange(len(data))
     data[place] ^= 1 << random.Random(len(data)).randrange(7)
     path.write_bytes(bytes(data))
@@ -53,8 +61,13 @@ FAULTS = (delete, truncate, flip, replace)
 @pytest.fixture(scope="module")
 def whole(tmp_path_factory):
     """Return a project with two pipelines that were run."""
-    made = Project(tmp_path_factory.mktemp("whole"))
-    (made.root / "pipelines").mkdir()
+    return run_two(tmp_path_factory.mktemp("whole"))
+
+
+def run_two(folder):
+    """Return a project in a folder with two pipelines that were run."""
+    made = Project(folder)
+    (made.root / "pipelines").mkdir(parents=True)
     for name, settle in (("small", 50), ("other", 60)):
         (made.root / "pipelines" / f"{name}.toml").write_text(DECLARED.replace("SETTLE", str(settle)))
         made.vines("run", name, "--quiet", "--jobs", "1")
@@ -62,11 +75,13 @@ def whole(tmp_path_factory):
 
 
 def files_of(project):
-    """Return what the store wrote for the pipeline small, each with a file of the same kind that is another's."""
+    """Return what was written below data/ for the pipeline small, each with a file of the same kind of another's."""
     mine, others = (json.loads((project.data / "pipelines" / f"{n}.pins.json").read_text()) for n in ("small", "other"))
     found = {"pipelines/small.pins.json": "pipelines/other.pins.json"}
     for stage, pin in mine.items():
         for folder, key in (("results", "result"), ("points", "pool")):
+            if key not in pin:
+                continue
             here = project.data / folder / pin[key]
             there = sorted(path for path in (project.data / folder / others[stage][key]).rglob("*") if path.is_file())
             for path in sorted(here.rglob("*")):
@@ -76,7 +91,28 @@ def files_of(project):
                     found[str(path.relative_to(project.data))] = str(same[-1].relative_to(project.data))
         found[f"cache/whole/{pin['result']}.json"] = f"cache/whole/{others[stage]['result']}.json"
     found["cache/code.json"] = next(each for each in found if each.startswith("cache/whole/"))
+    logs = {
+        name: str(next(project.data.glob(f"logs/*-{name}-*")).relative_to(project.data)) for name in ("small", "other")
+    }
+    found[logs["small"]] = found["store.lock"] = logs["other"]
+    there = {str(path.relative_to(project.data)) for path in project.data.rglob("*") if path.is_file()}
+    assert there == {*found, *found.values(), *(name for name in there if any(key in name for key in keys_of(others)))}
     return found
+
+
+def keys_of(pins):
+    return [pin[key] for pin in pins.values() for key in ("result", "pool") if key in pin]
+
+
+def plain(project, name):
+    """Return the name of a file with the stage in the place of a key."""
+    pins = json.loads((project.data / "pipelines" / "small.pins.json").read_text())
+    for stage, pin in pins.items():
+        for key in ("result", "pool"):
+            name = name.replace(pin.get(key, stage), stage)
+    for pattern, word in ((r"[0-9a-f]{20}\.mcap", "<point>.mcap"), (r"\d{8}-[0-9a-f]{12}", "<part>")):
+        name = re.sub(pattern, word, name)
+    return re.sub(r"\d{8}T\d{6}-small-\d+", "<time>-small-<process>", name)
 
 
 def contents(project, name="small"):
@@ -106,6 +142,7 @@ def test_every_file_of_the_store_has_every_fault(whole, tmp_path, fault):
 
 
 def inject(whole, tmp_path, fault_of):
+    """Hurt each file, see what each command does, and return that: fault, file, and a word for each command."""
     right, answers = (
         contents(whole),
         {sql: whole.vines("query", sql, "--format", "json").stdout for sql in (SQL, OTHER)},
@@ -118,13 +155,13 @@ def inject(whole, tmp_path, fault_of):
         before = (project.data / name).read_bytes()
         fault(project.data / name, project.data / twin)
         if not (project.data / name).exists() or (project.data / name).read_bytes() != before:
-            table.append(f"{fault.__name__} {name}: {outcome(project, name, right, answers)}")
+            table.append((fault.__name__, plain(whole, name), outcome(project, name, right, answers)))
         shutil.rmtree(project.root)
-    print("\n".join(table))
+    return table
 
 
 def outcome(project, name, right, answers):
-    """See what each command does, and return it in words."""
+    """See what each command does, and return a word for it."""
     said = {}
     status = project.vines("status", "small")
     said["status"] = "up to date" if all("up to date" in line for line in status.stdout.splitlines()[1:]) else "named"
@@ -145,6 +182,7 @@ def outcome(project, name, right, answers):
     else:
         removable = {each["key"] for each in json.loads(gc.stdout)["found"] if each["what"] == "points"}
         assert not removable, name
+    said["gc"] = "named" if gc.returncode else "keeps points"
     export = project.vines("export", str(project.root / "exported"), "small", check=False)
     if export.returncode:
         assert named(export), (name, export)
@@ -162,4 +200,4 @@ def outcome(project, name, right, answers):
         assert contents(project) == right, name
         assert project.vines("verify", "small").returncode == 0, name
     assert "nothing to compute" in project.vines("run", "small").stdout
-    return ", ".join(f"{command} {what}" for command, what in said.items())
+    return said

@@ -72,4 +72,4 @@ def test_diff_gc_graph_and_a_store_that_was_moved(project):
     with (result.folder / "points.parquet").open("r+b") as stream:
         stream.seek(50)
         stream.write(b"x")
-    assert result.damage() == ["points.parquet is damaged: its checksum differs from the manifest's"]
+    assert result.damage() == ["points.parquet is damaged: its checksum differs from that of what was written"]

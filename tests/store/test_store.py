@@ -94,7 +94,7 @@ def test_what_is_stored_is_on_the_disk_before_it_has_its_name(tmp_path, monkeypa
 def test_damage_is_found(tmp_path):
     result = commit(Store(tmp_path), "k" * 64)
     (result.folder / "note.txt").write_text("hellO")
-    assert result.damage() == ["note.txt is damaged: its checksum differs from the manifest's"]
+    assert result.damage() == ["note.txt is damaged: its checksum differs from that of what was written"]
     (result.folder / "note.txt").unlink()
     assert result.damage() == ["note.txt is missing"]
 

@@ -19,7 +19,7 @@ import click
 
 from vines import __version__
 from vines.cli._interrupt import stoppable
-from vines.cli._supervised import go_on_in_a_child, is_supervised
+from vines.cli._supervised import PATIENCE, go_on_in_a_child, is_supervised
 from vines.errors import DamageWarning, VinesError, nearest
 
 __all__ = ["app", "main"]
@@ -54,6 +54,10 @@ COMMANDS = {
 
 _KEEPING = frozenset({"merge", "run"})
 """Commands that keep what they have computed."""
+_SERVING = frozenset({"browse", "view"})
+"""Commands that a signal is how to end: they end their server in good order."""
+_SERVER_PATIENCE = 12.0
+"""Seconds that they have for it on a busy machine; they take less than one otherwise."""
 _THRESHOLDS = (100_000, 50, 100)
 """New objects, and rounds, after which Python looks for cycles; its own are 700, 10, 10."""
 
@@ -132,7 +136,7 @@ def main(*, supervised: bool = True) -> None:
     command = next((each for each in sys.argv[1:] if each in COMMANDS), "")
     remedy = f"'{shlex.join(['vines', *sys.argv[1:]])}' goes on" if command in _KEEPING else ""
     if supervised:
-        go_on_in_a_child(remedy)
+        go_on_in_a_child(remedy, patience=_SERVER_PATIENCE if command in _SERVING else PATIENCE)
     os.environ.setdefault("RERUN_ANALYTICS", "0")
     # What libraries make at their import lives to the end; to look for cycles there takes a twelfth of a first run.
     gc.set_threshold(*_THRESHOLDS)

@@ -7,14 +7,19 @@ from dataclasses import asdict
 
 import click
 
+from vines.cli._finite import finite
 from vines.cli._study import the_study
 
 
 @click.command("diff")
 @click.argument("a", metavar="A")
 @click.argument("b", metavar="B")
-@click.option("--rtol", type=click.FloatRange(min=0), default=1e-9, show_default=True, help="Relative tolerance.")
-@click.option("--atol", type=click.FloatRange(min=0), default=0.0, show_default=True, help="Absolute tolerance.")
+@click.option(
+    "--rtol", type=click.FloatRange(min=0), callback=finite, default=1e-9, show_default=True, help="Relative tolerance."
+)
+@click.option(
+    "--atol", type=click.FloatRange(min=0), callback=finite, default=0.0, show_default=True, help="Absolute tolerance."
+)
 @click.option("--json", "as_json", is_flag=True, help="For machines.")
 def command(a: str, b: str, rtol: float, atol: float, as_json: bool) -> None:
     """Compare two results of a stage: what was asked for, and the values, row by row.

@@ -7,6 +7,7 @@ from typing import Any
 
 import click
 
+from vines.cli._finite import finite
 from vines.model import VI_NES
 
 __all__ = ["parameter_options"]
@@ -19,6 +20,7 @@ def parameter_options(command: Callable[..., Any]) -> Callable[..., Any]:
             f"--{each.name}",
             each.name,
             type=float,
+            callback=finite,
             required=each.default is None,
             default=each.default,
             show_default=True,

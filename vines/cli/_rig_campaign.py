@@ -6,17 +6,22 @@ from pathlib import Path
 
 import click
 
+from vines.cli._finite import finite
 from vines.errors import ParameterError
 
 
 @click.command("campaign")
 @click.argument("folder", type=click.Path(path_type=Path))
-@click.option("--from", "first", type=float, default=0.013, show_default=True, help="Least amplitude A = E/b.")
-@click.option("--to", "last", type=float, default=0.023, show_default=True, help="Largest amplitude.")
+@click.option(
+    "--from", "first", type=float, callback=finite, default=0.013, show_default=True, help="Least amplitude A = E/b."
+)
+@click.option("--to", "last", type=float, callback=finite, default=0.023, show_default=True, help="Largest amplitude.")
 @click.option("--count", type=click.IntRange(min=1), default=6, show_default=True, help="Amplitudes of a sweep.")
 @click.option("--seed", type=click.IntRange(min=0), default=0, show_default=True, help="Of everything that is drawn.")
 @click.option("--draw", is_flag=True, help="Draw the imperfections over their ranges; else the rig is a good one.")
-@click.option("--warming", type=float, default=1.5, show_default=True, help="Change of temperature [K].")
+@click.option(
+    "--warming", type=float, callback=finite, default=1.5, show_default=True, help="Change of temperature [K]."
+)
 @click.option("--set", "given", multiple=True, metavar="K=V", help="A setting of the rig, e.g. duration=30.")
 def command(
     folder: Path, first: float, last: float, count: int, seed: int, draw: bool, warming: float, given: tuple[str, ...]

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import click
 
+from vines.cli._finite import finite
 from vines.cli._study import the_study
 
 
@@ -14,6 +15,7 @@ from vines.cli._study import the_study
 @click.option(
     "--log-rate",
     type=click.FloatRange(min=0),
+    callback=finite,
     default=2048.0,
     show_default=True,
     help="Samples a second of a channel in the logs at most; 0 keeps all.",

@@ -56,6 +56,13 @@ def command(
 
     if scheduler is not None and engine != "dask":
         raise DeclarationError(f"--scheduler {scheduler} needs --engine dask")
+    if engine == "dask":
+        from vines.packages import need
+        from vines.pipeline import check_address
+
+        need("distributed")
+        if scheduler is not None:
+            check_address(scheduler)
     if shard is not None:
         from vines.pipeline import Shard
 

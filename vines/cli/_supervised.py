@@ -15,9 +15,9 @@ from types import FrameType
 
 from vines.cli._interrupt import STOPPED, stopped
 
-__all__ = ["go_on_in_a_child", "is_supervised"]
+__all__ = ["PATIENCE", "go_on_in_a_child", "is_supervised"]
 
-_PATIENCE = 0.8
+PATIENCE = 0.8
 """Seconds that a command has after a signal; those that Python hears end in less."""
 _SET_DEATH_SIGNAL = 1
 """``PR_SET_PDEATHSIG`` of prctl(2)."""
@@ -30,13 +30,15 @@ def is_supervised() -> bool:
     return os.getppid() in _WAITING
 
 
-def go_on_in_a_child(remedy: str) -> None:
+def go_on_in_a_child(remedy: str, *, patience: float = PATIENCE) -> None:
     """Return in a child process; the process that calls ends here, with the exit code of the child.
 
     Parameters
     ----------
     remedy : str
         What the line that tells of a stop says beside that; see `stopped`.
+    patience : float
+        Seconds that the child has after a signal.
 
     Notes
     -----
@@ -49,7 +51,7 @@ def go_on_in_a_child(remedy: str) -> None:
     before = signal.pthread_sigmask(signal.SIG_BLOCK, heard)
     child = os.fork()
     if child:
-        code = _wait(child, heard)
+        code = _wait(child, heard, patience)
         if code == STOPPED:
             shown = "\x1b[?25h" if sys.stderr.isatty() else ""  # a progress bar hides the cursor
             os.write(2, os.fsencode(f"{shown}{stopped(remedy)}\n"))
@@ -76,7 +78,7 @@ def _once(number: int, frame: FrameType | None) -> None:
     raise KeyboardInterrupt
 
 
-def _wait(child: int, heard: set[signal.Signals]) -> int:
+def _wait(child: int, heard: set[signal.Signals], patience: float) -> int:
     """Wait for the child and return its exit code; pass signals on and kill what does not heed them."""
     end = float("inf")
     while True:
@@ -91,9 +93,11 @@ def _wait(child: int, heard: set[signal.Signals]) -> int:
             ended, status = os.waitpid(child, os.WNOHANG)
             if ended:
                 code = os.waitstatus_to_exitcode(status)
+                if code < 0 and end != float("inf"):  # it was told to stop before it could hear
+                    return STOPPED
                 return code if code >= 0 else 128 - code
         elif end == float("inf"):
-            end = time.monotonic() + _PATIENCE
+            end = time.monotonic() + patience
             os.kill(child, told.si_signo)
 
 

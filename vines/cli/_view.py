@@ -6,6 +6,7 @@ from pathlib import Path
 
 import click
 
+from vines.cli._finite import finite
 from vines.cli._max_chunk import max_chunk_option
 from vines.cli._study import the_study
 from vines.errors import printable
@@ -19,7 +20,12 @@ _FILE = click.Path(dir_okay=False, path_type=Path)
 @click.option("--png", type=_FILE, help="Draw a picture without any screen.")
 @click.option("--save", type=_FILE, help="Write a recording (.rrd) with its blueprint.")
 @click.option("--overlay", is_flag=True, help="Curves of all runs in the same views, as of a rig and of the model.")
-@click.option("--at", type=float, help="Simulation time that the picture shows; a moment past the middle if left out.")
+@click.option(
+    "--at",
+    type=float,
+    callback=finite,
+    help="Simulation time that the picture shows; a moment past the middle if left out.",
+)
 @max_chunk_option
 def command(
     logs: tuple[str, ...],

@@ -4,9 +4,11 @@ from vines.logs._live import LiveWriter
 from vines.logs._read import Log, bytes_of_file, read
 from vines.logs._recover import Recovery, read_damaged, recover
 from vines.logs._rig import Sensor, write_rig
+from vines.logs._unpack import CHUNK_LIMIT
 from vines.logs._write import write_run
 
 __all__ = [
+    "CHUNK_LIMIT",
     "LiveWriter",
     "Log",
     "Recovery",

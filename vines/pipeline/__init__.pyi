@@ -6,6 +6,7 @@ from ._code import CodeDigests as CodeDigests
 from ._collection import Collection as Collection
 from ._collection import load_collection as load_collection
 from ._collection import members as members
+from ._dask import check_address as check_address
 from ._declaration import Carry as Carry
 from ._declaration import Pipeline as Pipeline
 from ._declaration import Refine as Refine

@@ -5,19 +5,41 @@ from __future__ import annotations
 import contextlib
 import logging
 import multiprocessing
+import re
 import time
 from concurrent.futures import CancelledError, Executor
 from functools import partial
 from typing import Any
 
-from vines.errors import EngineError
+from vines.errors import DeclarationError, EngineError
 from vines.packages import need
 from vines.pipeline._worker import compute_apart
 
-__all__ = ["Dask"]
+__all__ = ["Dask", "check_address"]
 
+_ADDRESS = re.compile(r"([a-z]+://)?([^\s:/\[\]]+|\[[0-9a-fA-F:.%]+\]):\d{1,5}")
 _CONNECT_SECONDS = 10
 _REFRESH_SECONDS = 2.0
+
+
+def check_address(address: str) -> None:
+    """See that an address is one of a scheduler, before anything is sought there.
+
+    Raises
+    ------
+    DeclarationError
+        If it is none.
+
+    Examples
+    --------
+    >>> check_address("tcp://node1:8786")
+    >>> check_address("node1")
+    Traceback (most recent call last):
+        ...
+    vines.errors.DeclarationError: --scheduler node1 is not an address such as tcp://node1:8786
+    """
+    if not _ADDRESS.fullmatch(address):
+        raise DeclarationError(f"--scheduler {address} is not an address such as tcp://node1:8786")
 
 
 class Dask:

@@ -26,15 +26,23 @@ def available(root: Path) -> dict[str, Path]:
     return dict(sorted(found.items()))
 
 
+def _is_there(path: Path) -> bool:
+    """Whether there is something of that name, be it a folder or a link to nowhere: reading it says so."""
+    return path.exists() or path.is_symlink()
+
+
 def _declares(path: Path) -> bool:
-    return _STAGES.search(path.read_text("utf-8", errors="replace")) is not None
+    try:
+        return _STAGES.search(path.read_text("utf-8", errors="replace")) is not None
+    except OSError:  # who reads it as a declaration says why it cannot be read; the others stay usable
+        return True
 
 
 def file_of(name: str, root: Path) -> Path | None:
     """Return the file of a pipeline or collection, as `available` has it; ``None`` if there is none of that name."""
     for folder in (root / "pipelines", shipped("pipelines")):
         path = folder / f"{name}.toml"
-        if path.is_file() and _declares(path):
+        if _is_there(path) and _declares(path):
             return path
     return None
 
@@ -63,6 +71,6 @@ def find(name: str, root: Path) -> Path:
         return path
     for folder in (root / "pipelines", shipped("pipelines")):
         path = folder / f"{name}.toml"
-        if path.is_file():
+        if _is_there(path):
             return path
     raise UnknownNameError(f"unknown pipeline {name!r}: {nearest(name, available(root))}")

@@ -139,8 +139,8 @@ def _lost(prepared: Prepared, grid: Grid | Refined, places: np.ndarray) -> Store
     where = f", the first at {first}" if first else ""
     return StoreError(
         f"{len(places)} of {len(grid)} points of stage {prepared.stage.name} were told to be stored and are not in "
-        f"{prepared.pool_key[:12]} below data/points{where}; nothing was put together; whoever computed them does "
-        "not see this folder; run again"
+        f"{prepared.pool_key[:12]} below data/points{where}; nothing was put together; they were removed "
+        "meanwhile, or whoever computed them does not see this folder; run again"
     )
 
 

@@ -25,13 +25,15 @@ def parse(path: Path) -> dict[str, Any]:
     FileMissingError
         If there is no such file.
     DeclarationError
-        If it is not TOML.
+        If it cannot be read, or is not TOML.
     """
     try:
         return dict(_loads(path.read_text("utf-8")))
     except FileNotFoundError:
         raise FileMissingError(f"{path}: there is no such file; 'vines list' shows the pipelines there are") from None
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError, OSError) as error:
+    except OSError as error:
+        raise DeclarationError(f"{path} cannot be read: {error.strerror}") from None
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
         raise DeclarationError(f"{path}: not a TOML file: {str(error).splitlines()[0]}") from None
 
 

@@ -1,4 +1,5 @@
 from ._atomic import write_text as write_text
+from ._described import describe_file as describe_file
 from ._garbage import Garbage as Garbage
 from ._garbage import find_garbage as find_garbage
 from ._garbage import remove_garbage as remove_garbage
@@ -15,7 +16,6 @@ from ._pools import commit_part as commit_part
 from ._provenance import revision as revision
 from ._provenance import versions as versions
 from ._results import Result as Result
-from ._results import describe_file as describe_file
 from ._results import describe_table as describe_table
 from ._results import read_result as read_result
 from ._sealed import read_sealed as read_sealed

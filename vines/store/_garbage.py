@@ -88,7 +88,8 @@ def remove_garbage(store: Store, garbage: Collection[Garbage]) -> None:
             try:
                 each.folder.rename(trash / uuid.uuid4().hex)
             except OSError as error:
-                raise StoreError(f"{each.folder} cannot be removed: {error.strerror}; check who owns it") from None
+                remedy = "; check who owns it" if isinstance(error, PermissionError) else ""
+                raise StoreError(f"{each.folder} cannot be removed: {error.strerror}{remedy}") from None
         shutil.rmtree(trash, ignore_errors=True)
 
 

@@ -12,10 +12,11 @@ from typing import TYPE_CHECKING, Any
 from vines import schema
 from vines.errors import DamageError, StoreError
 from vines.store._atomic import commit_folder, write_text
+from vines.store._described import damage_of, describe_files
 from vines.store._keys import canonical, key_of
 from vines.store._parquet import write_parquet
 from vines.store._provenance import versions
-from vines.store._results import describe_file, describe_files, seal
+from vines.store._results import seal
 
 if TYPE_CHECKING:
     import numpy as np
@@ -89,9 +90,8 @@ class Part:
         DamageError
             If it is not.
         """
-        path = self.folder / name
-        if name in self.files and (not path.is_file() or describe_file(path) != self.files[name]):
-            raise DamageError(f"{path} is damaged: its checksum differs from that of its part; {_REMEDY}")
+        if name in self.files and (problem := damage_of(self.folder, name, self.files[name])):
+            raise DamageError(f"{self.folder}: {problem}; {_REMEDY}")
 
     def damage(self) -> str:
         """Return in words what is wrong with its files; empty if every checksum is right."""
@@ -294,8 +294,8 @@ def _read_part(folder: Path) -> Part:
         if check not in (None, key_of(about)) or (check is not None and named != key_of(text)[:12]):
             raise DamageError(f"{folder / 'part.json'} is damaged: it is not what was written; {_REMEDY}")
         for name, said in about.get("files", {}).items():
-            if (folder / name).stat().st_size != said["bytes"]:
-                raise DamageError(f"{folder / name} is damaged: its size is not what was written; {_REMEDY}")
+            if problem := damage_of(folder, name, said, contents=False):
+                raise DamageError(f"{folder}: {problem}; {_REMEDY}")
     except (
         FileNotFoundError,
         ValueError,

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 import json
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -11,12 +10,13 @@ from typing import TYPE_CHECKING, Any
 
 from vines import schema
 from vines.errors import DamageError, UnknownNameError, nearest
+from vines.store._described import damage_of
 from vines.store._keys import key_of
 
 if TYPE_CHECKING:
     import pyarrow as pa
 
-__all__ = ["Result", "describe_file", "describe_files", "describe_table", "read_result", "seal"]
+__all__ = ["Result", "describe_table", "read_result", "seal"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -86,19 +86,10 @@ class Result:
         for name in self.tables:
             check_form(self.folder / f"{name}.parquet", name)
 
-    def is_intact(self, name: str) -> bool:
-        """Whether a file has the size and the checksum that the manifest says; reads it."""
-        return describe_file(self.folder / name) == self.manifest["files"][name]
-
     def damage(self) -> list[str]:
         """Return what is wrong with the files, one line each; empty if every checksum is right."""
-        found = []
-        for name in self.manifest["files"]:
-            if not (self.folder / name).is_file():
-                found.append(f"{name} is missing")
-            elif not self.is_intact(name):
-                found.append(f"{name} is damaged: its checksum differs from the manifest's")
-        return found
+        problems = (damage_of(self.folder, name, said) for name, said in self.manifest["files"].items())
+        return [problem for problem in problems if problem]
 
 
 def seal(manifest: Mapping[str, Any]) -> dict[str, Any]:
@@ -136,16 +127,3 @@ def read_result(folder: Path, *, strict: bool = True) -> Result:
 def describe_table(name: str, rows: int) -> dict[str, Any]:
     """Return what a manifest says of a table: rows, columns, and units of those that have one."""
     return {"rows": rows, "columns": list(schema.table(name).names), "units": schema.units(name)}
-
-
-def describe_files(folder: Path) -> dict[str, dict[str, Any]]:
-    """Return sha256 and size of every file below a folder, by name, in order."""
-    paths = sorted(path for path in folder.rglob("*") if path.is_file() and path.name != "manifest.json")
-    return {path.relative_to(folder).as_posix(): describe_file(path) for path in paths}
-
-
-def describe_file(path: Path) -> dict[str, Any]:
-    """Return sha256 and size of a file."""
-    with path.open("rb") as stream:
-        digest = hashlib.file_digest(stream, "sha256").hexdigest()
-    return {"sha256": digest, "bytes": path.stat().st_size}

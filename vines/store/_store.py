@@ -12,8 +12,9 @@ from typing import TYPE_CHECKING, Any
 
 from vines.errors import DamageError, StoreError
 from vines.store._atomic import commit_folder, write_text
+from vines.store._described import describe_files
 from vines.store._keys import key_of
-from vines.store._results import Result, describe_files, read_result, seal
+from vines.store._results import Result, read_result, seal
 from vines.store._staging import clear_staging, staging
 from vines.store._wholeness import look, remember
 

@@ -12,6 +12,7 @@ from collections.abc import Collection
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from vines.store._described import damage_of
 from vines.store._sealed import read_sealed, write_sealed
 
 if TYPE_CHECKING:
@@ -39,17 +40,14 @@ def look(result: Result, seen: Path, names: Collection[str] | None = None, *, th
     for name, about in result.manifest["files"].items():
         if names is not None and name not in names:
             continue
-        try:
-            status = os.stat(result.folder / name)  # noqa: PTH116 - it is called often
-        except OSError:
-            return f"{name} is missing"
-        if status.st_size != about["bytes"]:
-            return f"{name} is damaged: it has {status.st_size} bytes, the manifest says {about['bytes']}"
-        if known.get(name) != status.st_mtime_ns and (thorough or name in known):
+        if problem := damage_of(result.folder, name, about, contents=False):
+            return problem
+        changed = os.stat(result.folder / name).st_mtime_ns  # noqa: PTH116 - it is called often
+        if known.get(name) != changed and (thorough or name in known):
             unsure.append(name)
     for name in unsure:
-        if not result.is_intact(name):
-            return f"{name} is damaged: its checksum differs from the manifest's"
+        if problem := damage_of(result.folder, name, result.manifest["files"][name]):
+            return problem
     if unsure:
         remember(result, seen, unsure)
     return ""
