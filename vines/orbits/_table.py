@@ -152,7 +152,7 @@ def _table_kernel(points, period, out):
             row.max_multiplier = largest * largest
             row.stable = largest < 1.0
             after, _ = after_impact_kernel(c.law, v1, -V)
-            clearance, _, wall = inspect_flight(c, 1, x1, after, x1 - 1.0, V, phase, half)
+            clearance, _, wall = inspect_flight(c, 1.0, 1, x1, after, x1 - 1.0, V, phase, half)
             row.min_clearance = clearance
             row.admissible = wall == 0 and clearance > 0.0
             _, v1_square, v2_square, _, _ = segment_integrals(c, 0.0, x1, after, V, phase, half)
