@@ -1,3 +1,4 @@
+import itertools
 import pickle
 
 import pytest
@@ -100,7 +101,22 @@ def test_equal_balls_have_one_word_whatever_they_are_called(impacts, p, order):
     alike = [(1, 2, 3)]
     one, names = Word(spell(text, p)).relabelled(alike)
     assert Word(spell(other, p)).relabelled(alike)[0] == one
-    assert sorted(names) == sorted(names.values()) == [1, 2, 3]
+    assert "".join(each[0] + str(names[int(each[1:])]) for each in impacts) in one.letters * 2
+    every = [
+        Word(spell("".join(each[0] + str(new[int(each[1:]) - 1]) for each in impacts), p))
+        for new in itertools.permutations([1, 2, 3])
+    ]
+    assert one == min(every, key=lambda word: word.letters)
+
+
+def test_equal_balls_are_renamed_at_once_however_many():
+    word = Word("".join(f"{side}{ball}" for side in "LR" for ball in (8, 3, 5, 1, 7, 2, 6, 4)))
+    assert str(word.relabelled([range(1, 9)])[0]) == "L1L2L3L4L5L6L7L8R1R2R3R4R5R6R7R8"
+
+
+def test_roles_change_only_among_equal_balls():
+    word = Word("L1L2R2R1L2L1R1R2/2T")
+    assert (word.shifted([(1, 2)]), word.shifted([]), Word("L1R1L1R1/2T").shifted([(1, 2)])) == ({1: 2, 2: 1}, {}, {})
 
 
 @pytest.mark.parametrize(

@@ -15,11 +15,11 @@ from vines.dynamics import _room
 from vines.errors import ParameterError
 from vines.model import _declared
 from vines.places import shipped
-from vines.schema import _tables
+from vines.schema import _system_tables, _tables
 
 PAGE = Path(__file__).resolve().parents[2] / "docs" / "systems.md"
 DECLARED = (_declared.read_system, _declared.system_names, _declared._form)
-CACHES = (*DECLARED, _room._room_of, _tables._names, _tables._of_systems, _tables._table)
+CACHES = (*DECLARED, _room._room_of, _tables._names, _system_tables.of_systems, _tables._table)
 
 
 def module(name, code, monkeypatch):
@@ -39,7 +39,7 @@ def added(tmp_path, monkeypatch):
     folder = tmp_path / "schemas"
     shutil.copytree(shipped("schemas"), folder)
     (folder / "systems" / "scaled.toml").write_text(files["schemas/systems/scaled.toml"])
-    for room in (_declared, _tables):
+    for room in (_declared, _tables, _system_tables):
         monkeypatch.setattr(room, "shipped", lambda name: folder if name == "schemas" else shipped(name))
     for each in CACHES:
         each.cache_clear()

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import itertools
 import re
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 from vines.errors import ParameterError
+from vines.model._letters import impacts, renamed, roles, rotated
 from vines.model._system import System
 from vines.model._vi_nes import VI_NES
 
@@ -78,7 +78,7 @@ class Word:
                     hint = f"n:m/pT does not tell the order of the impacts; {_HOW}"
                 raise ParameterError(f"{text!r} is not a word: {hint}")
             letters, p = match[1], int(match[2] or 1)
-        object.__setattr__(self, "letters", min(_rotations(letters)))
+        object.__setattr__(self, "letters", min(rotated(letters)))
         object.__setattr__(self, "p", p)
 
     @property
@@ -100,7 +100,7 @@ class Word:
         >>> Word("L1L2R1R2").balls, Word("LR").balls
         ((1, 2, 1, 2), (0, 0))
         """
-        return tuple(int(each[1:] or 0) for each in _impacts(self.letters))
+        return tuple(int(each[1:] or 0) for each in impacts(self.letters))
 
     @property
     def name(self) -> str:
@@ -149,7 +149,7 @@ class Word:
         >>> Word("LLR").sides
         (1, 1, -1)
         """
-        return tuple(_SIGNS[each[0]] for each in _impacts(self.letters))
+        return tuple(_SIGNS[each[0]] for each in impacts(self.letters))
 
     @property
     def mirror(self) -> Word:
@@ -173,7 +173,7 @@ class Word:
         return len(self) % 2 == 0 and self.p % 2 == 1 and self.letters[half:] == self.letters[:half].translate(_SWAP)
 
     def relabelled(self, alike: Iterable[Iterable[int]]) -> tuple[Word, dict[int, int]]:
-        """Return the least word that renaming equal balls gives, and the new number of each of them.
+        """Return the least word that renaming equal balls gives, and the new number of each of them that hits.
 
         Parameters
         ----------
@@ -183,10 +183,11 @@ class Word:
         Examples
         --------
         >>> Word("L2L1R1R2").relabelled([(1, 2)])
-        (Word('L1L2R2R1'), {1: 2, 2: 1})
+        (Word('L1L2R2R1'), {2: 1, 1: 2})
         """
-        words = ((_word(_renamed(self.letters, names), self.p), names) for names in _renamings(alike))
-        return min(words, key=lambda each: each[0].letters)
+        groups = [sorted(group) for group in alike]
+        letters, names = min((renamed(each, groups) for each in rotated(self.letters)), key=lambda each: each[0])
+        return _word(letters, self.p), names
 
     def shifted(self, alike: Iterable[Iterable[int]]) -> dict[int, int]:
         """Return how equal balls change roles from one forcing period to the next; empty if they don't.
@@ -201,10 +202,8 @@ class Word:
         length, rest = divmod(len(self), self.p)
         if rest or self.p == 1:
             return {}
-        width = len(self.letters) // len(self)
-        later = self.letters[length * width :] + self.letters[: length * width]
-        changing = (names for names in _renamings(alike) if any(old != new for old, new in names.items()))
-        return next((names for names in changing if _renamed(self.letters, names) == later), {})
+        each = impacts(self.letters)
+        return roles(each, each[length:] + each[:length], [set(group) for group in alike])
 
     def rotations(self) -> tuple[int, ...]:
         """Return the starts from which the letters read the same: (0,) unless they are a repetition.
@@ -214,7 +213,7 @@ class Word:
         >>> Word("LRLR/2T").rotations()
         (0, 2)
         """
-        return tuple(k for k, rotated in enumerate(_rotations(self.letters)) if rotated == self.letters)
+        return tuple(k for k, each in enumerate(rotated(self.letters)) if each == self.letters)
 
     def _repeats(self, times: int) -> bool:
         return len(self) % times == 0 and self.letters[: len(self.letters) // times] * times == self.letters
@@ -247,34 +246,11 @@ def word_for(text: str | Word, system: System) -> Word:
     known = [contact.letter for contact in system.contacts]
     if system.balls == 1:
         known += sorted({letter[0] for letter in known})
-    if not set(_impacts(word.letters)) <= set(known):
+    if not set(impacts(word.letters)) <= set(known):
         raise ParameterError(
             f"{str(text)!r} is not a word of the system {system.name!r}, which has the impacts {', '.join(known)}"
         )
     return word
-
-
-def _impacts(letters: str) -> list[str]:
-    """Return each impact: a letter, with the number of its ball if there is one."""
-    width = 1 + letters[-1:].isdecimal()
-    return [letters[k : k + width] for k in range(0, len(letters), width)]
-
-
-def _rotations(letters: str) -> list[str]:
-    width = 1 + letters[-1:].isdecimal()
-    return [letters[k:] + letters[:k] for k in range(0, len(letters), width)]
-
-
-def _renamed(letters: str, names: Mapping[int, int]) -> str:
-    return "".join(each[0] + str(names.get(int(each[1:]), int(each[1:]))) for each in _impacts(letters))
-
-
-def _renamings(alike: Iterable[Iterable[int]]) -> Iterator[dict[int, int]]:
-    """Yield every way to give equal balls each other's numbers, the identity first."""
-    groups = [sorted(group) for group in alike]
-    for chosen in itertools.product(*(itertools.permutations(group) for group in groups)):
-        orders = zip(groups, chosen, strict=True)
-        yield {old: new for group, order in orders for old, new in zip(group, order, strict=True)}
 
 
 def _word(letters: str, p: int) -> Word:

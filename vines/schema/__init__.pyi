@@ -1,3 +1,5 @@
+from ._columns import Column as Column
+from ._columns import Table as Table
 from ._messages import WireFormat as WireFormat
 from ._messages import field_notes as field_notes
 from ._messages import file_descriptor_set as file_descriptor_set
@@ -8,13 +10,11 @@ from ._messages import numpy_dtype as numpy_dtype
 from ._messages import schema_bytes as schema_bytes
 from ._messages import wire_format as wire_format
 from ._reference import reference as reference
-from ._tables import OF_EACH_SYSTEM as OF_EACH_SYSTEM
-from ._tables import Column as Column
-from ._tables import Table as Table
+from ._system_tables import OF_EACH_SYSTEM as OF_EACH_SYSTEM
+from ._system_tables import system_table as system_table
 from ._tables import arrow_schema as arrow_schema
 from ._tables import cast as cast
 from ._tables import digest as digest
-from ._tables import system_table as system_table
 from ._tables import table as table
 from ._tables import tables as tables
 from ._toml import toml as toml

@@ -7,136 +7,24 @@ import hashlib
 import json
 import tomllib
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from vines.doors import brought
 from vines.errors import PlugInError, SchemaError, UnknownNameError, nearest
-from vines.model import VI_NES, most_balls, read_system, system_names
 from vines.places import shipped
+from vines.schema._columns import DTYPES, Column, Table
 from vines.schema._declared import expand
+from vines.schema._system_tables import of_system, of_systems
 
 if TYPE_CHECKING:
     import pyarrow as pa
 
-__all__ = ["OF_EACH_SYSTEM", "Column", "Table", "arrow_schema", "cast", "digest", "system_table", "table", "tables"]
+__all__ = ["arrow_schema", "cast", "digest", "table", "tables"]
 
 GROUP = "vines.tables"
 """Entry points of packages that bring tables: the name is that of the table, the value a package with its file."""
-OF_EACH_SYSTEM = ("bifurcations", "branches", "impacts", "orbits", "points")
-"""Tables that every system has: the VI-NES under these names, another one with its name before them."""
-DTYPES = ("bool", "float64", "int8", "int64", "list<float64>", "list<int8>", "string")
-
-
-@dataclass(frozen=True, slots=True)
-class Column:
-    """One column of a table.
-
-    Attributes
-    ----------
-    name : str
-        Name, as SQL sees it.
-    dtype : str
-        One of bool, float64, int8, int64, string, list<float64>, list<int8>.
-    unit : str
-        ``"1"`` for a dimensionless number, ``"rad"``, ``"T"`` (forcing periods), ``"1/T"``, ``"B"``; empty
-        for what is not a number of something.
-    description : str
-        What it holds, in one line.
-    source : str
-        Equation or section of the paper, or the page of docs/ that defines it.
-    values : tuple of str
-        The only texts that are allowed; empty if any is.
-    minimum, maximum : float or None
-        Least and largest number allowed. Empty values and nan always are.
-    """
-
-    name: str
-    dtype: str
-    unit: str
-    description: str
-    source: str
-    values: tuple[str, ...] = ()
-    minimum: float | None = None
-    maximum: float | None = None
-
-    @property
-    def limited(self) -> bool:
-        """Whether not every value of the type is allowed."""
-        return bool(self.values) or self.minimum is not None or self.maximum is not None
-
-    @property
-    def allowed(self) -> str:
-        """What is allowed, in words; empty if everything is.
-
-        Examples
-        --------
-        >>> table("points").columns[1].allowed
-        '>= 0'
-        """
-        if self.values:
-            return ", ".join(self.values)
-        least = "" if self.minimum is None else f">= {self.minimum:g}"
-        most = "" if self.maximum is None else f"<= {self.maximum:g}"
-        return " and ".join(filter(None, (least, most)))
-
-
-@dataclass(frozen=True, slots=True)
-class Table:
-    """A table of ``schemas/``.
-
-    Attributes
-    ----------
-    name, description : str
-        Its name and what a row is.
-    version : int
-        Raised when the meaning of a column changes.
-    columns : tuple of Column
-        ``point_id`` first.
-    stored : bool
-        False for what is made from manifests when asked, such as ``logs``.
-    system : str
-        The system that its rows are of.
-    """
-
-    name: str
-    description: str
-    version: int
-    columns: tuple[Column, ...]
-    stored: bool
-    system: str = VI_NES.name
-
-    @property
-    def like(self) -> str:
-        """What the table is called for the VI-NES.
-
-        Examples
-        --------
-        >>> table("impact_pair_points").like, table("points").like
-        ('points', 'points')
-        """
-        return self.name if self.system == VI_NES.name else self.name.removeprefix(f"{self.system}_")
-
-    @property
-    def walls(self) -> dict[str, str]:
-        """What the letters of words and the signs of sides mean; empty where there are none.
-
-        Examples
-        --------
-        >>> table("impact_pair_impacts").walls["L"]
-        'lower end of the capsule, side +1'
-        """
-        if not {"word", "side"} & set(self.names):
-            return {}
-        contacts = read_system(self.system, most_balls(self.system)).contacts
-        return {each.letter: f"{each.text}, side {each.sign:+d}" for each in contacts}
-
-    @property
-    def names(self) -> tuple[str, ...]:
-        """Names of the columns, in order."""
-        return tuple(column.name for column in self.columns)
 
 
 def tables() -> dict[str, Table]:
@@ -285,59 +173,14 @@ def _from_python(values: Any, kind: pa.DataType) -> Any:
 
 @functools.cache
 def _names() -> tuple[str, ...]:
-    return tuple(sorted([*(path.stem for path in shipped("schemas").glob("*.toml")), *_of_systems()]))
-
-
-@functools.cache
-def _of_systems() -> dict[str, tuple[str, str]]:
-    """Return the tables that each system beside the VI-NES has of its own, with the table each is like."""
-    others = [name for name in system_names() if name != VI_NES.name]
-    return {f"{system}_{base}": (system, base) for system in others for base in OF_EACH_SYSTEM}
-
-
-def system_table(system: str, base: str) -> str:
-    """Return what a table of :data:`OF_EACH_SYSTEM` is called for a system.
-
-    Examples
-    --------
-    >>> system_table("vi_nes", "points"), system_table("impact_pair", "points")
-    ('points', 'impact_pair_points')
-    """
-    return base if system == VI_NES.name else f"{system}_{base}"
-
-
-def _of_system(name: str) -> Table:
-    """Return a table like one of the VI-NES: with the names of the system, and what every other system has beside."""
-    called, base = _of_systems()[name]
-    system = read_system(called, most_balls(called))
-    folder = shipped("schemas")
-    form = tomllib.loads((folder / f"{base}.toml").read_text("utf-8"))
-    more = folder / "systems" / "columns" / f"{base}.toml"
-    entries = [*form["columns"], *(tomllib.loads(more.read_text("utf-8"))["columns"] if more.exists() else ())]
-    # a coordinate may be called as a column that the common table has anyhow
-    expanded = [each for entry in entries for own in _of_balls(entry, system.balls) for each in expand(own, system)]
-    columns = {each["name"]: each for each in reversed(expanded)}
-    kept = [each for each in reversed(columns.values()) if each["name"] not in system.without]
-    about = f"Of the system {called}: {form['description'][:1].lower()}{form['description'][1:]}"
-    return Table(name, about, form["version"], tuple(Column(**each) for each in kept), True, called)
-
-
-def _of_balls(entry: dict[str, Any], balls: int) -> list[dict[str, Any]]:
-    """Return an entry, or one a ball where it is said to be there for each."""
-    if "each" not in entry:
-        return [entry]
-    rest = {key: value for key, value in entry.items() if key != "each"}
-    return [
-        rest | {"name": f"{rest['name']}_{ball}", "description": f"{rest['description']}, ball {ball}"}
-        for ball in range(1, balls + 1)
-    ]
+    return tuple(sorted([*(path.stem for path in shipped("schemas").glob("*.toml")), *of_systems()]))
 
 
 @functools.cache
 def _table(name: str) -> Table:
     """Read a table when it is first asked for: what a plan needs is a few of them."""
-    if name in _of_systems():
-        return _of_system(name)
+    if name in of_systems():
+        return of_system(name)
     file = (shipped("schemas") if name in _names() else _folder(name)) / f"{name}.toml"
     spec = _read(file.name, tomllib.loads(file.read_text("utf-8")))
     if spec.name != name:

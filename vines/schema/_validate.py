@@ -8,7 +8,8 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 from vines.errors import SchemaError
-from vines.schema._tables import Column, arrow_schema, table
+from vines.schema._columns import Column
+from vines.schema._tables import arrow_schema, table
 
 if TYPE_CHECKING:
     import pyarrow as pa

@@ -18,8 +18,8 @@ Made from the {what}s themselves by `vines {what}s --markdown > docs/reference_{
 """
 _KINDS = """\
 [pipelines.md](pipelines.md) explains declarations and the keys that all kinds share: `kind`, `params`, `vary`, `zip`,
-`refine`, `carry`, `needs`, `system`, `physical`, `link`. Parameters and options are those for the VI-NES; with another system
-parameters are those of the system, `start` has its names, and points take `harvest`."""
+`refine`, `carry`, `needs`, `system`, `physical`, `link`. Parameters and options are those for the VI-NES; with another
+system parameters are those of the system, `start` has its names, and points take `harvest`."""
 _PLOTS = """\
 A stage of the kind `figure` names a plot as `plot = "..."` and the stages that it draws as `needs = [...]`;
 [pipelines.md](pipelines.md) explains how."""

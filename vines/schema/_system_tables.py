@@ -1,0 +1,62 @@
+"""Tables that each system beside the VI-NES has of its own, made from the files of those of the VI-NES."""
+
+from __future__ import annotations
+
+import functools
+import tomllib
+from typing import Any
+
+from vines.model import VI_NES, most_balls, read_system, system_names
+from vines.places import shipped
+from vines.schema._columns import Column, Table
+from vines.schema._declared import expand
+
+__all__ = ["OF_EACH_SYSTEM", "of_system", "of_systems", "system_table"]
+
+OF_EACH_SYSTEM = ("bifurcations", "branches", "impacts", "orbits", "points")
+"""Tables that every system has: the VI-NES under these names, another one with its name before them."""
+
+
+@functools.cache
+def of_systems() -> dict[str, tuple[str, str]]:
+    """Return the tables that each system beside the VI-NES has of its own, with the table each is like."""
+    others = [name for name in system_names() if name != VI_NES.name]
+    return {f"{system}_{base}": (system, base) for system in others for base in OF_EACH_SYSTEM}
+
+
+def system_table(system: str, base: str) -> str:
+    """Return what a table of :data:`OF_EACH_SYSTEM` is called for a system.
+
+    Examples
+    --------
+    >>> system_table("vi_nes", "points"), system_table("impact_pair", "points")
+    ('points', 'impact_pair_points')
+    """
+    return base if system == VI_NES.name else f"{system}_{base}"
+
+
+def of_system(name: str) -> Table:
+    """Return a table like one of the VI-NES: with the names of the system, and what every other system has beside."""
+    called, base = of_systems()[name]
+    system = read_system(called, most_balls(called))
+    folder = shipped("schemas")
+    form = tomllib.loads((folder / f"{base}.toml").read_text("utf-8"))
+    more = folder / "systems" / "columns" / f"{base}.toml"
+    entries = [*form["columns"], *(tomllib.loads(more.read_text("utf-8"))["columns"] if more.exists() else ())]
+    # a coordinate may be called as a column that the common table has anyhow
+    expanded = [each for entry in entries for own in _of_balls(entry, system.balls) for each in expand(own, system)]
+    columns = {each["name"]: each for each in reversed(expanded)}
+    kept = [each for each in reversed(columns.values()) if each["name"] not in system.without]
+    about = f"Of the system {called}: {form['description'][:1].lower()}{form['description'][1:]}"
+    return Table(name, about, form["version"], tuple(Column(**each) for each in kept), True, called)
+
+
+def _of_balls(entry: dict[str, Any], balls: int) -> list[dict[str, Any]]:
+    """Return an entry, or one a ball where it is said to be there for each."""
+    if "each" not in entry:
+        return [entry]
+    rest = {key: value for key, value in entry.items() if key != "each"}
+    return [
+        rest | {"name": f"{rest['name']}_{ball}", "description": f"{rest['description']}, ball {ball}"}
+        for ball in range(1, balls + 1)
+    ]
