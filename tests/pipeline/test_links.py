@@ -49,6 +49,7 @@ def test_a_link_of_fixed_parameters_is_a_number(lab):
         (('"0.4 - A"', '"A ** 2"'), "stages.up.link.mu: 'A ** 2' is no formula"),
         (('"0.4 - A"', "3"), "stages.up.link.mu: 3 is no formula"),
         (('"0.4 - A"', '"1/(A - A)"'), "'1/(A - A)' divides by 0"),
+        (('link.mu = "0.4 - A"', "link = 3"), "stages.up.link is 3; a table of keys is needed here"),
         (("link.mu", "link.nu"), "stages.up.link: unknown parameter 'nu'"),
         (("link.mu", "link.A"), "stages.up.link.A: A is also given under vary"),
         (("kind =", "params.mu = 1\n    kind ="), "stages.up.link.mu: mu is also given under params"),

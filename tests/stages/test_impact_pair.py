@@ -2,6 +2,7 @@
 
 import math
 import re
+from pathlib import Path
 
 import pytest
 
@@ -140,3 +141,12 @@ def test_si_units_with_the_tilt_in_degrees(pair):
     pair(text)
     stage = load_pipeline("pair").stages["points"]
     assert stage.params["G"] == vines.systems.ImpactPair.from_physical(half_length=0.1, omega=15.7, tilt=10.0, B=1.0).G
+
+
+def test_the_pipeline_of_the_page_is_one(pair):
+    page = Path(__file__).resolve().parents[2] / "docs" / "systems.md"
+    (text,) = re.findall(r"^```toml\n(title = .*?)^```", page.read_text("utf-8"), re.MULTILINE | re.DOTALL)
+    pair(text)
+    stages = load_pipeline("pair").stages
+    assert {name: stage.kind.system for name, stage in stages.items()} == dict.fromkeys(stages, "impact_pair")
+    assert stages["power"].params["G"] == stages["doubling"].params["G"] > 0

@@ -76,7 +76,7 @@ def balls_of(system: str, names: Iterable[str]) -> int:
 
 
 def read_params(
-    spec: Kind, axes: tuple[Axis, ...], own: Given, common: Given, link: object, where: str
+    spec: Kind, axes: tuple[Axis, ...], own: Given, common: Given, link: Mapping[str, Any], where: str
 ) -> tuple[dict[str, float], dict[str, Expression]]:
     """Return the fixed parameters of a stage, defaults filled in, and the formulas of those that vary with others.
 
@@ -90,8 +90,6 @@ def read_params(
         If a quantity in SI units is out of its range.
     """
     known(own.params, stems(spec.parameters), f"{where}.params")
-    if not isinstance(link, Mapping):
-        raise DeclarationError(f"{where}.link is {link!r}; a table of formulas is needed here")
     known(own.physical, quantities(spec), f"{where}.physical")
     varied = {axis.name for axis in axes}
     mine, theirs = (_spread(given.params, spec) for given in (own, common))

@@ -184,7 +184,8 @@ def _kind(table: object, common: Given, system: str, where: str) -> Kind:
         return spec
     own = Given.read(stage, f"{where}.")
     system = _text(stage.get("system", system), f"{where}.system")
-    names = [*own.params, *own.physical, *_table(stage.get("vary", {}), f"{where}.vary"), *stage.get("link", {})]
+    tables = (_table(stage.get(key, {}), f"{where}.{key}") for key in ("vary", "link"))
+    names = [*own.params, *own.physical, *(name for each in tables for name in each)]
     try:
         return spec.of_system(system, balls_of(system, [*names, *common.params, *common.physical]))
     except VinesError as error:
