@@ -58,7 +58,7 @@ COMMANDS = {
     "schema points": [],
     "solve LR --mu 0.01 --A 0.015": [],
     "rig init demo": [],
-    "rig inspect run.csv": ["pandas"],
+    "rig inspect run.csv": [],
     "rig synth demo_synth": ["npTDMS"],
     "run node --engine dask": ["distributed"],
     "tables": ["duckdb"],
