@@ -16,7 +16,6 @@ from vines.dynamics._measures import Measures
 from vines.dynamics._trajectory import Table, Trajectory
 from vines.dynamics.parallel import _energies as own
 from vines.dynamics.parallel._layout import BALL
-from vines.errors import StateError
 
 __all__ = ["BallMeasures", "ParallelMeasures", "ParallelRun", "parallel_measures"]
 
@@ -122,12 +121,3 @@ class ParallelRun(Trajectory):
                 at = open_at.pop(ball)
                 found[at] = (*found[at][:3], float(row[col.TIME]), found[at][4])
         return np.array(found, dtype=STICK)
-
-    def _fill(
-        self,
-        t: npt.NDArray[np.float64],
-        segment: npt.NDArray[np.int64],
-        tau: npt.NDArray[np.float64],
-        before: npt.NDArray[np.bool_],
-    ) -> Table:
-        raise StateError("runs of several balls have events, impacts, sticks and measures, no samples between events")
