@@ -190,6 +190,19 @@ def test_a_group_that_rides_is_struck_by_what_hits_the_other_wall():
     assert abs(run.measures().balance) < 1e-13
 
 
+def test_samples_stay_in_the_cavities_and_meet_the_events():
+    run = vines.simulate(TWO, v2=(0.1, -0.3), periods=20)
+    at = run.sample(2000)
+    assert np.abs(at["w_1"]).max() <= 1 + 1e-12
+    assert np.abs(at["w_2"]).max() <= 1.4 + 1e-12
+    hit = run.sample(times=run.impacts["t"])
+    own = np.where(run.impacts["ball"] == 1, hit["w_1"], hit["w_2"] / 1.4)
+    assert own == pytest.approx(run.impacts["side"], abs=1e-12)
+    assert hit["x1"] == pytest.approx(run.impacts["x1"], abs=1e-12)
+    with pytest.raises(StateError, match="at events"):
+        run.sample(10, at_events=True)
+
+
 def test_orbits_are_found_and_followed():
     orbit = vines.find_orbit("L1L2R1R2", TWO)
     assert orbit.symmetric

@@ -13,9 +13,12 @@ import numpy.typing as npt
 from vines.dynamics import _advance as col
 from vines.dynamics import _totals as entry
 from vines.dynamics._measures import Measures
+from vines.dynamics._room import constants
 from vines.dynamics._trajectory import Table, Trajectory
 from vines.dynamics.parallel import _energies as own
 from vines.dynamics.parallel._layout import BALL
+from vines.dynamics.parallel._rows import sample_balls
+from vines.errors import StateError
 
 __all__ = ["BallMeasures", "ParallelMeasures", "ParallelRun", "parallel_measures"]
 
@@ -121,3 +124,51 @@ class ParallelRun(Trajectory):
                 at = open_at.pop(ball)
                 found[at] = (*found[at][:3], float(row[col.TIME]), found[at][4])
         return np.array(found, dtype=STICK)
+
+    def sample(
+        self,
+        n: int | None = None,
+        *,
+        times: npt.ArrayLike | None = None,
+        per_period: int | None = None,
+        at_events: bool = False,
+    ) -> Table:
+        """Return the state at chosen times, from the closed forms.
+
+        Parameters
+        ----------
+        n, times, per_period
+            As for `Trajectory.sample`.
+        at_events : bool
+            Has to be False: an instant may have many events here.
+
+        Returns
+        -------
+        structured ndarray
+            t, x1, v1, phase [rad], and of each ball k x2_k, v2_k, w_k = x1 - x2_k, stuck_k (the wall; 0 in flight).
+
+        Raises
+        ------
+        StateError
+            If times lie outside the run, more than one of n, times, per_period is given, or events are asked for.
+        """
+        if at_events:
+            raise StateError("samples at events are not made of several balls; see `impacts` and `sticks`")
+        chosen = self._times(n, times, per_period)
+        begins = self.rows[:, col.TIME]
+        segment = np.clip(np.searchsorted(begins, chosen, side="right") - 1, 0, len(begins) - 1)
+        balls = self.params.balls
+        raw = np.empty((len(chosen), 4 + 2 * balls))
+        sample_balls(constants(self.params), self.rows, segment, np.maximum(chosen - begins[segment], 0.0), raw)
+        own = [(f"{name}_{k}", form) for k in range(1, balls + 1) for name, form in _OF_A_BALL]
+        out = np.empty(len(chosen), dtype=[(name, "f8") for name in ("t", "x1", "v1", "phase")] + own)
+        out["t"], out["x1"], out["v1"], out["phase"] = chosen, *raw[:, :3].T
+        for k in range(balls):
+            out[f"x2_{k + 1}"], out[f"v2_{k + 1}"] = raw[:, 4 + 2 * k], raw[:, 5 + 2 * k]
+            out[f"w_{k + 1}"] = raw[:, 0] - raw[:, 4 + 2 * k]
+            rides = np.abs(raw[:, 3]).astype(np.int64) >> k & 1
+            out[f"stuck_{k + 1}"] = rides * np.sign(raw[:, 3]).astype(np.int64)
+        return out
+
+
+_OF_A_BALL = (("x2", "f8"), ("v2", "f8"), ("w", "f8"), ("stuck", "i1"))
