@@ -26,6 +26,40 @@ params.mu = [0.01, 0.01]
 vary.A = { from = 0.03, to = 0.0305 }
 """
 
+DECAYS = """
+title = "decays"
+[stages.single]
+kind = "transient"
+periods = 20
+params = { mu = 0.02, V = 2.0 }
+[stages.one]
+kind = "transient"
+system = "parallel"
+periods = 20
+params = { mu = [0.02], V = 2.0 }
+[stages.two]
+kind = "transient"
+system = "parallel"
+periods = 20
+params = { mu = [0.01, 0.01], beta = [1.0, 0.5], V = 2.0 }
+"""
+
+
+@pytest.mark.long(60)
+def test_a_transient_of_one_ball_is_that_of_the_vi_nes_and_two_share_the_loss(project, monkeypatch):
+    monkeypatch.setenv("VINES_ROOT", str(project.root))
+    (project.root / "pipelines" / "decays.toml").write_text(DECAYS)
+    run("decays")
+    rows = {row["stage"]: row for row in vines.table("parallel_transients").to_pylist()}
+    (single,) = vines.table("transients").to_pylist()
+    one, two = rows["one"], rows["two"]
+    # systems-check-values.md, a-tet
+    assert one["impacts"] == single["impacts"] == 54
+    for name in ("impact_share", "damper_share", "left_share", "ball_share", "t_tenth"):
+        assert one[name] == pytest.approx(single[name], abs=1e-9)
+    assert one["energy"] * one["impact_share"] == pytest.approx(0.718833300114, abs=1e-10)
+    assert two["impact_share"] + two["damper_share"] + two["left_share"] == pytest.approx(1.0, abs=1e-12)
+
 
 @pytest.mark.long(90)
 def test_tables_hold_the_check_values_ball_by_ball(project, monkeypatch):

@@ -145,7 +145,7 @@ class ParallelRun(Trajectory):
         Returns
         -------
         structured ndarray
-            t, x1, v1, phase [rad], and of each ball k x2_k, v2_k, w_k = x1 - x2_k, stuck_k (0 in flight, else the wall).
+            t, x1, v1, phase [rad], and of each ball k x2_k, v2_k, w_k = x1 - x2_k, stuck_k (the wall; 0 in flight).
 
         Raises
         ------
