@@ -1,8 +1,11 @@
 """Mistakes of a first day: each is one line that says what is wrong, the value, what is allowed, and what to do."""
 
 import json
+import sys
 
 import pytest
+
+import vines
 
 PIPELINE = """
 title = "a test"
@@ -144,7 +147,6 @@ def test_an_unknown_column(refused, sql, says):
         (("--root", "/nonexist", "list"), "--root is '/nonexist', which is not a folder; name an existing one"),
         (("view", "mine.up", "--png", "a.pdf"), "--png a.pdf: a picture ends in .png, such as a.png"),
         (("view", "mine.up", "--save", "a.mcap"), "--save a.mcap: a recording ends in .rrd, such as a.rrd"),
-        (("solve", "LR", "--mu", "-1", "--A", "0.02"), "mu is -1, allowed is mu > 0"),
         (("solve", "LR", "--A", "0.02"), "Missing option '--mu'"),
         (("status", "mine", "quickstrat"), "did you mean 'quickstart'"),
     ],
@@ -152,6 +154,17 @@ def test_an_unknown_column(refused, sql, says):
 def test_a_command(mine, refused, arguments, says):
     mine.write_text(PIPELINE)
     assert says in refused(*arguments)
+
+
+@pytest.mark.parametrize(("word", "mu", "says"), [("LR", "-1", "mu > 0"), ("LX", "0.01", "'LX' is not a word")])
+def test_solve_checks_before_the_compiler_is_loaded(monkeypatch, refused, word, mu, says):
+    monkeypatch.setitem(sys.modules, "vines.orbits", None)  # its import would fail
+    assert says in refused("solve", word, "--mu", mu, "--A", "0.02")
+
+
+def test_an_empty_table_says_so(project):
+    with pytest.warns(UserWarning, match=f"no result in {project.data} has rows of 'points' yet; 'vines run NAME'"):
+        assert vines.study(project.root).table("points").num_rows == 0
 
 
 def test_several_pipelines_have_a_status_line_each(mine, project):
