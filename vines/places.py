@@ -88,8 +88,9 @@ def cache_folder() -> Path:
 
 @functools.cache
 def shipped(name: str) -> Path:
-    """Return what ships with vines: the folders ``schemas`` and ``pipelines``, the files ``LICENSE``, ``CITATION.cff``.
+    """Return what ships with vines.
 
+    That is the folders ``schemas``, ``pipelines`` and ``starter`` and the files ``LICENSE`` and ``CITATION.cff``.
     In a wheel they are package data; in a checkout they lie beside the package.
 
     Raises

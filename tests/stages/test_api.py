@@ -104,7 +104,7 @@ def test_lists_and_their_errors(root):
 
 
 def test_a_study_of_ones_own(tmp_path, monkeypatch):
-    init_study(tmp_path / "mine")
+    init_study(tmp_path / "mine", "paper")
     assert (tmp_path / "mine" / "pipelines" / "quickstart.toml").is_file()
     assert (tmp_path / "mine" / "data" / ".gitignore").read_text().startswith("*")
     with pytest.raises(StoreError, match="exists already"):

@@ -37,7 +37,7 @@ def declare(root, text):
     ("text", "line", "said"),
     [
         (SWEEP, "record = 1", "stages.one.record is 1, allowed is record >= 2"),
-        (SWEEP, "settle = 1.5", "stages.one.settle: expected int, got float"),
+        (SWEEP, "settle = 1.5", "stages.one.settle is 1.5; allowed is a whole number"),
         (SWEEP, "start = { x1 = 0.1, v3 = 0.1 }", "stages.one.start: unknown key 'v3': allowed: v1, v2, x1, x2"),
         (SWEEP, 'start = "rendom"', "stages.one.start is 'rendom': did you mean 'random'"),
         (BRANCH, 'families = "al"', "stages.one.families is 'al': did you mean 'all'"),

@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from vines.dynamics import Measures
+from vines.html import html_table
 
 __all__ = ["Attractor"]
 
@@ -93,3 +94,48 @@ class Attractor:
     recorded: float
     status: str
     reason: str
+
+    @property
+    def max_multiplier(self) -> float:
+        """Largest modulus of a Floquet multiplier over p periods; nan if not periodic."""
+        return float("nan") if self.multipliers is None else float(abs(self.multipliers[0]))
+
+    def _kind(self) -> str:
+        return f"{self.name} ({self.word})" if self.word else self.regime.replace("_", " ")
+
+    def __str__(self) -> str:
+        m = self.measures
+        said = ["settled" if self.settled else f"not settled after {self.transient + self.recorded:g} periods"]
+        if self.symmetric is not None:
+            said.append("symmetric" if self.symmetric else "asymmetric")
+        if np.isfinite(m.kinetic_ratio):  # a shaken cavity has no oscillator
+            said.append(f"K2/K1 {m.kinetic_ratio:.6g}, max|x1| {m.max_abs_x1:.6g}")
+        if self.multipliers is not None:
+            said.append(f"largest multiplier {self.max_multiplier:.6g}")
+        if np.isfinite(self.lyapunov):
+            said.append(f"Lyapunov exponent {self.lyapunov:.3g} ± {self.lyapunov_error:.1g}")
+        return f"{self._kind()} at {self.params}: {', '.join(said)}" + (f"; {self.reason}" if self.reason else "")
+
+    def __repr__(self) -> str:
+        return f"<Attractor {self}>"
+
+    def _repr_html_(self) -> str:
+        """Return the attractor as a small table, which a notebook shows."""
+        m, chaos, moves = self.measures, np.isfinite(self.lyapunov), np.isfinite(self.measures.kinetic_ratio)
+        return html_table(
+            self._kind(),
+            {
+                "parameters": self.params,
+                "regime": self.regime.replace("_", " "),
+                "settled": self.settled,
+                "symmetric": self.symmetric,
+                "K2/K1": m.kinetic_ratio if moves else None,
+                "max|x1|": m.max_abs_x1 if moves else None,
+                "rms x1": m.rms_x1 if moves else None,
+                "spells of sticking a period": self.sticks,
+                "multipliers": None if self.multipliers is None else self.multipliers.tolist(),
+                "Lyapunov exponent": f"{self.lyapunov:.3g} ± {self.lyapunov_error:.1g}" if chaos else None,
+                "periods": f"{self.transient:g} before the recording, {self.recorded:g} recorded",
+                "reason": self.reason or None,
+            },
+        )

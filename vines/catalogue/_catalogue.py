@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import difflib
 import re
 import warnings
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
@@ -24,6 +25,11 @@ __all__ = ["Catalogue", "connect", "connect_tables"]
 
 _NO_TABLE = re.compile(r"Table with name (\S+) does not exist")
 _NEAR = re.compile(r"syntax error at or near \"(\w+)\"")
+_NO_COLUMN = re.compile(
+    r"Referenced column \"(?P<a>[^\"]+)\" not found|Table \"[^\"]+\" does not have a column named \"(?P<b>[^\"]+)\""
+    r"|Cannot extract field '(?P<c>[^']+)' from expression \"[^\"]+\" because it is not a struct"
+)
+_QUOTED = re.compile(r"\"([^\"]+)\"")
 _ABOUT = ("information_schema", "duckdb_", "pragma", "show ", "describe ", "sqlite_master", "pg_catalog")
 _KIND = re.compile(r"^(Catalog|Parser|Binder|Conversion|Invalid Input|Out of Range|Permission) Error: ")
 _EXPLAIN = re.compile(r"\s*explain(\s+analyze)?\b", re.IGNORECASE)
@@ -236,6 +242,9 @@ class Catalogue:
                 if name == where or name.startswith(f"{where}.") or where.endswith(f".{name}"):
                     return why
             return f"no table {name!r}: {nearest(name, self.names)}"
+        absent = _NO_COLUMN.search(text)
+        if absent:
+            return _no_column(next(filter(None, absent.groups())), text)
         near = _NEAR.search(text)
         if near and near.group(1).lower() in _column_names():
             word = near.group(1)
@@ -245,6 +254,14 @@ class Catalogue:
         lines = [line.strip() for line in text.splitlines() if line.strip() and not line.startswith("LINE ")]
         told = [line for line in lines[1:] if line.startswith(("Candidate", "Did you mean"))]
         return "; ".join([_KIND.sub("", lines[0]) if lines else "the query failed", *told])
+
+
+def _no_column(name: str, text: str) -> str:
+    """Return the line on a column that there is not, with the few that are nearest of those that DuckDB names."""
+    offered = [each for line in text.splitlines() if line.startswith("Candidate") for each in _QUOTED.findall(line)]
+    near = difflib.get_close_matches(name, offered or _column_names(), n=5, cutoff=0.5)
+    said = f"nearest: {', '.join(near)}; " if near else ""
+    return f"no column {name!r}: {said}'vines schema TABLE' lists the columns of a table"
 
 
 def _column_names() -> set[str]:

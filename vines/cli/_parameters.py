@@ -16,14 +16,16 @@ __all__ = ["parameter_options"]
 def parameter_options(command: Callable[..., Any]) -> Callable[..., Any]:
     """Give a command an option for each parameter, called as the parameter is; those without default are required."""
     for each in reversed(VI_NES.parameters):
+        # a default of None would be taken for one, and the option not be asked for
+        default: dict[str, Any] = {} if each.default is None else {"default": each.default}
         command = click.option(
             f"--{each.name}",
             each.name,
             type=float,
             callback=finite,
             required=each.default is None,
-            default=each.default,
             show_default=True,
             help=f"{each.text}.",
+            **default,
         )(command)
     return command

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import json
+from collections.abc import Sequence
+from dataclasses import asdict
 from typing import TYPE_CHECKING, Literal
 
 import click
@@ -31,6 +34,7 @@ if TYPE_CHECKING:
 @click.option("--force", is_flag=True, help="Compute everything again.")
 @click.option("--retry-failed", is_flag=True, help="Try the points again that failed.")
 @click.option("--quiet", is_flag=True, help="Show no progress.")
+@click.option("--json", "as_json", is_flag=True, help="For machines: where each stage stands in the end, no progress.")
 def command(
     name: str,
     stages: tuple[str, ...],
@@ -43,6 +47,7 @@ def command(
     force: bool,
     retry_failed: bool,
     quiet: bool,
+    as_json: bool,
 ) -> None:
     """Compute what the pipeline NAME (or declared in FILE) still lacks; all of it, or the named stages.
 
@@ -74,11 +79,17 @@ def command(
     chosen = stages or None
     study = the_study()
     plans = status(name, stages=chosen, overrides=overrides, study=study)
+    quiet = quiet or as_json
     if dry_run:
-        compile_if_cold(plans, click.echo)
+        compile_if_cold(plans, (lambda line: None) if quiet else click.echo)
         told = {"overrides": overrides, "jobs": jobs, "force": force, "retry_failed": retry_failed, "study": study}
         seconds = estimate(name, stages=chosen, **told)
-        _print_plans(plans, seconds, force=force, retry_failed=retry_failed)
+        counts = [_would_compute(p, force=force, retry_failed=retry_failed) for p in plans]
+        if as_json:
+            also = [{"would_compute": n, "seconds": seconds.get(p.name)} for n, p in zip(counts, plans, strict=True)]
+            _print_json(name, plans, also)
+        else:
+            _print_plans(plans, counts, seconds, force=force)
         return
     if not force and not retry_failed and all(p.state == "up_to_date" for p in plans):
         if not quiet:
@@ -86,6 +97,8 @@ def command(
             tail = f"; {failed} points failed before (--retry-failed tries them again)" if failed else ""
             click.echo(f"{name}: nothing to compute, all {len(plans)} stages are up to date{tail}")
             _say_what_was_found(name)
+        if as_json:
+            _print_json(name, plans)
         if any(p.failed for p in plans):
             raise click.exceptions.Exit(RunFailed.exit_code)
         return
@@ -110,7 +123,9 @@ def command(
             )
         except RunFailed as error:
             failure = error
-    if shard is not None and not quiet:
+    if as_json:
+        _print_json(name, status(name, stages=chosen, overrides=overrides, study=study))
+    elif shard is not None and not quiet:
         click.echo(f"shard {shard} is computed; when all are, 'vines merge {name}' puts the results together")
     elif not quiet:
         _say_what_was_found(name)
@@ -125,13 +140,22 @@ def read_setting(text: str) -> tuple[str, str]:
     return key.strip(), value.strip()
 
 
-def _print_plans(plans: list[StagePlan], seconds: dict[str, float], *, force: bool, retry_failed: bool) -> None:
+def _would_compute(plan: StagePlan, *, force: bool, retry_failed: bool) -> int:
+    return plan.wanted if force else plan.wanted - plan.done + (plan.failed if retry_failed else 0)
+
+
+def _print_json(name: str, plans: list[StagePlan], also: Sequence[dict[str, object]] = ()) -> None:
+    """Print where each stage stands, in the words of ``vines status --json``, and what else is known of it."""
+    stages = [asdict(plan) | more for plan, more in zip(plans, also or [{}] * len(plans), strict=True)]
+    click.echo(json.dumps({name: stages}, indent=2))
+
+
+def _print_plans(plans: list[StagePlan], counts: list[int], seconds: dict[str, float], *, force: bool) -> None:
     from vines.cli._layout import print_rows
     from vines.cli._progress import duration
 
     rows = []
-    for p in plans:
-        count = p.wanted if force else p.wanted - p.done + (p.failed if retry_failed else 0)
+    for p, count in zip(plans, counts, strict=True):
         why = "forced" if force else p.reason or ("failed before" if count else "up to date")
         takes = duration(seconds[p.name]) if p.name in seconds else ""
         rows.append([p.name, p.kind, f"{count} of {p.wanted}", takes, why])

@@ -9,7 +9,7 @@ import click
 import msgspec
 
 from vines.cli._parameters import parameter_options
-from vines.model import STATE_NAMES, VI_NES, Params
+from vines.model import STATE_NAMES, VI_NES, Params, Word
 
 if TYPE_CHECKING:
     from vines.orbits import Orbit
@@ -42,11 +42,12 @@ def command(
     vines solve LLR --mu 0.01 --A 0.023 --all
     vines solve LR --mu 0.01 --A 0.02 --log orbit.mcap && vines view orbit.mcap
     """  # noqa: D301
-    from vines.orbits import all_orbits, find_orbit, orbit_row
-
     if every and log is not None:
         raise click.UsageError("--log writes one orbit; leave out --all")
     p = Params(**parameters)
+    Word(word)
+    from vines.orbits import all_orbits, find_orbit, orbit_row  # once all is checked: it loads the compiler
+
     if every:
         found = all_orbits(word, p)
         # With no orbit the search for one says why and how near it came.

@@ -15,19 +15,22 @@ if TYPE_CHECKING:
 
 
 @click.command("status")
-@click.argument("name", required=False)
+@click.argument("names", nargs=-1, metavar="[NAME]...")
 @click.option("--json", "as_json", is_flag=True, help="For machines.")
-def command(name: str | None, as_json: bool) -> None:
-    """Say what is computed, what is stale, and why: of the pipeline or collection NAME, or of all."""
+def command(names: tuple[str, ...], as_json: bool) -> None:
+    """Say what is computed, what is stale, and why: of the pipelines or collections NAME, or of all.
+
+    One pipeline is told stage by stage, several in a line each.
+    """
     from vines.cli._layout import print_rows
     from vines.stages import status_of_each
 
-    plans, unreadable = status_of_each(name, study=the_study())
+    plans, unreadable = status_of_each(*names, study=the_study())
     if as_json:
         told: dict[str, object] = {each: [asdict(p) for p in found] for each, found in plans.items()}
         click.echo(json.dumps({**told, **{each: {"error": why} for each, why in unreadable.items()}}, indent=2))
         return
-    if name not in plans:
+    if len(names) != 1 or names != tuple(plans):
         rows = []
         for each, found in plans.items():
             ready = sum(p.state == "up_to_date" for p in found)
@@ -40,7 +43,7 @@ def command(name: str | None, as_json: bool) -> None:
         ["stage", "kind", "state", "points", "failed", "why"],
         [
             [p.name, p.kind, p.state.replace("_", " "), f"{p.done}/{p.wanted}", p.failed or "", _why(p)]
-            for p in plans[name]
+            for p in plans[names[0]]
         ],
         wrap=5,
     )

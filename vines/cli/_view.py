@@ -52,6 +52,9 @@ def command(
 
     if web and (png is not None or save is not None):
         raise click.UsageError("--web serves until Ctrl-C and goes with neither --png nor --save; give one of them")
+    for option, file, suffix, what in (("--png", png, ".png", "a picture"), ("--save", save, ".rrd", "a recording")):
+        if file is not None and file.suffix.lower() != suffix:
+            raise click.UsageError(f"{option} {file}: {what} ends in {suffix}, such as {file.with_suffix(suffix)}")
     if at is not None and png is None:
         raise click.UsageError("--at is the time of a picture; give --png FILE too")
     study = the_study()

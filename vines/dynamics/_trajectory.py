@@ -14,6 +14,7 @@ from vines.dynamics._measures import Measures, measures_from
 from vines.dynamics._room import constants, room_of
 from vines.dynamics._totals import accumulate, sample_rows, window_totals
 from vines.errors import StateError
+from vines.html import html_table
 from vines.model import START_NAMES, STATE_NAMES, VI_NES
 
 __all__ = ["BALL_IMPACT", "EVENT", "IMPACT", "SAMPLE", "STICK", "Trajectory", "impacts_of"]
@@ -100,6 +101,22 @@ class Trajectory:
     t_end: float
     status: str
     rows: npt.NDArray[np.float64] = field(repr=False)
+
+    def _repr_html_(self) -> str:
+        """Return the run as a small table, which a notebook shows."""
+        periods = (self.t_end - self.t_start) / self.params.period
+        sides = self.impacts["side"]
+        return html_table(
+            f"Trajectory over {periods:.6g} forcing periods",
+            {
+                "parameters": self.params,
+                "time": f"from {self.t_start:.6g} to {self.t_end:.6g}",
+                "impacts": f"{np.count_nonzero(sides > 0)} on L, {np.count_nonzero(sides < 0)} on R",
+                "spells of sticking": len(self.sticks),
+                "status": self.status,
+                "at the end": [f"{name} = {value:.6g}" for name, value in self.final.items()],
+            },
+        )
 
     @cached_property
     def events(self) -> Table:

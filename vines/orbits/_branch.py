@@ -8,6 +8,7 @@ from functools import cached_property
 import numpy as np
 import numpy.typing as npt
 
+from vines.html import html_table
 from vines.model import Params, Word
 from vines.orbits._orbit import Orbit, short_hash
 
@@ -108,4 +109,20 @@ class Branch:
         return (
             f"<Branch {self.word}, {self.parameter} from {first:g} to {last:g}, {len(self.orbits)} orbits, {met}; "
             f"ends: {', '.join(self.ends)}>"
+        )
+
+    def _repr_html_(self) -> str:
+        """Return the branch as a small table, which a notebook shows."""
+        first, last = self.values[[0, -1]]
+        met = [f"{each.type.replace('_', ' ')} at {each.value:.6g}" for each in (*self.bifurcations, *self.events)]
+        return html_table(
+            f"Branch of {self.word}",
+            {
+                self.parameter: f"from {first:.6g} to {last:.6g}",
+                "orbits": f"{len(self.orbits)}, {sum(orbit.stable for orbit in self.orbits)} of them stable",
+                "symmetric": self.symmetric,
+                "met": met or "no bifurcation",
+                "ends": [each.replace("_", " ") for each in self.ends],
+                "remark": self.remark or None,
+            },
         )

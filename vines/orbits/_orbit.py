@@ -13,6 +13,7 @@ import numpy.typing as npt
 from vines.dynamics import Measures
 from vines.dynamics.kernels import after_impact, room_of
 from vines.dynamics.runs import IMPACT
+from vines.html import html_table
 from vines.model import V1, V2, Word
 
 __all__ = ["Orbit", "short_hash"]
@@ -185,3 +186,26 @@ class Orbit:
 
     def __repr__(self) -> str:
         return f"<Orbit {self}>"
+
+    def _repr_html_(self) -> str:
+        """Return the orbit as a small table, which a notebook shows."""
+        m, moves = self.measures, np.isfinite(self.measures.kinetic_ratio)  # a shaken cavity has no oscillator
+        return html_table(
+            f"{self.name} ({self.word})",
+            {
+                "parameters": self.params,
+                "period": self.period,
+                "symmetric": self.symmetric,
+                "stable": self.stable,
+                "admissible": self.admissible,
+                "impacts": [
+                    f"{self.params.system.letters([side], [ball])} at {t:.6g}, w' = {speed:.6g}"
+                    for side, ball, t, speed in zip(self.side, self.word.balls, self.t, self.w_dot, strict=True)
+                ],
+                "multipliers": self.multipliers.tolist(),
+                "K2/K1": m.kinetic_ratio if moves else None,
+                "max|x1|": m.max_abs_x1 if moves else None,
+                "residual": f"{self.residual:.1e}",
+                "remark": self.remark or None,
+            },
+        )

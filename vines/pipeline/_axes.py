@@ -15,6 +15,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any, Literal
 
 from vines.errors import DeclarationError, nearest
+from vines.pipeline._written import written
 
 if TYPE_CHECKING:
     import numpy as np
@@ -122,7 +123,7 @@ def exact(value: object, where: str) -> Fraction:
         If it is not a finite number.
     """
     if isinstance(value, bool) or not isinstance(value, int | float | Decimal):
-        raise DeclarationError(f"{where} is {value!r}, which is not a number; give a finite number")
+        raise DeclarationError(f"{where} is {written(value)}, which is not a number; give a finite number")
     # a float that comes from Python stands for the shortest decimal that it prints as
     decimal = Decimal(repr(value)) if isinstance(value, float) else Decimal(value)
     if not decimal.is_finite():
@@ -156,7 +157,7 @@ def read_axis(name: str, form: object, where: str, *, interval: bool, zipped: bo
     allowed = ("from", "to") if interval else _RANGE_KEYS
     if not isinstance(form, Mapping):
         shape = "{ from = …, to = … }" if interval else "{ from = …, to = …, count = … } or a list"
-        raise DeclarationError(f"{where} is {form!r}; write {shape}")
+        raise DeclarationError(f"{where} is {written(form)}; write {shape}")
     for key in form:
         if key not in allowed:
             raise DeclarationError(f"{where}: unknown key {key!r}: {nearest(key, allowed)}")
@@ -187,7 +188,7 @@ def _read_range(name: str, form: Mapping[str, object], ends: tuple[Fraction, Fra
         raise DeclarationError(f"{where}: give either 'count' or 'step' beside 'from' and 'to'")
     logarithmic = form.get("log", False)
     if not isinstance(logarithmic, bool):
-        raise DeclarationError(f"{where}.log is {logarithmic!r}; allowed: true, false")
+        raise DeclarationError(f"{where}.log is {written(logarithmic)}; allowed: true, false")
     if logarithmic and (min(ends) <= 0 or "step" in form):
         raise DeclarationError(f"{where}: a logarithmic range has ends > 0 and a 'count'")
     if "step" in form:
@@ -200,9 +201,13 @@ def _read_range(name: str, form: Mapping[str, object], ends: tuple[Fraction, Fra
     else:
         count = form["count"]
     if isinstance(count, bool) or not isinstance(count, int) or not 1 <= count <= _MOST:
-        raise DeclarationError(f"{where}.count is {count!r}; allowed is a whole number from 1 to {_MOST}")
+        raise DeclarationError(f"{where}.count is {written(count)}; allowed is a whole number from 1 to {_MOST}")
     if (start == stop) != (count == 1):
-        raise DeclarationError(f"{where}: {count} values from {float(start):g} to {float(stop):g} cannot be")
+        only = f"to take {float(start):g} alone write vary.{name} = [{float(start):g}]"
+        remedy = f"a count of 2 or more takes both ends; {only}" if count == 1 else only
+        raise DeclarationError(
+            f"{where}.count is {count}, from {float(start):g} to {float(stop):g}, which cannot be; {remedy}"
+        )
     return Axis(name, "log" if logarithmic else "linear", ends, count)
 
 

@@ -11,6 +11,7 @@ from vines.errors import DeclarationError, nearest
 from vines.pipeline._files import available, find
 from vines.pipeline._include import parse, with_included
 from vines.pipeline._names import NAME, RESERVED
+from vines.pipeline._written import written
 
 __all__ = ["Collection", "load_collection", "members"]
 
@@ -85,14 +86,16 @@ def members(name: str, root: Path) -> tuple[str, ...]:
 def _text(form: Mapping[str, Any], key: str, path: Path) -> str:
     value = form.get(key, "")
     if not isinstance(value, str):
-        raise DeclarationError(f"{path}: {key} is {value!r}; a text is needed here")
+        raise DeclarationError(f"{path}: {key} is {written(value)}; a text is needed here")
     return value
 
 
 def _names(form: Mapping[str, Any], path: Path, root: Path) -> tuple[str, ...]:
     names = form["pipelines"]
     if not isinstance(names, list) or not names or not all(isinstance(name, str) for name in names):
-        raise DeclarationError(f'{path}: pipelines is {names!r}; list names of pipelines, such as ["fig2", "fig3"]')
+        raise DeclarationError(
+            f'{path}: pipelines is {written(names)}; list names of pipelines, such as ["fig2", "fig3"]'
+        )
     known = {each: file for each, file in available(root).items() if each != path.stem}
     for name in names:
         if names.count(name) > 1:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import bisect
+import itertools
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -155,6 +157,16 @@ class Grid:
         except ValueError:
             return False
         return True
+
+    def nearest(self, values: Mapping[str, float]) -> list[dict[str, float]]:
+        """Return the points beside such varied values: of each axis the values below and above, or the end."""
+        rows: list[list[dict[str, float]]] = []
+        for group in self.groups:
+            names = [axis.name for axis in group]
+            every = sorted(zip(*(axis.values() for axis in group), strict=True))
+            place = bisect.bisect_left(every, tuple(values[name] for name in names))
+            rows.append([dict(zip(names, row, strict=True)) for row in every[max(0, place - 1) : place + 1]])
+        return [dict(itertools.chain(*(row.items() for row in each))) for each in itertools.product(*rows)]
 
     def fixed(self) -> dict[str, float]:
         """Return all parameters in the order of the kind; those that vary are 0 here."""

@@ -28,12 +28,19 @@ def parse(path: Path) -> dict[str, Any]:
         If it cannot be read, or is not TOML.
     """
     try:
-        return dict(_loads(path.read_text("utf-8")))
+        text = path.read_text("utf-8-sig")  # some editors put a mark before the text, which TOML does not have
+        if "\0" in text:
+            raise DeclarationError(f"{path} is UTF-16; TOML is UTF-8: save it as UTF-8")
+        return dict(_loads(text))
     except FileNotFoundError:
         raise FileMissingError(f"{path}: there is no such file; 'vines list' shows the pipelines there are") from None
     except OSError as error:
         raise DeclarationError(f"{path} cannot be read: {error.strerror}") from None
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+    except UnicodeDecodeError as error:
+        at = f"byte {error.object[error.start]:#x} in line {error.object.count(10, 0, error.start) + 1}"
+        found = "UTF-16" if b"\0" in error.object else f"not UTF-8 ({at})"
+        raise DeclarationError(f"{path} is {found}; TOML is UTF-8: save it as UTF-8") from None
+    except tomllib.TOMLDecodeError as error:
         raise DeclarationError(f"{path}: not a TOML file: {str(error).splitlines()[0]}") from None
 
 

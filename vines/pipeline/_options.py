@@ -10,11 +10,22 @@ from typing import Any, Literal, get_args, get_origin
 import msgspec
 
 from vines.errors import DeclarationError, nearest
+from vines.pipeline._written import written
 
 __all__ = ["known", "option_names", "read_options"]
 
 _LIMIT = re.compile(r"Expected `\w+` (of )?(?P<limit>(length )?[<>].*)")
 _WORD = re.compile(r"Invalid enum value '(?P<word>.*)'")
+_TYPE = re.compile(r"Expected `(?P<types>[^`]*)`, got `.*`")
+_MISSING = re.compile(r"Object missing required field `(?P<key>.*)`")
+_TYPES = {
+    "array": "a list",
+    "bool": "true or false",
+    "float": "a number",
+    "int": "a whole number",
+    "object": "a table",
+    "str": "a text",
+}
 _STEP = re.compile(r"\.(\w+)|\[(\d+)\]")
 
 
@@ -109,31 +120,49 @@ def _said(error: msgspec.ValidationError, table: Mapping[str, Any], form: type[m
     """Turn ``Expected `int` >= 0 - at `$.settle``` into a line with file, key, value, and what is allowed."""
     text, _, place = str(error).partition(" - at `$")
     place = place.rstrip("`")
-    limit, word = _LIMIT.fullmatch(text), _WORD.fullmatch(text)
+    limit, word, types, missing = (each.fullmatch(text) for each in (_LIMIT, _WORD, _TYPE, _MISSING))
+    if missing is not None:
+        return f"{where}{place}: {missing['key']!r} is missing; needed: {', '.join(_required(form, place))}"
+    if types is not None:
+        value = _at(table, place)
+        names = " or ".join(_TYPES.get(each, each) for each in types["types"].split(" | ") if each != "null")
+        whole = "int" in types["types"] and isinstance(value, float) and value.is_integer()
+        return f"{where}{place} is {written(value)}; allowed is {names}" + (f", such as {value:.0f}" if whole else "")
     if limit is not None:
         allowed = limit["limit"].removesuffix(".0")
         name = "" if allowed.startswith("length") else f"{place.rpartition('.')[2]} "
         return f"{where}{place} is {_value(table, place)}, allowed is {name}{allowed}"
     if word is not None:
-        words = _words(form, place)
+        words = list(_literals(_form(form, place)))
         return f"{where}{place} is {word['word']!r}: {nearest(word['word'], words)}"
     return f"{where}{place}: {(text[:1].lower() + text[1:]).replace('`', '')}"
 
 
 def _value(table: Any, place: str) -> Any:
+    found = _at(table, place)
+    return f"{found:g}" if isinstance(found, float) else found
+
+
+def _at(table: Any, place: str) -> Any:
+    """Return what stands at a place of the options."""
     for key, number in _STEP.findall(place):
         table = table[key] if key else table[int(number)]
-    return f"{table:g}" if isinstance(table, float) else table
+    return table
 
 
-def _words(form: Any, place: str) -> list[str]:
-    """Return the words that are allowed at a place of a form."""
+def _form(form: Any, place: str) -> Any:
+    """Return the type of what stands at a place of the options."""
     for key, number in _STEP.findall(place):
         if number:
             continue
         inner = next(_inside(form, msgspec.Struct))
         form = next(field.type for field in _fields(inner) if field.encode_name == key)
-    return list(_literals(form))
+    return form
+
+
+def _required(form: Any, place: str) -> list[str]:
+    """Return the keys that a table at a place of the options has to have."""
+    return [field.encode_name for field in _fields(next(_inside(_form(form, place), msgspec.Struct))) if field.required]
 
 
 def _literals(form: Any) -> Iterator[str]:

@@ -14,6 +14,7 @@ from vines.pipeline._axes import Axis, exact
 from vines.pipeline._kinds import Kind
 from vines.pipeline._links import linked_values, read_links
 from vines.pipeline._options import known
+from vines.pipeline._written import written
 
 __all__ = ["Given", "balls_of", "quantities", "read_params", "stems"]
 
@@ -57,9 +58,28 @@ class Given:
             With the first name, and the nearest that is allowed.
         """
         specs = list(kinds)
-        known(self.params, sorted({name for each in specs for name in stems(each.parameters)}), f"{self.where}params")
-        allowed = {name for each in specs for name in quantities(each)}
-        known(self.physical, sorted(allowed), f"{self.where}physical")
+        physical = sorted({name for each in specs for name in quantities(each)})
+        names = sorted({name for each in specs for name in stems(each.parameters)})
+        known_params(self.params, names, physical, self.where)
+        known(self.physical, physical, f"{self.where}physical")
+
+
+def known_params(given: Mapping[str, Fraction], names: list[str], physical: list[str], where: str) -> None:
+    """Refuse fixed parameters that there are not; a list, which numbers balls, may have been meant to vary one."""
+    for name in given:
+        if name not in names and name in physical:
+            raise DeclarationError(
+                f"{where}params.{name}: {name} is a quantity in SI units; give it as {where.rpartition(': ')[2]}"
+                f"physical.{name}, or one of the dimensionless {', '.join(names)}"
+            )
+        stem = name[:-2]
+        if name not in names and stem in names and _NUMBERED.fullmatch(name):
+            values = ", ".join(f"{float(value):g}" for each, value in given.items() if each[:-2] == stem)
+            raise DeclarationError(
+                f"{where}params.{stem} is a list, a number for each ball, and one ball has no list; "
+                f"to vary it, use vary.{stem} = [{values}] in a stage"
+            )
+    known(given, names, f"{where}params")
 
 
 def balls_of(system: str, names: Iterable[str]) -> int:
@@ -89,8 +109,9 @@ def read_params(
     ParameterError
         If a quantity in SI units is out of its range.
     """
-    known(own.params, stems(spec.parameters), f"{where}.params")
-    known(own.physical, quantities(spec), f"{where}.physical")
+    physical = quantities(spec)
+    known_params(own.params, stems(spec.parameters), physical, f"{where}.")
+    known(own.physical, physical, f"{where}.physical")
     varied = {axis.name for axis in axes}
     mine, theirs = (_spread(given.params, spec) for given in (own, common))
     made = _from_physical(spec, own, common, where)
@@ -184,11 +205,14 @@ def _spread(given: Mapping[str, Fraction], spec: Kind) -> dict[str, Fraction]:
 
 def _flat(form: object, where: str) -> dict[str, Fraction]:
     if not isinstance(form, Mapping):
-        raise DeclarationError(f"{where} is {form!r}; a table of keys is needed here")
+        raise DeclarationError(f"{where} is {written(form)}; a table of keys is needed here")
     found: dict[str, Fraction] = {}
     for name, value in form.items():
         if isinstance(value, list):
             found |= {f"{name}_{k}": exact(each, f"{where}.{name}[{k - 1}]") for k, each in enumerate(value, start=1)}
+        elif isinstance(value, Mapping):
+            remedy = f"to vary it, write vary.{name} = {written(value)} in a stage"
+            raise DeclarationError(f"{where}.{name} is a range; a fixed parameter is a number; {remedy}")
         else:
             found[name] = exact(value, f"{where}.{name}")
     return found

@@ -11,6 +11,7 @@ from vines.errors import DeclarationError, nearest
 from vines.pipeline._axes import Axis, exact
 from vines.pipeline._declaration import JUMP, MOST, Carry, Refine
 from vines.pipeline._kinds import Kind
+from vines.pipeline._written import written
 
 __all__ = ["CARRY", "REFINE", "read_carry", "read_refine", "read_zipped"]
 
@@ -54,16 +55,16 @@ def read_carry(form: object, axes: tuple[Axis, ...], vary: Mapping[str, Any], wh
         )
     direction = table.get("direction", "down" if falls else "up")
     if direction not in ("up", "down"):
-        raise DeclarationError(f"{where}.direction is {direction!r}; allowed: up, down")
+        raise DeclarationError(f"{where}.direction is {written(direction)}; allowed: up, down")
     if "start" not in table:
         return Carry(axis, direction)
     start = _table(table["start"], ("at", "from"), f"{where}.start")
     stage = start.get("from")
     if not isinstance(stage, str):
-        raise DeclarationError(f"{where}.start.from is {stage!r}; a text is needed here")
+        raise DeclarationError(f"{where}.start.from is {written(stage)}; a text is needed here")
     at = start.get("at", {})
     if not isinstance(at, Mapping):
-        raise DeclarationError(f"{where}.start.at is {at!r}; a table of keys is needed here")
+        raise DeclarationError(f"{where}.start.at is {written(at)}; a table of keys is needed here")
     point = {name: float(exact(value, f"{where}.start.at.{name}")) for name, value in at.items()}
     return Carry(axis, direction, stage, tuple(sorted(point.items())))
 
@@ -88,7 +89,7 @@ def read_zipped(form: object, vary: object, where: str) -> tuple[tuple[str, ...]
     seen: list[str] = []
     for each in lists:
         if not isinstance(each, list) or len(each) < 2 or not all(isinstance(name, str) for name in each):
-            raise DeclarationError(f'{where} is {each!r}; list two or more axes, such as ["A", "mu"]')
+            raise DeclarationError(f'{where} is {written(each)}; list two or more axes, such as ["A", "mu"]')
         for name in each:
             if name not in names:
                 raise DeclarationError(f"{where}: axis {name!r} is not varied: {nearest(name, names)}")
@@ -112,7 +113,7 @@ def read_refine(
     columns = {c.name: c.dtype for c in schema.table(spec.tables[0]).columns if c.dtype in _WATCHED}
     on = table.get("on")
     if not isinstance(on, list) or not on or not all(isinstance(name, str) for name in on):
-        raise DeclarationError(f'{where}.on is {on!r}; list columns, such as ["name", "kinetic_ratio"]')
+        raise DeclarationError(f'{where}.on is {written(on)}; list columns, such as ["name", "kinetic_ratio"]')
     for name in on:
         if name not in columns:
             raise DeclarationError(f"{where}.on: no column {name!r} to watch: {nearest(name, columns)}")
@@ -121,7 +122,7 @@ def read_refine(
     tolerance = _positive(table["tolerance"], f"{where}.tolerance")
     most = table.get("most", MOST)
     if isinstance(most, bool) or not isinstance(most, int) or most < 1:
-        raise DeclarationError(f"{where}.most is {most!r}; allowed is a whole number >= 1")
+        raise DeclarationError(f"{where}.most is {written(most)}; allowed is a whole number >= 1")
     along = _along(table.get("along"), axes, zipped, carry, f"{where}.along")
     return Refine(tuple(on), along, tolerance, _jump(table.get("jump"), on, f"{where}.jump"), most)
 
@@ -162,7 +163,7 @@ def _positive(value: object, where: str) -> float:
 
 def _table(form: object, allowed: Iterable[str], where: str) -> Mapping[str, Any]:
     if not isinstance(form, Mapping):
-        raise DeclarationError(f"{where} is {form!r}; a table of keys is needed here")
+        raise DeclarationError(f"{where} is {written(form)}; a table of keys is needed here")
     for key in form:
         if key not in allowed:
             raise DeclarationError(f"{where}: unknown key {key!r}: {nearest(str(key), allowed)}")

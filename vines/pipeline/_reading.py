@@ -23,6 +23,7 @@ from vines.pipeline._names import NAME, RESERVED
 from vines.pipeline._options import known, option_names, read_options
 from vines.pipeline._parameters import Given, balls_of, read_params
 from vines.pipeline._points import read_carry, read_refine, read_zipped
+from vines.pipeline._written import written
 from vines.places import find_root
 
 __all__ = ["GENERAL", "TOP", "load", "read_form"]
@@ -121,7 +122,7 @@ def _override(declared: Mapping[str, Any], overrides: Mapping[str, Any], path: P
             place = place.setdefault(key, {})
             if not isinstance(place, dict):
                 inner = ".".join(keys[: depth + 1])
-                raise DeclarationError(f"{path}: cannot set {dotted}: {inner} is {place!r}, not a table")
+                raise DeclarationError(f"{path}: cannot set {dotted}: {inner} is {written(place)}, not a table")
         place[keys[-1]] = _value(value)
     return form
 
@@ -145,6 +146,14 @@ def _stage(name: str, table: dict[str, Any], spec: Kind, common: Given, path: Pa
         raise type(error)(f"{where}: {error}") from None
     general = _general(spec)
     own_keys = filter(None, (spec.variant, *option_names(form)))
+    if "needs" in table and "needs" not in general:
+        start = (
+            ", or start from a stage by carry = { axis = …, start = { from = …, at = { … } } }" if spec.carry else ""
+        )
+        raise DeclarationError(
+            f"{where}.needs is {written(table['needs'])}; the kind {spec.name!r} takes no results of other stages: "
+            f"leave it out{start}"
+        )
     known(table, [*general, *own_keys], where)
     # a kind may have an option of its own under a general key that it does not take, as basins have refine
     shared = {key: value for key, value in table.items() if key in general}
@@ -165,7 +174,7 @@ def _stage(name: str, table: dict[str, Any], spec: Kind, common: Given, path: Pa
         refine = read_refine(shared["refine"], spec, axes, zipped, carry, f"{where}.refine")
     needs = shared.get("needs", [])
     if not isinstance(needs, list) or not all(isinstance(need, str) for need in needs):
-        raise DeclarationError(f'{where}.needs is {needs!r}; list names of stages, such as ["up"]')
+        raise DeclarationError(f'{where}.needs is {written(needs)}; list names of stages, such as ["up"]')
     if len(set(needs)) < len(needs):
         raise DeclarationError(f"{where}.needs names a stage twice; once is enough")
     return Stage(name, spec, options, params, axes, carry, tuple(needs), zipped, refine, links)
@@ -242,11 +251,15 @@ def _check_needs(stage: Stage, stages: Mapping[str, Stage], where: str) -> None:
         raise DeclarationError(f"{where}.carry.start.from: {stage.carry.stage!r}: {nearest(stage.carry.stage, fit)}")
     from vines.pipeline._grid import Grid
 
-    at = dict(stage.carry.at)
-    if not Grid(source).has(at):
-        axes = ", ".join(axis.name for axis in source.axes) or "nothing"
-        text = f"no point of stage {source.name!r}, which varies {axes}; name one value of each"
-        raise DeclarationError(f"{where}.carry.start.at: {at} is {text}")
+    at, grid = dict(stage.carry.at), Grid(source)
+    if grid.has(at):
+        return
+    text = f"{where}.carry.start.at is {written(at)}, no point of stage {source.name!r}"
+    if set(at) != set(grid.names):
+        axes = ", ".join(grid.names) or "nothing"
+        raise DeclarationError(f"{text}, which varies {axes}; name one value of each")
+    near = " and ".join(written(each) for each in grid.nearest(at))
+    raise DeclarationError(f"{text}; nearest: {near}")
 
 
 def _check_box(stage: Stage, where: str) -> None:
@@ -280,18 +293,14 @@ def _extremes(axis: Axis) -> tuple[float, ...]:
 
 def _table(form: object, where: str) -> dict[str, Any]:
     if not isinstance(form, dict):
-        raise DeclarationError(f"{where} is {_shown(form)}; a table of keys is needed here")
+        raise DeclarationError(f"{where} is {written(form)}; a table of keys is needed here")
     return form
 
 
 def _text(form: object, where: str) -> str:
     if not isinstance(form, str):
-        raise DeclarationError(f"{where} is {_shown(form)}; a text is needed here")
+        raise DeclarationError(f"{where} is {written(form)}; a text is needed here")
     return form
-
-
-def _shown(form: object) -> str:
-    return str(form) if isinstance(form, Decimal) else repr(form)
 
 
 def _plain(form: Any, where: str) -> Any:

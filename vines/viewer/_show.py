@@ -10,7 +10,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from vines.errors import ViewerError
+from vines.errors import ParameterError, ViewerError
 from vines.logs import Log
 from vines.viewer._cache import cached_rrd
 from vines.viewer._remarks import is_foreign
@@ -59,6 +59,8 @@ def screenshot(
         If a log or the folder of `out` does not exist.
     LogError
         If a log is damaged or incomplete.
+    ParameterError
+        If `at` lies before or after all runs.
     ViewerError
         If the viewer cannot start (it needs Vulkan; Mesa's software one will do), a view reports an error, or the
         picture does not come to rest.
@@ -66,6 +68,8 @@ def screenshot(
     from vines.viewer._program import headless
 
     runs = logs_of(logs)
+    if at is not None:
+        _check_time(at, runs)
     with replacing(Path(out)) as partial, tempfile.TemporaryDirectory() as folder:
         recording = Path(folder) / "still.rrd"
         record(runs, recording, still=True, overlay=overlay)
@@ -161,6 +165,15 @@ def _recorded(logs: Sequence[str | os.PathLike[str] | Log], cache: Path | None, 
         recording = Path(folder) / "vines.rrd"
         record(logs, recording, overlay=overlay)
         yield recording
+
+
+def _check_time(at: float, runs: Sequence[Log]) -> None:
+    """Refuse a time at which none of the runs shows anything."""
+    times = [time for run in runs if run.states.num_rows for time in run.states["t"].to_numpy()[[0, -1]].tolist()]
+    if times and not min(times) <= at <= max(times):
+        raise ParameterError(
+            f"at is {at:g}, allowed is {min(times):g} to {max(times):g}, the time of the run, 1/omega0"
+        )
 
 
 def _moment(log: Log) -> float:

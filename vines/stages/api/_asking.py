@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import tempfile
+import warnings
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
@@ -62,13 +63,23 @@ def table(name: str, *, study: Home | None = None) -> pa.Table:
     pyarrow.Table
         With units as field metadata.
 
+    Warns
+    -----
+    UserWarning
+        If it is empty, such as where nothing was computed yet.
+
     Raises
     ------
     UnknownNameError
         If there is no such view.
     """
-    with connect((study or current()).store) as catalogue:
-        return catalogue.table(name)
+    study = study or current()
+    with connect(study.store) as catalogue:
+        found = catalogue.table(name)
+    if not found.num_rows:
+        remedy = "'vines run NAME' computes a pipeline, 'vines status' says what there is"
+        warnings.warn(f"no result in {study.data} has rows of {name!r} yet; {remedy}", UserWarning, stacklevel=2)
+    return found
 
 
 def list_tables(*, study: Home | None = None) -> list[dict[str, Any]]:
@@ -141,11 +152,27 @@ def checks(name: str | None = None, *, study: Home | None = None) -> list[dict[s
     if name is not None and name not in known:
         raise UnknownNameError(f"unknown pipeline {name!r}: {nearest(name, known)}")
     where = ""
+    names: tuple[str, ...] = ()
     if name is not None:
         names = members(name, study.root) if name in available(study.root) else (name,)
         where = f"where pipeline in ({', '.join(repr(each) for each in names)})"
     rows = query(f"select * from checks {where} order by pipeline, stage, point_id", study=study).to_pylist()
     if not rows:
         what = name or "any pipeline"
+        if name is not None and not any(_checks(each, study) for each in names):
+            raise UnknownNameError(
+                f"{name} has no stage of kind 'check', so there is nothing to compare; "
+                "declare one with claims = [..] (pipelines/claims.toml), or ask for one that has, as quickstart has"
+            )
         raise UnknownNameError(f"nothing has been checked for {what}; run 'vines run {name or 'quickstart'}' first")
     return rows
+
+
+def _checks(name: str, study: Home) -> bool:
+    """Whether a pipeline has a stage of kind ``check``; one that is only stored may have had one."""
+    from vines.pipeline import available
+    from vines.stages.api._parts import load_pipeline
+
+    if name not in available(study.root):
+        return True
+    return any(stage.kind.name == "check" for stage in load_pipeline(name, study=study).stages.values())

@@ -212,12 +212,27 @@ def _next(pipeline: str, results: dict[str, Result]) -> Iterable[tuple[str, str]
         if beside:
             run = beside[0].removesuffix("/measured")
             yield f"vines view {pipeline}.{stage}/{run} --overlay", "a measured run over the model's"
-    if any("points" in result.tables for result in results.values()):
-        yield 'vines query "select A, name, reduction from points order by A"', "ask the tables in SQL"
+    asked = _question(pipeline, results)
+    if asked:
+        yield asked, "ask the tables in SQL"
     if any("comparisons" in result.tables for result in results.values()):
         yield f"vines report {pipeline}", "verdicts, calibration and figures on one page"
     if any("checks" in result.tables for result in results.values()):
         yield f"vines check {pipeline}", "compare with the published values"
+
+
+def _question(pipeline: str, results: dict[str, Result]) -> str:
+    """Return the query of a table that the pipeline has, over what it varies; empty if it has no points or orbits."""
+    axes = {stage: [axis[0] for axis in result.manifest["ingredients"]["vary"]] for stage, result in results.items()}
+    for table, columns in (("points", "name, reduction"), ("orbits", "name, stable")):
+        for stage in sorted(
+            (each for each in results if table in results[each].tables), key=lambda each: not axes[each]
+        ):
+            axis = next(iter(axes[stage]), "A")
+            return (
+                f"vines query \"select {axis}, {columns} from {table} where pipeline = '{pipeline}' order by {axis}\""
+            )
+    return ""
 
 
 def _short(path: Path) -> str:

@@ -191,15 +191,13 @@ def estimate(
     }
 
 
-def status_of_each(
-    name: str | None = None, *, study: Home | None = None
-) -> tuple[dict[str, list[StagePlan]], dict[str, str]]:
+def status_of_each(*names: str, study: Home | None = None) -> tuple[dict[str, list[StagePlan]], dict[str, str]]:
     """Return where the stages of several pipelines stand; the sources of their kinds are looked at once for all.
 
     Parameters
     ----------
-    name : str, optional
-        A pipeline, or a collection for those in it; all pipelines there are if left out.
+    *names : str
+        Pipelines, and collections for those in them; all pipelines there are if none is named.
     study : Home, optional
         Whose; the one that the current folder belongs to if left out.
 
@@ -213,20 +211,22 @@ def status_of_each(
     Raises
     ------
     VinesError
-        If the named pipeline itself cannot be read.
+        If a named pipeline itself cannot be read.
     """
     study = study or current()
     store = study.store
-    listed = list_pipelines(study=study) if name is None else []
-    names = members_of(name, study=study) if name is not None else [r["name"] for r in listed if not r["pipelines"]]
+    if names:
+        wanted = [str(each) for name in names for each in members_of(name, study=study)]
+    else:
+        wanted = [r["name"] for r in list_pipelines(study=study) if not r["pipelines"]]
     code = code_digests(store)
     plans: dict[str, list[StagePlan]] = {}
     unreadable: dict[str, str] = {}
-    for each in map(str, names):
+    for each in dict.fromkeys(wanted):
         try:
             plans[each] = _plans(load_parts(each, study=study), store, code)
         except VinesError as error:
-            if each == name:
+            if each in names:
                 raise
             unreadable[each] = str(error)
     return plans, unreadable

@@ -1,0 +1,5 @@
+"""``python -m vines``: the command line without its script."""
+
+from vines.cli import main
+
+main()
