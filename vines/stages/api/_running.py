@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Any, Literal
 
 from vines.errors import EngineError, PackageMissingError, VinesError
 from vines.pipeline import available, code_digests, plan
-from vines.pipeline import estimate as estimate_points
 from vines.stages.api._home import Home, current
 from vines.stages.api._parts import Part, load_parts, members_of
 
@@ -181,6 +180,8 @@ def estimate(
 
     Some points of each stage are computed for it and not kept. Stages that are not made of points are left out.
     """
+    from vines.pipeline import estimate as estimate_points
+
     study = study or current()
     asked: dict[str, Any] = {"jobs": jobs, "force": force, "retry_failed": retry_failed}
     return {
