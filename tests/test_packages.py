@@ -21,6 +21,8 @@ REPOSITORY = Path(__file__).resolve().parent.parent
 SOURCES = sorted((REPOSITORY / "vines").rglob("*.py"))
 ROOMS_WITH_A_DOOR = {"vines.figures": "matplotlib", "vines.viewer": "rerun"}
 
+pytestmark = pytest.mark.long(12)
+
 PIPELINE = """
 title = "What a node computes, and what it can neither draw nor ask"
 params = { mu = 0.01, Omega = 1.0, r = 0.65 }
@@ -58,7 +60,7 @@ COMMANDS = {
     "schema points": [],
     "solve LR --mu 0.01 --A 0.015": [],
     "rig init demo": [],
-    "rig inspect run.csv": ["pandas"],
+    "rig inspect run.csv": [],
     "rig synth demo_synth": ["npTDMS"],
     "run node --engine dask": ["distributed"],
     "tables": ["duckdb"],
@@ -74,8 +76,6 @@ COMMANDS = {
 BLOCK = """
 import sys
 from importlib.machinery import PathFinder
-
-pytestmark = pytest.mark.long(12)
 
 
 class Finder(PathFinder):

@@ -9,6 +9,7 @@ from scipy.optimize import brentq
 from vines.dynamics import decay, simulate
 from vines.errors import StateError
 from vines.model import Params
+from vines.systems import ImpactPair, Parallel
 
 
 def test_the_check_value_of_the_prototypes():
@@ -55,3 +56,7 @@ def test_what_does_not_decay_is_refused_in_one_line():
         decay(simulate(Params(mu=0.02, A=0.02), periods=2))
     with pytest.raises(StateError, match="nothing moves at the start"):
         decay(simulate(Params(mu=0.02, A=0.0), v2=0.0, periods=2))
+    with pytest.raises(StateError, match="has no oscillator of its own"):
+        decay(simulate(ImpactPair(B=0.5), periods=2))
+    with pytest.raises(StateError, match="give G = 0"):
+        decay(simulate(Parallel(mu=(0.02,), A=0.0, G=0.1), v1=1.0, periods=2))

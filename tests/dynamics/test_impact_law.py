@@ -24,6 +24,8 @@ from vines.dynamics._impact_law import (
 ROOMS = ("dynamics", "orbits", "attractors")
 READERS = {"_lane_state.py", "_flights.py", "_equations.py", "_values.py"}
 """Lanes and closing equations, which take what is exchanged, pass1 and pass2, as a number."""
+CHAINS = {"_chains.py": "c.law", "_balls.py": "law", "_capsule.py": "c.law"}
+"""Closing equations of any system, linear in the velocities at an impact: they hand on three coefficients of the law."""
 
 SPEED = st.floats(-10.0, 10.0)
 
@@ -97,7 +99,8 @@ def test_no_other_file_writes_the_law() -> None:
                 found[path.name] = lines
     assert found.pop("_impact_law.py")
     # The trace of the fast motion's matrix, a closed form in r alone.
-    assert found == {"_reduced.py": ["1 + r"]}
+    assert found.pop("_reduced.py") == ["1 + r"]
+    assert found == {name: [f"{law}.{each}" for each in ("pass1", "pass2", "keep2")] for name, law in CHAINS.items()}
 
 
 @pytest.mark.parametrize(

@@ -103,7 +103,7 @@ def test_a_run_does_not_depend_on_how_it_is_cut_into_calls() -> None:
     c, state = constants(p), new_state()
     set_state(state, 0.0, 0.0, 0.0, 0.1, 0.0, 0.0)
     rows = np.zeros((200, col.ROW))
-    begin(state, rows)
+    begin(c, state, rows)
     count = 1
     for stop in np.arange(0.1, 20 * p.period, 0.37):
         while True:

@@ -47,6 +47,7 @@ def test_a_changed_helper_in_another_file_changes_the_number(tmp_path: Path) -> 
         shutil.copy(path, copy / path.name)
     for room in ("model", "kernels", "dynamics"):
         shutil.copytree(source / room, copy / room, ignore=shutil.ignore_patterns("__pycache__"))
+    shutil.copytree(source.parent / "schemas", tmp_path / "schemas")
     first = float(_run(PROGRAM, tmp_path))
     helper = copy / "dynamics" / "_sincos.py"
     stamp = helper.stat()

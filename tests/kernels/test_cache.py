@@ -11,10 +11,10 @@ import pytest
 
 from tests.made_once import own_copy
 
+pytestmark = pytest.mark.long(30)
+
 HELPER = """
 from vines.kernels import fused_njit, linked_njit, new_vector
-
-pytestmark = pytest.mark.long(30)
 
 @fused_njit
 def inner(x):

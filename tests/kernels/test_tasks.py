@@ -13,11 +13,11 @@ from vines.errors import KernelError
 from vines.kernels import Task, compile_tasks
 from vines.stages import load_pipeline, status
 
+pytestmark = pytest.mark.long(9)
+
 WORK = """
 from typing import NamedTuple
 from vines.kernels import by_type, entry_njit, linked_njit
-
-pytestmark = pytest.mark.long(9)
 
 class Number(NamedTuple):
     value: float

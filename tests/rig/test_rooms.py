@@ -11,5 +11,7 @@ def test_nothing_imports_a_private_module_of_another_room():
     found = []
     for file in [*(REPOSITORY / "vines").rglob("*.py"), *(REPOSITORY / "benchmarks").rglob("*.py")]:
         own = ".".join(file.relative_to(REPOSITORY).parent.parts)
-        found += [(file.name, room) for room in PRIVATE.findall(file.read_text()) if room != own]
+        found += [
+            (file.name, room) for room in PRIVATE.findall(file.read_text()) if not f"{own}.".startswith(f"{room}.")
+        ]
     assert not found

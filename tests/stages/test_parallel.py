@@ -1,8 +1,10 @@
 """Balls in parallel cavities in pipelines: lists, links, columns of each ball, words and the check values."""
 
+import numpy as np
 import pytest
 
 import vines
+from vines.logs import read
 from vines.stages import run
 
 SPLIT = """
@@ -18,6 +20,12 @@ link.mu_2 = "0.02 - mu_1"
 start = { v2 = [0.1, -0.3] }
 settle = 800
 record = 16
+[stages.run]
+kind = "trajectory"
+params.mu = [0.01, 0.01]
+start = { v2 = [0.1, -0.3] }
+settle = 800
+record = 3
 [stages.branch]
 kind = "branch"
 word = "L1L2R1R2"
@@ -26,6 +34,40 @@ params.mu = [0.01, 0.01]
 vary.A = { from = 0.03, to = 0.0305 }
 """
 
+DECAYS = """
+title = "decays"
+[stages.single]
+kind = "transient"
+periods = 20
+params = { mu = 0.02, V = 2.0 }
+[stages.one]
+kind = "transient"
+system = "parallel"
+periods = 20
+params = { mu = [0.02], V = 2.0 }
+[stages.two]
+kind = "transient"
+system = "parallel"
+periods = 20
+params = { mu = [0.01, 0.01], beta = [1.0, 0.5], V = 2.0 }
+"""
+
+
+@pytest.mark.long(60)
+def test_a_transient_of_one_ball_is_that_of_the_vi_nes_and_two_share_the_loss(project, monkeypatch):
+    monkeypatch.setenv("VINES_ROOT", str(project.root))
+    (project.root / "pipelines" / "decays.toml").write_text(DECAYS)
+    run("decays")
+    rows = {row["stage"]: row for row in vines.table("parallel_transients").to_pylist()}
+    (single,) = vines.table("transients").to_pylist()
+    one, two = rows["one"], rows["two"]
+    # systems-check-values.md, a-tet
+    assert one["impacts"] == single["impacts"] == 54
+    for name in ("impact_share", "damper_share", "left_share", "ball_share", "t_tenth"):
+        assert one[name] == pytest.approx(single[name], abs=1e-9)
+    assert one["energy"] * one["impact_share"] == pytest.approx(0.718833300114, abs=1e-10)
+    assert two["impact_share"] + two["damper_share"] + two["left_share"] == pytest.approx(1.0, abs=1e-12)
+
 
 @pytest.mark.long(90)
 def test_tables_hold_the_check_values_ball_by_ball(project, monkeypatch):
@@ -33,7 +75,7 @@ def test_tables_hold_the_check_values_ball_by_ball(project, monkeypatch):
     (project.root / "pipelines" / "split.toml").write_text(SPLIT)
     run("split")
     # systems-check-values.md, a3
-    (point,) = vines.table("parallel_points").to_pylist()
+    (point,) = vines.query("select * from parallel_points where stage = 'points'").to_pylist()
     assert (point["status"], point["word"], point["name"]) == ("ok", "L1L2R1R2", "1:1|1:1")
     assert (point["mu_1"], point["mu_2"], point["beta_2"], point["mu_3"]) == (0.01, 0.01, 1.4, None)
     assert (point["v2_1"], point["v2_2"]) == (0.1, -0.3)
@@ -49,6 +91,15 @@ def test_tables_hold_the_check_values_ball_by_ball(project, monkeypatch):
         (1, -1): 1.146405485,
         (2, -1): 1.432041813,
     }
+    (file,) = (project.root / "data" / "results").rglob("*.mcap")
+    log = read(file)
+    assert (log.system, log.attractor, list(log.balls)) == ("parallel", "1:1|1:1", [1, 2])
+    assert log.impacts.num_rows == 12
+    speeds = zip(log.impacts["ball"].to_pylist(), np.abs(log.impacts["w_dot"].to_numpy()).round(6), strict=True)
+    assert set(speeds) == {(1, 1.146405), (2, 1.432042)}
+    (named,) = vines.query("select word, name, kinetic_ratio_2 from parallel_points where stage = 'run'").to_pylist()
+    assert (named["word"], named["name"]) == ("L1L2R1R2", "1:1|1:1")
+    assert named["kinetic_ratio_2"] == pytest.approx(0.103992311198, abs=1e-9)
     orbits = vines.query("select * from parallel_orbits where A = 0.03").to_pylist()
     assert orbits[0]["stable"]
     assert orbits[0]["kinetic_ratio_2"] == pytest.approx(0.103992311198, abs=1e-10)

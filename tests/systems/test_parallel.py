@@ -199,8 +199,35 @@ def test_samples_stay_in_the_cavities_and_meet_the_events():
     own = np.where(run.impacts["ball"] == 1, hit["w_1"], hit["w_2"] / 1.4)
     assert own == pytest.approx(run.impacts["side"], abs=1e-12)
     assert hit["x1"] == pytest.approx(run.impacts["x1"], abs=1e-12)
-    with pytest.raises(StateError, match="at events"):
-        run.sample(10, at_events=True)
+
+
+@pytest.mark.parametrize("p", [TWO, Parallel(mu=(0.01, 0.01, 0.004), r=(0.3, 0.65, 0.5), A=0.02, G=0.01)])
+def test_samples_at_events_close_the_energy_balance(p):
+    run = vines.simulate(p, v2=(0.1, -0.3, 0.1)[: p.balls], periods=20)
+    at = run.sample(per_period=20, at_events=True)
+    balls = range(1, p.balls + 1)
+    stored = at["kinetic_1"] + at["potential"] + sum(at[f"kinetic_2_{k}"] + at[f"potential_2_{k}"] for k in balls)
+    rest = at["base_work"] - at["damper_loss"] - at["impact_loss"] - (stored - stored[0])
+    assert np.abs(rest).max() < 1e-13
+    m = run.measures()
+    ends = [at[name][-1] for name in ("base_work", "damper_loss", "impact_loss")]
+    assert ends == pytest.approx([m.base_work, m.damper_loss, m.impact_loss], abs=1e-14)
+    assert (np.diff(at["t"]) >= 0).all()
+    for k in balls:
+        own = run.impacts[run.impacts["ball"] == k]
+        alone = own[[(run.events["t"] == t).sum() == 1 for t in own["t"]]]
+        assert len(alone) > 20
+        hits = np.searchsorted(at["t"], alone["t"])
+        assert at["t"][hits] == pytest.approx(alone["t"], abs=0)
+        assert at[f"w_dot_{k}"][hits] == pytest.approx(alone["w_dot"], abs=1e-15)
+        assert at[f"w_dot_{k}"][hits + 1] == pytest.approx(alone["v1_after"] - alone["v2_after"], abs=1e-15)
+        assert at[f"w_{k}"][hits] == pytest.approx(alone["side"] * p.beta[k - 1], abs=1e-14)
+    riding = [(at[f"stuck_{k}"] != 0).any() for k in balls]
+    assert riding == [(run.sticks["ball"] == k).any() for k in balls]
+    for name in ("start", "release"):
+        left = np.isfinite(run.sticks[f"t_{name}"])
+        turned = run.sticks[f"phase_{name}"][left] - p.Omega * run.sticks[f"t_{name}"][left]
+        assert np.abs(np.sin(turned / 2)).max(initial=0.0) < 1e-12
 
 
 def test_orbits_are_found_and_followed():

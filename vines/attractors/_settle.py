@@ -127,6 +127,7 @@ def settle(
 
     Examples
     --------
+    >>> from vines.model import Params
     >>> found = settle(Params(mu=0.01, A=0.023))
     >>> found.regime, found.name, found.word, found.symmetric
     ('periodic', '2:1', 'LLR', False)
@@ -173,6 +174,7 @@ def settle_from(
 
     Examples
     --------
+    >>> from vines.model import Params
     >>> first = settle(Params(mu=0.01, A=0.02))
     >>> settle_from(Params(mu=0.01, A=0.0201), first.final, settle=100).name
     '1:1'

@@ -2,21 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-
-import numpy as np
-import numpy.typing as npt
 
 from vines.dynamics._trajectory import Trajectory
 from vines.errors import StateError
 
 __all__ = ["Decay", "decay"]
-
-_PLACES = 65
-"""Samples with which a flight is narrowed down; each round leaves a 64th of it."""
-_ROUNDS = 9
-"""So many rounds leave less than rounding of any flight."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,7 +55,7 @@ def decay(run: Trajectory, shares: Sequence[float] = (0.1, 0.01)) -> Decay:
     Raises
     ------
     StateError
-        If the run is driven, or has no energy at its start.
+        If the run is driven or tilted, or has no energy at its start.
 
     Examples
     --------
@@ -72,44 +65,47 @@ def decay(run: Trajectory, shares: Sequence[float] = (0.1, 0.01)) -> Decay:
     >>> found.impacts, round(2 * found.impact_share, 6), round(found.times[0], 4)
     (54, 0.718833, 114.579)
     """
+    if "A" not in run.params.as_dict():
+        raise StateError(f"the system {run.params.system.name} has no oscillator of its own whose energy decays")
     if run.params.A != 0:
         raise StateError(f"A is {run.params.A:g}; energy decays where nothing drives: give A = 0")
-    samples = run.sample(n=2, at_events=True)
-    energies = _energy(samples)
-    start, end = float(energies[0]), samples[-1]
+    if not run.params.mirrored:
+        raise StateError("energy of a tilted system has no zero; give G = 0")
+    whole, end = run.measures(), run.final
+    masses = {name: value for name, value in run.params.as_dict().items() if name.partition("_")[0] == "mu"}
+    ball = sum(0.5 * mass * end[name.replace("mu", "v2")] ** 2 for name, mass in masses.items())
+    frame = 0.5 * (end["v1"] ** 2 + end["x1"] ** 2)
+    start = frame + ball - whole.energy_change
     if not start > 0:
         raise StateError("nothing moves at the start; give a velocity that is not 0")
     hits = run.impacts["t"]
     return Decay(
         energy=start,
-        impact_share=float(end["impact_loss"]) / start,
-        damper_share=float(end["damper_loss"]) / start,
-        frame_share=float(end["kinetic_1"] + end["potential"]) / start,
-        ball_share=float(end["kinetic_2"]) / start,
-        times=tuple(_reaches(run, samples["t"], energies, share * start) for share in shares),
+        impact_share=whole.impact_loss / start,
+        damper_share=whole.damper_loss / start,
+        frame_share=frame / start,
+        ball_share=ball / start,
+        times=tuple(_reaches(run, frame + ball, share * start) for share in shares),
         impacts=len(hits),
-        first_impact=float(hits[0]) if len(hits) else np.nan,
-        last_impact=float(hits[-1]) if len(hits) else np.nan,
+        first_impact=float(hits[0]) if len(hits) else math.nan,
+        last_impact=float(hits[-1]) if len(hits) else math.nan,
     )
 
 
-def _energy(samples: npt.NDArray[np.void]) -> npt.NDArray[np.float64]:
-    return samples["kinetic_1"] + samples["kinetic_2"] + samples["potential"]
+def _reaches(run: Trajectory, left: float, level: float) -> float:
+    """Return when the energy, which never grows, has fallen to a level: at an impact or inside a flight.
 
-
-def _reaches(run: Trajectory, t: npt.NDArray[np.float64], energies: npt.NDArray[np.float64], level: float) -> float:
-    """Return when the energy, which never grows, has fallen to a level: at an impact or inside a flight."""
-    below = np.flatnonzero(energies <= level)
-    if not len(below):
-        return np.nan
-    k = int(below[0])
-    low, high = float(t[max(k - 1, 0)]), float(t[k])
-    for _ in range(_ROUNDS):
-        if not low < high:
-            break
-        places = np.linspace(low, high, _PLACES)
-        # the last place is the end, which an impact there may have lowered
-        under = np.append(_energy(run.sample(times=places[1:-1])) <= level, True)
-        first = int(np.argmax(under))
-        low, high = float(places[first]), float(places[first + 1])
-    return high
+    What there is at a time is what is left at the end and what is lost from then on.
+    """
+    low, high = run.t_start, run.t_end
+    if left > level:
+        return math.nan
+    while True:
+        middle = 0.5 * (low + high)
+        if not low < middle < high:
+            return high
+        after = run.measures(last=(run.t_end - middle) / run.params.period)
+        if left + after.damper_loss + after.impact_loss > level:
+            low = middle
+        else:
+            high = middle

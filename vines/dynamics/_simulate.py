@@ -79,6 +79,7 @@ def simulate(
 
     Examples
     --------
+    >>> from vines.model import Params
     >>> run = simulate(Params(mu=0.01, A=0.015), periods=300)
     >>> "".join("L" if hit["side"] > 0 else "R" for hit in run.impacts[-4:])
     'LRLR'

@@ -243,18 +243,23 @@ class Trajectory:
         before = np.zeros(len(chosen), dtype=np.bool_)
         t = chosen
         if at_events:
-            kinds = self.rows[:, col.KIND]
-            events = np.flatnonzero((kinds >= col.IMPACT) & (kinds <= col.RELEASE))
-            keep = ~np.isin(chosen, begins[events])
-            t = np.concatenate([chosen[keep], np.repeat(begins[events], 2)])
-            segment = np.concatenate([segment[keep], np.stack([events - 1, events], axis=1).ravel()])
+            first, last = self._instants()
+            keep = ~np.isin(chosen, begins[first])
+            t = np.concatenate([chosen[keep], np.repeat(begins[first], 2)])
+            segment = np.concatenate([segment[keep], np.stack([first - 1, last], axis=1).ravel()])
             tau = np.concatenate(
-                [tau[keep], np.stack([self.rows[events, col.TAU], np.zeros(len(events))], axis=1).ravel()]
+                [tau[keep], np.stack([self.rows[first, col.TAU], np.zeros(len(first))], axis=1).ravel()]
             )
-            before = np.concatenate([before[keep], np.tile([True, False], len(events))])
+            before = np.concatenate([before[keep], np.tile([True, False], len(first))])
             order = np.lexsort((tau, segment, t))
             t, segment, tau, before = t[order], segment[order], tau[order], before[order]
         return self._fill(t, segment, tau, before)
+
+    def _instants(self) -> tuple[npt.NDArray[np.int64], npt.NDArray[np.int64]]:
+        """Return the rows of the events before and after each of which a sample is taken, here one by one."""
+        kinds = self.rows[:, col.KIND]
+        events = np.flatnonzero((kinds >= col.IMPACT) & (kinds <= col.RELEASE))
+        return events, events
 
     def _times(self, n: int | None, times: npt.ArrayLike | None, per_period: int | None) -> npt.NDArray[np.float64]:
         if sum(choice is not None for choice in (n, times, per_period)) > 1:

@@ -12,12 +12,16 @@ from vines.errors import SchemaError
 from vines.schema import WireFormat, numpy_dtype, schema_bytes, wire_format
 
 __all__ = [
+    "BALL",
+    "BALLS",
+    "BALL_TOPIC",
     "BASE",
     "CHANNELS",
     "CONTENT",
     "DIGESTS",
     "FIRST_SENSOR",
     "KINDS",
+    "OF_BALLS",
     "ORBIT",
     "OURS",
     "PARAMETERS",
@@ -147,7 +151,19 @@ SENSOR = "/sensor/"
 """Topics of sensors begin so."""
 FIRST_SENSOR = 100
 """Number of the first sensor's channel."""
-KINDS = {channel.message: channel for channel in (*CHANNELS, ORBIT, BASE)}
+OF_BALLS = (
+    Channel(6, "/oscillator", "vines.v1.Oscillator", "t", "states"),
+    Channel(7, "/impact", "vines.v1.BallImpact", "t", "impacts"),
+    Channel(8, "/stick", "vines.v1.BallStick", "t_start", "sticks"),
+)
+"""Those that the log of a run with several balls has instead, beside one of each ball."""
+BALL = "vines.v1.Ball"
+"""Message of a ball's channel."""
+BALL_TOPIC = "/ball/"
+"""Topics of balls begin so."""
+BALLS = tuple(Channel(8 + ball, f"{BALL_TOPIC}{ball}", BALL, "t", str(ball)) for ball in range(1, 9))
+"""Channels of the balls of a run with several."""
+KINDS = {channel.message: channel for channel in (*CHANNELS, ORBIT, BASE, *OF_BALLS)}
 """Messages of which a log has one channel at most."""
 
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from mcap import records
 
-from vines.logs._channels import CONTENT, DIGESTS, KINDS, OURS, SAMPLE, STATUS, Channel
+from vines.logs._channels import BALLS, CONTENT, DIGESTS, KINDS, OURS, SAMPLE, STATUS, Channel
 from vines.logs._checked import NUMBERS, described, vouched
 from vines.logs._digests import digest_of, trusted
 from vines.logs._salvage import Piece, Salvage
@@ -173,7 +173,7 @@ def _twice(piece: Piece, good: set[str]) -> bool:
 
 def _anew(found: Salvage, head: Head, good: set[str]) -> None:
     """Describe channels of vines of which nothing is left but digest and messages, if both fit."""
-    for channel in KINDS.values():
+    for channel in (*KINDS.values(), *BALLS):
         number = channel.number
         encoding, data = channel.described()
         schema = records.Schema(id=number, data=data, encoding=encoding, name=channel.message)

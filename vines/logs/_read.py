@@ -19,8 +19,11 @@ from mcap import records
 from vines.errors import FileMissingError, LogError, LogVersionError, printable
 from vines.logs._account import UNVERIFIED
 from vines.logs._channels import (
+    BALL,
+    BALL_TOPIC,
     CHANNELS,
     KINDS,
+    OF_BALLS,
     PARAMETERS,
     PROVENANCE,
     RECOVERED,
@@ -59,7 +62,10 @@ class Log:
         vines did not write.
     states, impacts, sticks : pyarrow.Table
         Columns as the fields of ``vines.v1.State``, ``Impact`` and ``Stick``, dimensionless; each column's
-        metadata holds its ``unit`` and ``description``.
+        metadata holds its ``unit`` and ``description``. Of several balls the states are those of the oscillator
+        (``vines.v1.Oscillator``), and impacts and sticks have the number of the ``ball``.
+    balls : dict of int to pyarrow.Table
+        Of several balls the states of each (``vines.v1.Ball``) by its number from 1, at the times of `states`.
     orbits, base : pyarrow.Table
         The same of ``vines.v1.Orbit`` and, in SI units, ``BaseMotion``; without rows in most logs.
     sensors : dict of str to pyarrow.Table
@@ -99,6 +105,7 @@ class Log:
     states: pa.Table
     impacts: pa.Table
     sticks: pa.Table
+    balls: dict[int, pa.Table]
     orbits: pa.Table
     base: pa.Table
     sensors: dict[str, pa.Table]
@@ -196,6 +203,8 @@ def _known(file: Path, found: Found) -> dict[int, Channel]:
             known[number] = Channel(
                 number, topic.topic, SAMPLE, "t", topic.topic.removeprefix(SENSOR), dict(topic.metadata)
             )
+        elif schema.name == BALL and (ball := topic.topic.removeprefix(BALL_TOPIC)).isdecimal():
+            known[number] = Channel(number, topic.topic, BALL, "t", ball)
         elif schema.name in KINDS:
             known[number] = KINDS[schema.name]
         else:
@@ -244,7 +253,8 @@ def _checked(file: Path, found: Found, known: dict[int, Channel]) -> _Verdict:
         if counts.get(topic, found.count(number)) != found.count(number):
             raise LogError(f"{file} is damaged: {found.count(number)} of {counts[topic]} messages on {topic}; {AGAIN}")
     if found.metadata.get(RUN, {}).get("kind", "run") != "rig" and status == "complete":
-        for channel in CHANNELS:
+        several = any(channel in OF_BALLS for channel in known.values())
+        for channel in OF_BALLS if several else CHANNELS:
             if channel not in known.values():
                 raise LogError(f"{file} has no channel of {channel.message}; {AGAIN}")
     return _Verdict(status, (), known, {})
@@ -297,8 +307,12 @@ def _log(file: Path, found: Found, verdict: _Verdict, tables: dict[int, pa.Table
         others=others,
         encodings={topic.topic: topic.message_encoding for topic in verdict.others.values()},
         sha256=found.sha256,
+        balls=dict(
+            sorted((int(channel.key), tables[number]) for number, channel in known.items() if channel.message == BALL)
+        ),
         **{
             channel.key: of_message[message] if message in of_message else table(Messages(), channel)
             for message, channel in KINDS.items()
+            if channel not in OF_BALLS or message in of_message
         },
     )

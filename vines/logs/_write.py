@@ -13,6 +13,7 @@ from typing import BinaryIO
 import numpy as np
 
 from vines.errors import FileMissingError, SchemaError
+from vines.logs._balls import ball_rows, has_balls
 from vines.logs._bare import bare_rows
 from vines.logs._channels import CHANNELS, ORBIT, PARAMETERS, PROVENANCE, RUN, Rows, as_rows
 from vines.logs._file import LogFile
@@ -45,7 +46,9 @@ def write_run(
         Where; an existing file is replaced.
     states, impacts, sticks : numpy.ndarray, shape (n,), structured
         Rows with the fields of ``vines.v1.State``, ``Impact`` and ``Stick``, sorted by time (sticks by
-        ``t_start``); dimensionless, further fields are left out.
+        ``t_start``); dimensionless, further fields are left out. Of several balls states have the fields of
+        ``vines.v1.Oscillator`` and those of ``vines.v1.Ball`` with the number of each ball (``x2_1``), impacts and
+        sticks those of ``vines.v1.BallImpact`` and ``BallStick``.
     provenance : mapping
         Where the numbers come from; values that are not strings are stored as JSON. No wall clock, no host.
     parameters : mapping of str to float
@@ -63,7 +66,8 @@ def write_run(
     system : str, optional
         The system of the run, kept in the metadata ``vines.run``; the VI-NES if left out.
     bare : bool
-        Whether the log also carries the channels with which it explains itself in a viewer without vines.
+        Whether the log also carries the channels with which it explains itself in a viewer without vines. They show
+        one ball: a log of several never has them.
 
     Returns
     -------
@@ -77,8 +81,12 @@ def write_run(
     FileMissingError
         If the folder does not exist.
     """
-    given = {"states": states, "impacts": impacts, "sticks": sticks}
-    rows = [as_rows(given[channel.key], channel) for channel in CHANNELS]
+    several = has_balls(states)
+    if several:
+        rows = ball_rows(states, impacts, sticks)
+    else:
+        every = zip((states, impacts, sticks), CHANNELS, strict=True)
+        rows = [as_rows(array, channel) for array, channel in every]
     about = {"name": name, "kind": "run"}
     if orbit is not None:
         rows.append(as_rows(orbit, ORBIT))
@@ -87,7 +95,7 @@ def write_run(
         about["attractor"] = attractor
     if system is not None:
         about["system"] = system
-    if bare:
+    if bare and not several:
         rows += bare_rows(*(each.values for each in rows[:3]), name, parameters)
     return write_rows(path, rows, about, provenance, parameters, declaration)
 

@@ -13,7 +13,7 @@ from vines.schema._declared import expand
 
 __all__ = ["OF_EACH_SYSTEM", "of_system", "of_systems", "system_table"]
 
-OF_EACH_SYSTEM = ("bifurcations", "branches", "impacts", "orbits", "points")
+OF_EACH_SYSTEM = ("bifurcations", "branches", "impacts", "orbits", "points", "transients")
 """Tables that every system has: the VI-NES under these names, another one with its name before them."""
 
 
@@ -21,7 +21,13 @@ OF_EACH_SYSTEM = ("bifurcations", "branches", "impacts", "orbits", "points")
 def of_systems() -> dict[str, tuple[str, str]]:
     """Return the tables that each system beside the VI-NES has of its own, with the table each is like."""
     others = [name for name in system_names() if name != VI_NES.name]
-    return {f"{system}_{base}": (system, base) for system in others for base in OF_EACH_SYSTEM}
+    return {f"{system}_{base}": (system, base) for system in others for base in _tables_of(system)}
+
+
+def _tables_of(system: str) -> list[str]:
+    """Return the tables that a system has: only what has a damper of its own decays."""
+    decays = "damper_loss" in read_system(system, most_balls(system)).energies.lost
+    return [base for base in OF_EACH_SYSTEM if decays or base != "transients"]
 
 
 def system_table(system: str, base: str) -> str:

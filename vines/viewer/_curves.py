@@ -9,7 +9,7 @@ from vines.model import VI_NES
 from vines.viewer._clock import Clock
 from vines.viewer._style import BALL, BASE, DAMPER, IMPACTS, LEFT, LINE, MASS, RIGHT, SPRING, STORED
 
-__all__ = ["balance", "curves"]
+__all__ = ["balance", "balance_of", "curves", "lines", "running"]
 
 _Colour = tuple[int, int, int]
 _ENERGIES = VI_NES.energies
@@ -29,7 +29,11 @@ def balance(states: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
         In M b² omega0², each 0 at first: ``base_work``, ``damper_loss``, ``impact_loss`` and ``stored`` (change of
         kinetic and potential energy); base_work = damper_loss + impact_loss + stored but for rounding.
     """
-    stored = _stored(states)
+    return balance_of(states, _stored(states))
+
+
+def balance_of(states: dict[str, np.ndarray], stored: np.ndarray) -> dict[str, np.ndarray]:
+    """Return the running energy balance where `stored`, shape (n,), is what is stored."""
     since = {name: states[name] - states[name][0] for name in (*_ENERGIES.gained, *_ENERGIES.lost)}
     return {**since, "stored": stored - stored[0]}
 
@@ -57,24 +61,17 @@ def curves(
         ("ball, x2", x2, BALL),
         ("left end, x1 − 1", x1 - 1.0, LEFT),
     ]
-    _lines(rec, f"{root}/ends", ends, indexes)
-    _lines(rec, f"{root}/w/gap", [("w", states["w"], LINE)], indexes)
-    _lines(rec, f"{root}/w_dot/rate", [("w'", states["w_dot"], LINE)], indexes)
+    lines(rec, f"{root}/ends", ends, indexes)
+    lines(rec, f"{root}/w/gap", [("w", states["w"], LINE)], indexes)
+    lines(rec, f"{root}/w_dot/rate", [("w'", states["w_dot"], LINE)], indexes)
     energies: list[tuple[str, np.ndarray, _Colour]] = [
         ("total", _stored(states), MASS),
         ("mass, v1²/2", states["kinetic_1"], LINE),
         ("spring, (x1 − e)²/2", states["potential"], SPRING),
         ("ball, µ v2²/2", states["kinetic_2"], BALL),
     ]
-    _lines(rec, f"{root}/energy", energies, indexes)
-    parts = balance(states)
-    running: list[tuple[str, np.ndarray, _Colour]] = [
-        ("work of the base", parts["base_work"], BASE),
-        ("lost in the damper", parts["damper_loss"], DAMPER),
-        ("lost in impacts", parts["impact_loss"], IMPACTS),
-        ("stored", parts["stored"], STORED),
-    ]
-    _lines(rec, f"{root}/balance", running, indexes)
+    lines(rec, f"{root}/energy", energies, indexes)
+    running(rec, root, balance(states), indexes)
 
     for name, side, colour in (("left", 1, LEFT), ("right", -1, RIGHT)):
         hits = impacts["side"] == side
@@ -94,7 +91,18 @@ def curves(
             rec.send_columns(marks, indexes=times, columns=rr.Scalars.columns(scalars=values[hits]))
 
 
-def _lines(
+def running(rec: rr.RecordingStream, root: str, parts: dict[str, np.ndarray], indexes: list[rr.TimeColumn]) -> None:
+    """Send the curves of the running balance."""
+    series: list[tuple[str, np.ndarray, _Colour]] = [
+        ("work of the base", parts["base_work"], BASE),
+        ("lost in the damper", parts["damper_loss"], DAMPER),
+        ("lost in impacts", parts["impact_loss"], IMPACTS),
+        ("stored", parts["stored"], STORED),
+    ]
+    lines(rec, f"{root}/balance", series, indexes)
+
+
+def lines(
     rec: rr.RecordingStream,
     path: str,
     series: list[tuple[str, np.ndarray, _Colour]],

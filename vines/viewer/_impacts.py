@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 import rerun as rr
 
 from vines.viewer._clock import Clock
 from vines.viewer._scene import write
-from vines.viewer._style import BALL, GRID, LEFT, RIGHT
+from vines.viewer._style import BALL, BALLS, GRID, LEFT, RIGHT
 
 __all__ = ["DIAL_BOUNDS", "LANES", "dial", "lanes"]
 
@@ -28,7 +30,8 @@ def dial(
 ) -> None:
     """Draw the phase of the forcing as a hand, that of each impact as a mark, counter-clockwise from the right.
 
-    Parameters are those of `vines.viewer._scene.cavity`; `impacts` has the columns of ``vines.v1.Impact``.
+    Parameters are those of `vines.viewer._scene.cavity`; `impacts` has the columns of ``vines.v1.Impact``. Marks have
+    the colour of the side, of several balls that of the ball.
     """
     # Beneath the origin of the view, whose own transform would not show; y points down in Rerun.
     root = f"{root}/face"
@@ -52,8 +55,7 @@ def dial(
     rec.log(f"{root}/hand", style, static=True)
     rec.send_columns(f"{root}/hand", indexes=clock.columns(states["t"]), columns=rr.LineStrips2D.columns(strips=hand))
 
-    for name, side, colour, radius in _SIDES:
-        hits = impacts["side"] == side
+    for name, hits, colour, radius in _marks(impacts):
         if not hits.any():
             continue
         angle = impacts["phase"][hits]
@@ -74,6 +76,18 @@ def dial(
             indexes=clock.columns(impacts["t"][hits]),
             columns=rr.Points2D.columns(positions=marks.astype(np.float32)),
         )
+
+
+def _marks(impacts: dict[str, np.ndarray]) -> Sequence[tuple[str, np.ndarray, tuple[int, int, int], float]]:
+    """Return name, impacts, colour and radius of each kind of mark on the dial."""
+    of_side = [(name, impacts["side"] == side, colour, radius) for name, side, colour, radius in _SIDES]
+    if "ball" not in impacts:
+        return of_side
+    return [
+        (f"{name}_{ball}", hits & (impacts["ball"] == ball), BALLS[ball - 1], radius)
+        for ball in np.unique(impacts["ball"]).tolist()
+        for name, hits, _, radius in of_side
+    ]
 
 
 def lanes(

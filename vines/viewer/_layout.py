@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import rerun.blueprint as rrb
 from rerun.blueprint.encodings import TimelineColumn
 
+from vines.viewer._balls import lanes_range, track
 from vines.viewer._clock import CYCLE, IMPACT, SIM_TIME
 from vines.viewer._impacts import DIAL_BOUNDS, LANES
 from vines.viewer._scene import PHASE_BOUNDS, cavity_bounds
@@ -21,6 +22,8 @@ _TRAIL = 0.25
 """Length of the trail in the phase plane, in forcing cycles."""
 _LEGEND = 0.4
 """Room that a still picture leaves for a legend, as a part of the run."""
+_LOW = 0.3
+"""Room below the ruler in a low view of a cavity, b."""
 _DARK = [13, 17, 23]
 
 
@@ -43,7 +46,9 @@ class Shown:
     kind : str
         ``"run"``, ``"orbit"`` or ``"rig"``.
     parts : tuple of str
-        Of a rig, the curves that there are.
+        Of a rig, the curves that there are; of a run with several balls, what the track of each is called.
+    longest : float
+        Half the length of the longest cavity, b.
     """
 
     root: str
@@ -54,6 +59,12 @@ class Shown:
     reach: float = 1.0
     kind: str = "run"
     parts: tuple[str, ...] = ()
+    longest: float = 1.0
+
+    @property
+    def several(self) -> bool:
+        """Whether the run has balls with numbers."""
+        return self.kind != "rig" and bool(self.parts)
 
 
 def blueprint(runs: Sequence[Shown], *, still: bool = False) -> rrb.Blueprint:
@@ -85,14 +96,15 @@ def blueprint(runs: Sequence[Shown], *, still: bool = False) -> rrb.Blueprint:
 
 def _alone(run: Shown, still: bool) -> rrb.Horizontal:
     """Return the views of one run."""
+    ends, shares = ([], [1.8]) if run.several else ([_ends(run, still)], [2.3, 1.8])
     return rrb.Horizontal(
         rrb.Vertical(
-            cavity_view(run),
-            _ends(run, still),
+            *_cavities(run),
+            *ends,
             _gap(run, still),
             _rate(run, still),
             _lanes(run, still),
-            row_shares=[2.7, 2.3, 1.8, 1.8, 1.3],
+            row_shares=[*_shares(run, 2.7), *shares, 1.8, _lanes_share(run)],
         ),
         rrb.Vertical(_phase(run), _energy(run, still), _balance(run, still), row_shares=[4.4, 2.6, 2.6]),
         rrb.Vertical(_dial(run), _about(run), _impacts(run), row_shares=[3.4, 3.9, 2.6]),
@@ -104,14 +116,28 @@ def _column(run: Shown, still: bool) -> rrb.Vertical:
     """Return one of several runs beside each other."""
     more = rrb.Tabs(_impacts(run), _about(run), _energy(run, still), _balance(run, still))
     return rrb.Vertical(
-        cavity_view(run),
+        *_cavities(run),
         rrb.Horizontal(_phase(run), _dial(run), column_shares=[1.5, 1.0]),
         _gap(run, still),
         _rate(run, still),
         _lanes(run, still),
         more,
-        row_shares=[2.5, 3.6, 1.7, 1.7, 1.3, 1.9],
+        row_shares=[*_shares(run, 2.5), 3.6, 1.7, 1.7, _lanes_share(run), 1.9],
     )
+
+
+def _cavities(run: Shown) -> list[rrb.Spatial2DView]:
+    """Return the views of cavity and ball, one above the other where there are several."""
+    return [_track(run, ball, label) for ball, label in enumerate(run.parts, 1)] if run.several else [cavity_view(run)]
+
+
+def _shares(run: Shown, one: float) -> list[float]:
+    """Return the heights of the views of the cavities, of which a single one would have the height `one`."""
+    return [1.9 if len(run.parts) == 2 else 5.0 / len(run.parts)] * len(run.parts) if run.several else [one]
+
+
+def _lanes_share(run: Shown) -> float:
+    return 0.9 + 0.3 * len(run.parts) if run.several else 1.3
 
 
 def _measured(run: Shown, still: bool) -> rrb.Horizontal:
@@ -122,21 +148,31 @@ def _measured(run: Shown, still: bool) -> rrb.Horizontal:
 
 def cavity_view(run: Shown) -> rrb.Spatial2DView:
     """Return the view of cavity and ball."""
-    (left, right), (top, bottom) = cavity_bounds(run.reach)
+    return _drawn(run, f"{run.root}/cavity", run.name)
+
+
+def _track(run: Shown, ball: int, label: str) -> rrb.Spatial2DView:
+    return _drawn(run, track(run.root, ball), label, _LOW)
+
+
+def _drawn(run: Shown, origin: str, name: str, more: float = 0.0) -> rrb.Spatial2DView:
+    """Return a view of cavity and ball, with `more` room for the ruler's numbers where it is low."""
+    (left, right), (top, bottom) = cavity_bounds(run.reach, run.longest)
     return rrb.Spatial2DView(
-        origin=f"{run.root}/cavity",
-        name=f"{CAVITY}: {run.name}",
+        origin=origin,
+        name=f"{CAVITY}: {name}",
         background=_DARK,
-        visual_bounds=rrb.VisualBounds2D(x_range=(left, right), y_range=(top, bottom)),
+        visual_bounds=rrb.VisualBounds2D(x_range=(left, right), y_range=(top, bottom + more)),
     )
 
 
 def _phase(run: Shown) -> rrb.Spatial2DView:
     (left, right), (top, bottom) = PHASE_BOUNDS
     back = {SIM_TIME: _TRAIL * run.period, CYCLE: _TRAIL, IMPACT: 1.0}
+    across = "w/β across, w' up" if run.several else "w across, w' up, trail of a quarter cycle"
     return rrb.Spatial2DView(
         origin=f"{run.root}/phase",
-        name=f"{PLANE}: w across, w' up, trail of a quarter cycle",
+        name=f"{PLANE}: {across}",
         background=_DARK,
         visual_bounds=rrb.VisualBounds2D(x_range=(left, right), y_range=(top, bottom)),
         time_ranges=[
@@ -179,14 +215,23 @@ def _ends(run: Shown, still: bool) -> rrb.TimeSeriesView:
 
 
 def _gap(run: Shown, still: bool) -> rrb.TimeSeriesView:
+    if run.several:
+        return _series(run, "w", "Gaps w/β: +1 is an impact on L (▲), −1 on R (▼)", still)
     return _series(run, "w", "Gap w = x1 − x2: +1 is an impact on L (red), −1 on R (blue)", still, legend=False)
 
 
 def _rate(run: Shown, still: bool) -> rrb.TimeSeriesView:
+    if run.several:
+        return _series(
+            run, "w_dot", "Rates of the gaps w', marked just before impacts on L (▲) and R (▼)", still, False
+        )
     return _series(run, "w_dot", "Rate of the gap w', marked just before impacts on L (red) and R (blue)", still, False)
 
 
 def _lanes(run: Shown, still: bool) -> rrb.TimeSeriesView:
+    if run.several:
+        name = "Impacts ball by ball, on L (▲) and R (▼); bars: the ball sticks"
+        return _series(run, "lanes", name, still, legend=False, span=lanes_range(len(run.parts)))
     name = "Impacts on L (above) and R (below); bars: the ball sticks"
     return _series(run, "lanes", name, still, legend=False, span=LANES)
 

@@ -35,8 +35,8 @@ def check_overlay(logs: Sequence[Log]) -> None:
     Raises
     ------
     ViewerError
-        If there are fewer than two or more than there are colours, one is not of the model's quantities, or their
-        forcing differs, so that their phases run apart.
+        If there are fewer than two or more than there are colours, one is not of the model's quantities or has several
+        balls, or their forcing differs, so that their phases run apart.
     """
     if not 2 <= len(logs) <= len(OVERLAID):
         raise ViewerError(f"--overlay lays 2 to {len(OVERLAID)} runs over each other, {len(logs)} were named")
@@ -45,6 +45,8 @@ def check_overlay(logs: Sequence[Log]) -> None:
             raise ViewerError(
                 f"{log.name} is what sensors measured; its reconstructed run is in the stage of kind compare"
             )
+        if log.balls:
+            raise ViewerError(f"{log.name} has {len(log.balls)} balls; --overlay lays runs of one ball over each other")
     pace = [log.parameters.get("Omega") for log in logs]
     if len(set(pace)) > 1:
         raise ViewerError(f"Omega is {' and '.join(map(str, pace))}; runs laid over each other need one and the same")

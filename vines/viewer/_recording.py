@@ -6,6 +6,7 @@ import hashlib
 import math
 import re
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -15,6 +16,7 @@ import rerun as rr
 
 from vines.errors import ViewerError
 from vines.logs import Log
+from vines.viewer._balls import half_of, send_balls, track_labels
 from vines.viewer._clock import Clock
 from vines.viewer._curves import curves
 from vines.viewer._foreign import write_foreign
@@ -83,7 +85,11 @@ def _shown(root: str, log: Log) -> Shown:
     times = log.states["t"].to_numpy()
     period = 2 * math.pi / log.parameters.get("Omega", 1.0)
     reach = float(np.abs(log.states["x1"].to_numpy()).max())
-    return Shown(root, _title(log), float(times[0]), float(times[-1]), period, reach, log.kind)
+    shown = Shown(root, _title(log), float(times[0]), float(times[-1]), period, reach, log.kind)
+    if log.balls:
+        longest = max(half_of(log, ball) for ball in log.balls)
+        return replace(shown, parts=track_labels(log), longest=longest)
+    return shown
 
 
 def _title(log: Log) -> str:
@@ -99,6 +105,10 @@ def _send(rec: rr.RecordingStream, root: str, log: Log) -> None:
     states, impacts = _columns(log.states), _columns(log.impacts)
     start, end = float(states["t"][0]), float(states["t"][-1])
     clock = Clock(start, float(states["phase"][0]), log.parameters.get("Omega"), impacts["t"], end)
+    if log.balls:
+        send_balls(rec, root, log, states, impacts, clock)
+        send_impact_log(rec, f"{root}/impacts", impacts, clock)
+        return
     cavity(rec, f"{root}/cavity", states, clock)
     phase_plane(rec, f"{root}/phase", states, impacts, clock)
     curves(rec, root, states, impacts, clock)

@@ -13,7 +13,7 @@ import rerun as rr
 from vines.viewer._clock import Clock
 from vines.viewer._style import BALL, BASE, GRID, LEFT, LINE, MASS, RIGHT, SPRING, TRAIL
 
-__all__ = ["PHASE_BOUNDS", "cavity", "cavity_bounds", "phase_plane", "write"]
+__all__ = ["PHASE_BOUNDS", "cavity", "cavity_bounds", "move", "phase_frame", "phase_plane", "stretch_of", "write"]
 
 _RADIUS = 0.09
 _WALL = 0.07
@@ -29,22 +29,39 @@ _HIGHEST = 0.75
 """Height in the phase plane at which the largest ``|w'|`` of a run is drawn."""
 
 
-def cavity_bounds(reach: float) -> tuple[tuple[float, float], tuple[float, float]]:
-    """Return what the view of the cavity shows, x and y, of a run whose mass moves no further than `reach` (in b).
+def cavity_bounds(reach: float, longest: float = 1.0) -> tuple[tuple[float, float], tuple[float, float]]:
+    """Return what the view of a cavity shows, x and y (in b).
+
+    Parameters
+    ----------
+    reach : float
+        How far the mass moves.
+    longest : float
+        Half the length of the longest cavity, so that all are seen alike.
 
     Examples
     --------
     >>> cavity_bounds(1.0)
     ((-3.2, 2.4), (-0.85, 1.05))
     """
-    return (-_mount(reach) - 0.3, reach + 1.4), _CAVITY_HEIGHT
+    more = longest - 1.0
+    return (-_mount(reach + more) - 0.3, reach + more + 1.4), _CAVITY_HEIGHT
 
 
 def _mount(reach: float) -> float:
     return reach + _MOUNT
 
 
-def cavity(rec: rr.RecordingStream, root: str, states: dict[str, np.ndarray], clock: Clock) -> None:
+def cavity(
+    rec: rr.RecordingStream,
+    root: str,
+    states: dict[str, np.ndarray],
+    clock: Clock,
+    *,
+    half: float = 1.0,
+    longest: float = 1.0,
+    colour: tuple[int, int, int] = BALL,
+) -> None:
     """Draw the shaken base, the spring, the mass with its cavity, and the ball.
 
     Parameters
@@ -57,37 +74,41 @@ def cavity(rec: rr.RecordingStream, root: str, states: dict[str, np.ndarray], cl
         Columns of ``vines.v1.State``, n > 0.
     clock : Clock
         Gives rows their times.
+    half, longest : float
+        Half the length of this cavity and of the longest one, in b.
+    colour : tuple of int
+        Of the ball.
     """
     x1, x2, base = states["x1"], states["x2"], states["base"]
-    mount = -_mount(float(np.abs(x1).max()))
+    mount = -_mount(float(np.abs(x1).max()) + (longest - 1.0))
     indexes = clock.columns(states["t"])
-    inner = 1.0 + _RADIUS
+    inner = half + _RADIUS
     outer = inner + 2 * _WALL
-    for name, sign, colour in (("left", -1, LEFT), ("right", 1, RIGHT)):
+    for name, sign, of_wall in (("left", -1, LEFT), ("right", 1, RIGHT)):
         x = sign * (inner + _WALL)
         rec.log(
             f"{root}/mass/{name}",
-            rr.LineStrips2D([[(x, -_HEIGHT + _WALL), (x, _HEIGHT - _WALL)]], radii=_WALL, colors=colour),
+            rr.LineStrips2D([[(x, -_HEIGHT + _WALL), (x, _HEIGHT - _WALL)]], radii=_WALL, colors=of_wall),
             static=True,
         )
     shell = [[(-outer, y), (outer, y)] for y in (-_HEIGHT - 0.04, _HEIGHT + 0.04)]
     rec.log(f"{root}/mass/shell", rr.LineStrips2D(shell, radii=0.04, colors=MASS), static=True)
     write(rec, f"{root}/mass/names", [(-inner - _WALL, -0.64), (inner + _WALL, -0.64)], ["L", "R"])
-    _move(rec, f"{root}/mass", indexes, x1)
+    move(rec, f"{root}/mass", indexes, x1)
 
-    rec.log(f"{root}/ball", rr.Points2D([(0.0, 0.0)], radii=_RADIUS, colors=BALL, draw_order=40.0), static=True)
-    _move(rec, f"{root}/ball", indexes, x2)
+    rec.log(f"{root}/ball", rr.Points2D([(0.0, 0.0)], radii=_RADIUS, colors=colour, draw_order=40.0), static=True)
+    move(rec, f"{root}/ball", indexes, x2)
 
     wall = [[(0.0, -_HEIGHT - 0.1), (0.0, _HEIGHT + 0.1)]]
     rec.log(f"{root}/base", rr.LineStrips2D(wall, radii=0.05, colors=BASE), static=True)
-    _move(rec, f"{root}/base", indexes, mount + base)
+    move(rec, f"{root}/base", indexes, mount + base)
 
     turns = np.concatenate([[0.0, 0.12], np.linspace(0.16, 0.84, 13), [0.88, 1.0]])
     sway = np.concatenate([[0.0, 0.0], 0.14 * (-1.0) ** np.arange(13), [0.0, 0.0]])
     coil = np.column_stack([turns, sway])
     rec.log(f"{root}/spring", rr.LineStrips2D([coil], radii=rr.Radius.ui_points(1.2), colors=SPRING), static=True)
     length = x1 - outer - (mount + base)
-    _move(rec, f"{root}/spring", indexes, mount + base, scale=length)
+    move(rec, f"{root}/spring", indexes, mount + base, scale=length)
 
     reach = max(2.0, float(np.ceil(np.abs(np.concatenate([x1, x2])).max())))
     ticks = np.arange(-reach, reach + 0.5)
@@ -111,11 +132,10 @@ def phase_plane(
     path = np.column_stack([states["w"], states["w_dot"]])
     after = impacts["v1_after"] - impacts["v2_after"]
     fastest = float(np.abs(np.concatenate([states["w_dot"], impacts["w_dot"], after])).max()) or 1.0
-    stretch = _HIGHEST / fastest
+    stretch = stretch_of(fastest)
     # Beneath the origin of the view, whose own transform would not show.
     root = f"{root}/plane"
     rec.log(root, rr.Transform3D(scale=[1.0, -stretch, 1.0]), static=True)
-    thin = rr.Radius.ui_points(0.8)
     rec.log(
         f"{root}/orbit",
         rr.LineStrips2D([path], radii=rr.Radius.ui_points(1.0), colors=LINE, draw_order=10.0),
@@ -135,7 +155,7 @@ def phase_plane(
         rr.Points2D([(0.0, 0.0)], radii=rr.Radius.ui_points(6.0), colors=BALL, draw_order=40.0),
         static=True,
     )
-    _move(rec, f"{root}/now", indexes, path[:, 0], path[:, 1])
+    move(rec, f"{root}/now", indexes, path[:, 0], path[:, 1])
 
     for name, side, colour in (("left", 1, LEFT), ("right", -1, RIGHT)):
         hits = impacts["side"] == side
@@ -148,6 +168,17 @@ def phase_plane(
                 rr.Points2D(np.concatenate([marks, leaves]), radii=size, colors=colour, draw_order=30.0),
                 static=True,
             )
+    phase_frame(rec, root, fastest)
+
+
+def stretch_of(fastest: float) -> float:
+    """Return by how much ``w'`` is stretched in a phase plane in which ``|w'|`` goes up to `fastest`."""
+    return _HIGHEST / fastest
+
+
+def phase_frame(rec: rr.RecordingStream, root: str, fastest: float, across: str = "w") -> None:
+    """Draw walls, axes and numbers of a phase plane of `across` and ``w'`` in which ``|w'|`` goes up to `fastest`."""
+    thin = rr.Radius.ui_points(0.8)
     top = fastest * 1.12
     frame = [
         [(-1.0, -top), (-1.0, top)],
@@ -163,10 +194,15 @@ def phase_plane(
     step = _step(fastest)
     marks = np.arange(-np.floor(fastest / step), np.floor(fastest / step) + 0.5) * step
     write(rec, f"{root}/frame/w_dot", [(-1.18, v) for v in marks], [f"{v:.3g}" for v in marks])
-    write(rec, f"{root}/frame/w", [(x, -top * 1.13) for x in (-1.0, 0.0, 1.0)], ["R  w = −1", "0", "L  w = +1"])
+    write(
+        rec,
+        f"{root}/frame/w",
+        [(x, -top * 1.13) for x in (-1.0, 0.0, 1.0)],
+        [f"R  {across} = −1", "0", f"L  {across} = +1"],
+    )
 
 
-def _move(
+def move(
     rec: rr.RecordingStream,
     path: str,
     indexes: list[rr.TimeColumn],

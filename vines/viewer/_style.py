@@ -4,6 +4,7 @@ from __future__ import annotations
 
 __all__ = [
     "BALL",
+    "BALLS",
     "BASE",
     "CAVITY",
     "DAMPER",
@@ -25,6 +26,11 @@ __all__ = [
 LEFT = (240, 82, 79)
 RIGHT = (77, 148, 255)
 BALL = (255, 200, 60)
+BALLS = (
+    *(BALL, (255, 128, 200), (160, 230, 90), (172, 146, 255)),
+    *((72, 226, 206), (255, 150, 80), (226, 230, 236), (196, 156, 112)),
+)
+"""Of several balls, unlike the ends of their cavities; the side of an impact is then its shape."""
 MASS = (214, 220, 228)
 SPRING = (150, 160, 172)
 BASE = (110, 200, 140)

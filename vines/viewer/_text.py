@@ -8,7 +8,7 @@ import rerun as rr
 from vines.logs import Log
 from vines.model import VI_NES
 from vines.viewer._clock import Clock
-from vines.viewer._style import LEFT, RIGHT
+from vines.viewer._style import BALLS, LEFT, RIGHT
 
 __all__ = ["about", "impact_lines", "send_impact_log"]
 
@@ -33,15 +33,18 @@ def impact_lines(impacts: dict[str, np.ndarray]) -> list[str]:
 
 
 def send_impact_log(rec: rr.RecordingStream, path: str, impacts: dict[str, np.ndarray], clock: Clock) -> None:
-    """Send the impacts as a text log, L in red and R in blue; nothing is sent where there is none."""
+    """Send the impacts as a text log, L in red and R in blue, of several balls in their colours.
+
+    Nothing is sent where there is none.
+    """
     if not len(impacts["t"]):
         return
-    left = impacts["side"] == 1
-    columns = rr.TextLog.columns(
-        text=impact_lines(impacts),
-        level=list(VI_NES.letters(impacts["side"])),
-        color=np.where(left[:, None], LEFT, RIGHT).astype(np.uint8),
-    )
+    colours = np.where((impacts["side"] == 1)[:, None], LEFT, RIGHT)
+    letters = list(VI_NES.letters(impacts["side"]))
+    if "ball" in impacts:
+        colours = np.array(BALLS)[impacts["ball"] - 1]
+        letters = [f"{letter}{ball}" for letter, ball in zip(letters, impacts["ball"], strict=True)]
+    columns = rr.TextLog.columns(text=impact_lines(impacts), level=letters, color=colours.astype(np.uint8))
     rec.send_columns(path, indexes=clock.columns(impacts["t"]), columns=columns)
 
 
@@ -72,6 +75,9 @@ def _counts(log: Log) -> list[tuple[str, str]]:
     if "Omega" in log.parameters:
         rows.append(("forcing cycles", f"{(times[-1] - times[0]) * log.parameters['Omega'] / (2 * np.pi):.4g}"))
     rows.append(("impacts on L and R", f"{(sides == 1).sum()} and {(sides == -1).sum()}"))
+    for ball in log.balls:
+        own = sides[log.impacts["ball"].to_numpy() == ball]
+        rows.append((f"those of ball {ball}", f"{(own == 1).sum()} and {(own == -1).sum()}"))
     rows.append(("sticks", str(log.sticks.num_rows)))
     return rows
 
@@ -83,8 +89,12 @@ def _named(symbol: str) -> str:
     --------
     >>> _named("mu")
     'mu, mass ratio'
+    >>> _named("mu_2")
+    'mu_2, mass ratio'
     """
-    return f"{symbol}, {_MEANINGS[symbol]}" if symbol in _MEANINGS else symbol
+    base, _, number = symbol.rpartition("_")
+    meant = base if number.isdecimal() else symbol
+    return f"{symbol}, {_MEANINGS[meant]}" if meant in _MEANINGS else symbol
 
 
 def _short(text: str, most: int = 24) -> str:

@@ -39,7 +39,8 @@ def test_the_quantised_top_of_a_sine_is_no_clipping(bits, samples, amplitude, ph
 def test_a_sine_that_is_cut_off_is_clipped(bits, samples, amplitude, phase, depth):
     values, cut = record(bits, samples, amplitude, phase, clip=depth * amplitude)
     lost = flat_ends(values)
-    assert lost[cut].all()
+    # Of a stretch that the record begins or ends in, fewer samples than make it flat may be there.
+    assert lost[2:-2][cut[2:-2]].all()
     assert lost.sum() <= cut.sum() + 0.2 * len(values)
 
 

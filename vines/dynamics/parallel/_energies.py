@@ -17,7 +17,7 @@ from vines.dynamics.parallel._constants import ParallelConstants, frame_with, ri
 from vines.dynamics.parallel._layout import BALL, R_V2, R_X2, TIES
 from vines.kernels import linked_njit, njit, zero_vector
 
-__all__ = ["EACH", "IMPACTS_LEFT", "IMPACTS_RIGHT", "LOSS_LEFT", "LOSS_RIGHT", "S_TIES", "V2_SQUARE"]
+__all__ = ["EACH", "IMPACTS_LEFT", "IMPACTS_RIGHT", "LOSS_LEFT", "LOSS_RIGHT", "S_TIES", "V2_SQUARE", "add_motion"]
 
 S_TIES = TOTALS
 """Entry of the totals of a window behind those of one ball: impacts that came together with another."""
@@ -56,7 +56,7 @@ def _event_work(c, row):
 
 
 @linked_njit
-def _add(c, out, row, begins, low, length):
+def add_motion(c, out, row, begins, low, length):
     """Add the motion from `low` to `length` after a row to the totals."""
     mode = row[MODE]
     o = frame_with(c, mode)
@@ -158,7 +158,7 @@ def _window_totals(c, rows, n, start, stop):
         if not opened:
             opened = True
             energy = _energy(c, rows[i], low)
-        _add(c, out, rows[i], begins, low, length)
+        add_motion(c, out, rows[i], begins, low, length)
         if ends >= stop or i == n - 2:
             # An event that ends the window belongs to it.
             whole = i == n - 2 and ends <= stop

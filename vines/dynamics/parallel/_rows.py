@@ -1,4 +1,4 @@
-"""Rows of events of several balls, and the state of all of them at any time."""
+"""Rows of events of several balls."""
 
 from __future__ import annotations
 
@@ -7,9 +7,9 @@ from vines.dynamics._flight import advance_phase, derivatives, flight, flown, fr
 from vines.dynamics._window import width_of, write_end
 from vines.dynamics.parallel._constants import ParallelConstants, ParallelTable, frame_with
 from vines.dynamics.parallel._layout import B_MODE, B_RUN, B_V2, B_WALL, B_X2, BALL, BEFORE, R_V2, R_X2, TIES, at
-from vines.kernels import entry_njit, fused_njit, linked_njit, njit
+from vines.kernels import fused_njit, linked_njit, njit
 
-__all__ = ["modes_of", "place_balls", "sample_balls", "write"]
+__all__ = ["modes_of", "place_balls", "write"]
 
 
 @njit
@@ -78,22 +78,3 @@ def _write_end(c, state, end, last):
             last[R_X2 + 2 * i], last[R_V2 + 2 * i] = state[at(i, B_X2)] + way, speed
     last[col.X2], last[col.V2], last[col.A_V2] = last[R_X2], last[R_V2], last[R_V2]
     last[BALL], last[BEFORE] = 1.0, modes
-
-
-@entry_njit
-def sample_balls(c, rows, segment, tau, out):
-    """Fill out[:, :] with x1, v1, phase, the set of riding balls and x2, v2 of each at times since given rows."""
-    for k in range(segment.shape[0]):
-        row = rows[segment[k]]
-        modes = row[col.MODE]
-        o = frame_with(c, modes)
-        motion = flown(c, o, flight(c, o, row[col.X1], row[col.A_V1], row[col.PHASE], row[col.TIME]), tau[k])
-        x, v, _, _, _ = derivatives(o, c.Omega, *motion)
-        out[k, 0], out[k, 1], out[k, 2], out[k, 3] = x, v, advance_phase(row[col.PHASE], c.Omega * tau[k]), modes
-        ride = int(abs(modes))
-        for i in range(len(c.mu)):
-            if ride & (1 << i):
-                out[k, 4 + 2 * i], out[k, 5 + 2 * i] = x - (c.beta[i] if modes > 0.0 else -c.beta[i]), v
-            else:
-                way, speed = free_ball(c, row[R_V2 + 2 * i], tau[k])
-                out[k, 4 + 2 * i], out[k, 5 + 2 * i] = row[R_X2 + 2 * i] + way, speed

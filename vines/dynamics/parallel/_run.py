@@ -13,12 +13,12 @@ import numpy.typing as npt
 from vines.dynamics import _advance as col
 from vines.dynamics import _totals as entry
 from vines.dynamics._measures import Measures
-from vines.dynamics._room import constants
+from vines.dynamics._room import constants, room_of
+from vines.dynamics._trajectory import STICK as SPELL
 from vines.dynamics._trajectory import Table, Trajectory
 from vines.dynamics.parallel import _energies as own
 from vines.dynamics.parallel._layout import BALL
-from vines.dynamics.parallel._rows import sample_balls
-from vines.errors import StateError
+from vines.dynamics.parallel._samples import FIRST_BALL, sample_balls
 
 __all__ = ["BallMeasures", "ParallelMeasures", "ParallelRun", "parallel_measures"]
 
@@ -104,71 +104,71 @@ def parallel_measures(p: Any, totals: npt.NDArray[np.float64]) -> ParallelMeasur
     )
 
 
-STICK = np.dtype([("ball", "i8"), ("side", "i1"), ("t_start", "f8"), ("t_release", "f8"), ("impacts", "i8")])
+STICK = np.dtype([("ball", "i8"), *SPELL.descr])
 
 
 class ParallelRun(Trajectory):
-    """One run with several balls; see `Trajectory`. Impacts have the number of the ball, and how many hit with it."""
+    """One run with several balls; see `Trajectory`. Impacts have the number of the ball, and how many hit with it.
+
+    Samples have t, x1, v1, phase [rad], base (A sin phase), kinetic_1, potential (of the spring), since the start of
+    the run base_work, damper_loss and impact_loss, and of each ball k x2_k, v2_k, w_k = x1 - x2_k, w_dot_k, its kinetic
+    energy kinetic_2_k, potential_2_k = mu G x2 and stuck_k (the wall; 0 in flight). Those at events are just before the
+    first and just after the last event of an instant.
+    """
 
     @cached_property
     def sticks(self) -> Table:
-        """Spells of sticking: ball, side, times of merge and release (nan if it rides still), impacts before."""
-        found: list[tuple[int, int, float, float, int]] = []
+        """Spells of sticking: ball, and as of one ball, with the time of the merge; no release while it rides still."""
+        found: list[tuple[float, ...]] = []
         open_at: dict[int, int] = {}
         for row in self.rows[np.isin(self.rows[:, col.KIND], (col.STICK, col.IMPACT, col.RELEASE))]:
-            ball = int(row[BALL])
+            ball, now, phase = int(row[BALL]), float(row[col.TIME]), float(row[col.PHASE])
             if row[col.KIND] == col.STICK:
                 open_at[ball] = len(found)
-                found.append((ball, int(row[col.SIDE]), float(row[col.TIME]), math.nan, int(row[col.RUN])))
+                found.append((ball, int(row[col.SIDE]), now, math.nan, phase, math.nan, int(row[col.RUN])))
             elif ball in open_at:
                 at = open_at.pop(ball)
-                found[at] = (*found[at][:3], float(row[col.TIME]), found[at][4])
+                merge = found[at]
+                found[at] = (*merge[:3], now, merge[4], phase, merge[6])
         return np.array(found, dtype=STICK)
 
-    def sample(
+    def _instants(self) -> tuple[npt.NDArray[np.int64], npt.NDArray[np.int64]]:
+        # Between events of one instant the balls are in no state that could be told alone.
+        events, _ = super()._instants()
+        follows = np.append(self.rows[events[1:], col.TAU] == 0.0, False) & np.append(np.diff(events) == 1, False)
+        return events[~np.append(False, follows[:-1])], events[~follows]
+
+    def _fill(
         self,
-        n: int | None = None,
-        *,
-        times: npt.ArrayLike | None = None,
-        per_period: int | None = None,
-        at_events: bool = False,
+        t: npt.NDArray[np.float64],
+        segment: npt.NDArray[np.int64],
+        tau: npt.NDArray[np.float64],
+        before: npt.NDArray[np.bool_],
     ) -> Table:
-        """Return the state at chosen times, from the closed forms.
-
-        Parameters
-        ----------
-        n, times, per_period
-            As for `Trajectory.sample`.
-        at_events : bool
-            Has to be False: an instant may have many events here.
-
-        Returns
-        -------
-        structured ndarray
-            t, x1, v1, phase [rad], and of each ball k x2_k, v2_k, w_k = x1 - x2_k, stuck_k (0 in flight, else the wall).
-
-        Raises
-        ------
-        StateError
-            If times lie outside the run, more than one of n, times, per_period is given, or events are asked for.
-        """
-        if at_events:
-            raise StateError("samples at events are not made of several balls; see `impacts` and `sticks`")
-        chosen = self._times(n, times, per_period)
-        begins = self.rows[:, col.TIME]
-        segment = np.clip(np.searchsorted(begins, chosen, side="right") - 1, 0, len(begins) - 1)
-        balls = self.params.balls
-        raw = np.empty((len(chosen), 4 + 2 * balls))
-        sample_balls(constants(self.params), self.rows, segment, np.maximum(chosen - begins[segment], 0.0), raw)
-        own = [(f"{name}_{k}", form) for k in range(1, balls + 1) for name, form in _OF_A_BALL]
-        out = np.empty(len(chosen), dtype=[(name, "f8") for name in ("t", "x1", "v1", "phase")] + own)
-        out["t"], out["x1"], out["v1"], out["phase"] = chosen, *raw[:, :3].T
-        for k in range(balls):
-            out[f"x2_{k + 1}"], out[f"v2_{k + 1}"] = raw[:, 4 + 2 * k], raw[:, 5 + 2 * k]
-            out[f"w_{k + 1}"] = raw[:, 0] - raw[:, 4 + 2 * k]
-            rides = np.abs(raw[:, 3]).astype(np.int64) >> k & 1
-            out[f"stuck_{k + 1}"] = rides * np.sign(raw[:, 3]).astype(np.int64)
+        p = self.params
+        raw = np.empty((len(t), FIRST_BALL + 2 * p.balls))
+        sample_balls(constants(p), self.rows, segment, tau, before, raw)
+        own = [(f"{name}_{k}", form) for k in range(1, p.balls + 1) for name, form in _OF_A_BALL]
+        out = np.empty(len(t), dtype=[(name, "f8") for name in _OF_THE_FRAME] + own)
+        out["t"], out["x1"], out["v1"], out["phase"] = t, *raw[:, :3].T
+        out["base_work"], out["damper_loss"], out["impact_loss"] = raw[:, 4:FIRST_BALL].T
+        out["base"] = room_of(p).base(p, out["phase"])
+        out["kinetic_1"], out["potential"] = 0.5 * out["v1"] ** 2, 0.5 * (out["x1"] - out["base"]) ** 2
+        modes = raw[:, 3].astype(np.int64)
+        for k, mu in enumerate(p.mu, start=1):
+            x2, v2 = raw[:, FIRST_BALL + 2 * (k - 1)], raw[:, FIRST_BALL + 1 + 2 * (k - 1)]
+            out[f"x2_{k}"], out[f"v2_{k}"] = x2, v2
+            out[f"w_{k}"], out[f"w_dot_{k}"] = out["x1"] - x2, out["v1"] - v2
+            out[f"kinetic_2_{k}"], out[f"potential_2_{k}"] = 0.5 * mu * v2**2, mu * p.G * x2
+            out[f"stuck_{k}"] = (np.abs(modes) >> (k - 1) & 1) * np.sign(modes)
         return out
 
 
-_OF_A_BALL = (("x2", "f8"), ("v2", "f8"), ("w", "f8"), ("stuck", "i1"))
+_OF_THE_FRAME = (
+    *("t", "x1", "v1", "phase", "base", "kinetic_1", "potential"),
+    *("base_work", "damper_loss", "impact_loss"),
+)
+_OF_A_BALL = (
+    *((name, "f8") for name in ("x2", "v2", "w", "w_dot", "kinetic_2", "potential_2")),
+    ("stuck", "i1"),
+)

@@ -18,7 +18,7 @@ def read_file(path: Path, dialect: str = "") -> RawFile:
     Parameters
     ----------
     path : Path
-        NI TDMS, UFF dataset 58, MATLAB v4 to v7.3, CSV, HDF5, WAV, or what another package reads.
+        NI TDMS, UFF dataset 58, MATLAB v4 to v7.3, LabVIEW LVM, text, HDF5, WAV, or what another package reads.
     dialect : str
         How a file of text is laid out, as far as that is stated, such as ``separator=semicolon time_unit=ms``.
 

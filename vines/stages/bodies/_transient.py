@@ -5,14 +5,14 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Any
 
-from vines.dynamics import decay, simulate
+from vines.dynamics import Trajectory, decay, simulate
 from vines.model import Params
-from vines.pipeline import Batch, Job
+from vines.pipeline import Batch, Job, Point
 
 if TYPE_CHECKING:
     from vines.stages.kinds.transient import TransientOptions
 
-__all__ = ["compute"]
+__all__ = ["compute", "transient_row"]
 
 
 def compute(job: Job[TransientOptions]) -> Batch:
@@ -23,27 +23,30 @@ def compute(job: Job[TransientOptions]) -> Batch:
         own = {name: value for name, value in point.params.items() if name != "V"}
         p = Params(**own, A=0.0)
         run = simulate(p, v1=point.params["V"], x2=options.x2, v2=options.v2, periods=options.periods)
-        found = decay(run)
-        rows.append(
-            {
-                "point_id": point.id,
-                **point.params,
-                "periods": (run.t_end - run.t_start) / run.params.period,
-                "energy": found.energy,
-                "impact_share": found.impact_share,
-                "damper_share": found.damper_share,
-                "left_share": found.frame_share + found.ball_share,
-                "ball_share": found.ball_share,
-                "t_tenth": _there(found.times[0]),
-                "t_hundredth": _there(found.times[1]),
-                "impacts": found.impacts,
-                "t_first": _there(found.first_impact),
-                "t_last": _there(found.last_impact),
-                "status": "ok" if run.status == "complete" else run.status,
-                "reason": "" if run.status == "complete" else "more events in a period than are followed",
-            }
-        )
+        rows.append(transient_row(point, run))
     return Batch(tables={"transients": rows})
+
+
+def transient_row(point: Point, run: Trajectory) -> dict[str, Any]:
+    """Return the row of one undriven run."""
+    found = decay(run)
+    return {
+        "point_id": point.id,
+        **point.params,
+        "periods": (run.t_end - run.t_start) / run.params.period,
+        "energy": found.energy,
+        "impact_share": found.impact_share,
+        "damper_share": found.damper_share,
+        "left_share": found.frame_share + found.ball_share,
+        "ball_share": found.ball_share,
+        "t_tenth": _there(found.times[0]),
+        "t_hundredth": _there(found.times[1]),
+        "impacts": found.impacts,
+        "t_first": _there(found.first_impact),
+        "t_last": _there(found.last_impact),
+        "status": "ok" if run.status == "complete" else run.status,
+        "reason": "" if run.status == "complete" else "more events in a period than are followed",
+    }
 
 
 def _there(time: float) -> float | None:

@@ -10,13 +10,21 @@ from typing import Annotated, Any
 import msgspec
 from msgspec import Meta
 
-from vines.model import read_system, word_for
+from vines.errors import ParameterError
+from vines.model import VI_NES, System, read_system, word_for
 from vines.pipeline import Kind
 from vines.schema import OF_EACH_SYSTEM, system_table
 from vines.stages.kinds._simulation import check_length
 from vines.systems import Harvest, parameters
 
-__all__ = ["FamilyBranchOptions", "FamilySweepOptions", "FamilyTrajectoryOptions", "HarvestLaw", "of_systems"]
+__all__ = [
+    "FamilyBranchOptions",
+    "FamilySweepOptions",
+    "FamilyTrajectoryOptions",
+    "FamilyTransientOptions",
+    "HarvestLaw",
+    "of_systems",
+]
 
 
 Start = Annotated[
@@ -66,6 +74,17 @@ class FamilyTrajectoryOptions(msgspec.Struct, frozen=True, forbid_unknown_fields
     ] = True
 
 
+class FamilyTransientOptions(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """One run from v1 = V without forcing: shares of the energy that are lost and left, and times until little is left.
+
+    The balls start as `start` says, at rest in the middle if nothing is said.
+    """
+
+    system: str
+    start: Start = {}
+    periods: Annotated[int, Meta(ge=1, le=1_000_000, description="Periods 2 pi to run")] = 100
+
+
 class FamilyBranchOptions(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """The family of periodic orbits of one word that `find_orbit` chooses at the start of the range, to its end."""
 
@@ -103,7 +122,7 @@ def of_systems(
             options=options,
             body=body,
             tables=tuple(system_table(system, name) if name in OF_EACH_SYSTEM else name for name in tables),
-            parameters={each.name: each.default for each in read_system(system, balls).parameters},
+            parameters=_parameters(kind, read_system(system, balls)),
             check=_check,
             code=_code,
             kernels=(),
@@ -116,9 +135,24 @@ def of_systems(
     return replace(kind, systems={system: partial(make, system) for system in systems})
 
 
+def _parameters(kind: Kind, system: System) -> dict[str, float | None]:
+    """Return the parameters of a system, without what the kind leaves out and with what it has beside those of one."""
+    own = {each.name for each in VI_NES.parameters}
+    found = {each.name: each.default for each in system.parameters if each.name not in own - set(kind.parameters)}
+    return found | {name: default for name, default in kind.parameters.items() if name not in own}
+
+
 def _check(params: dict[str, float], options: Any) -> None:
     """Refuse parameters, starts, words and laws that the system cannot have."""
-    p = parameters(options.system).of(params)
+    given = dict(params)
+    if given.pop("V", None) is not None:
+        if params["V"] == 0:
+            raise ParameterError("V is 0, allowed is V != 0: it is the velocity that decays")
+        given["A"] = 0.0
+    p = parameters(options.system).of(given)
+    if "V" in params and not p.mirrored:
+        names = " and ".join(f"{name} = 0" for name in p.system.mirror.broken_by)
+        raise ParameterError(f"a transient is of a level system; give {names}")
     values = msgspec.structs.asdict(options)
     if "word" in values:
         word_for(values["word"], p.system)

@@ -45,7 +45,7 @@ _VI_NES = Kind(
 
 KIND = of_systems(
     _VI_NES,
-    ("impact_pair",),
+    ("impact_pair", "parallel"),
     FamilyTrajectoryOptions,
     "vines.stages.bodies._family_trajectory:compute",
     ("points", "impacts"),

@@ -10,6 +10,7 @@ from msgspec import Meta
 from vines.errors import ParameterError
 from vines.model import Params
 from vines.pipeline import Kind
+from vines.stages.kinds._family import FamilyTransientOptions, of_systems
 from vines.stages.kinds._parameters import PARAMETERS
 
 __all__ = ["KIND", "TransientOptions"]
@@ -33,7 +34,7 @@ def _check(params: dict[str, float], options: TransientOptions) -> None:
         raise ParameterError("V is 0, allowed is V != 0: it is the velocity that decays")
 
 
-KIND = Kind(
+_VI_NES = Kind(
     name="transient",
     summary="how a velocity of the oscillator decays without forcing: shares lost and left, times to 10 % and 1 %",
     shape="points",
@@ -44,4 +45,12 @@ KIND = Kind(
     vary="grid",
     check=_check,
     kernels=("one_run", "runs"),
+)
+
+KIND = of_systems(
+    _VI_NES,
+    ("parallel",),
+    FamilyTransientOptions,
+    "vines.stages.bodies._family_transient:compute",
+    ("transients",),
 )

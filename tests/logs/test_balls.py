@@ -1,0 +1,106 @@
+"""Logs of several balls: every channel is what the run says, damage is told, and other logs are as before."""
+
+import numpy as np
+import pytest
+from mcap.reader import make_reader
+
+import vines
+from vines import logs
+from vines.errors import LogError, SchemaError
+from vines.systems import Parallel
+
+TWO = Parallel(mu=(0.01, 0.01), beta=(1.0, 1.4), r=(0.3, 0.65), A=0.02, G=0.01)
+OSCILLATOR = ("t", "x1", "v1", "phase", "base", "kinetic_1", "potential", "base_work", "damper_loss", "impact_loss")
+BALL = ("x2", "v2", "w", "w_dot", "kinetic_2", "potential_2", "stuck")
+
+
+@pytest.fixture(scope="module")
+def run():
+    run = vines.simulate(TWO, v2=(0.1, -0.3), periods=30)
+    assert set(run.impacts["ball"]) == {1, 2}
+    assert len(run.sticks)
+    return run
+
+
+@pytest.fixture(scope="module")
+def states(run):
+    return run.sample(per_period=100, at_events=True)
+
+
+@pytest.fixture(scope="module")
+def path(run, states, tmp_path_factory):
+    return write(tmp_path_factory.mktemp("balls") / "two.mcap", run, states)
+
+
+def write(path, run, states):
+    return logs.write_run(
+        path,
+        states=states,
+        impacts=run.impacts,
+        sticks=run.sticks,
+        provenance={"stage": "two"},
+        parameters=run.params.as_dict(),
+        name="two",
+        system=run.params.system.name,
+    )
+
+
+def assert_is(table, rows, names, columns=None):
+    assert table.column_names == list(names)
+    for name, column in zip(names, columns or names, strict=True):
+        np.testing.assert_array_equal(table[name].to_numpy(), rows[column])
+
+
+def test_every_channel_is_what_the_run_says(run, states, path):
+    log = logs.read(path)
+    assert (log.system, log.kind, log.status, log.remarks) == ("parallel", "run", "complete", ())
+    assert log.parameters == TWO.as_dict()
+    assert_is(log.states, states, OSCILLATOR)
+    assert list(log.balls) == [1, 2]
+    for ball, table in log.balls.items():
+        assert_is(table, states, ("t", *BALL), ("t", *(f"{name}_{ball}" for name in BALL)))
+    assert {"ball", "ties"} < set(log.impacts.column_names)
+    assert_is(log.impacts, run.impacts, log.impacts.column_names)
+    assert_is(log.sticks, run.sticks, log.sticks.column_names)
+    with path.open("rb") as stream:
+        channels = make_reader(stream).get_summary().channels.values()
+    assert sorted(channel.topic for channel in channels) == ["/ball/1", "/ball/2", "/impact", "/oscillator", "/stick"]
+
+
+def test_the_same_run_gives_the_same_bytes(run, states, path, tmp_path):
+    assert write(tmp_path / "again.mcap", run, states).read_bytes() == path.read_bytes()
+
+
+def test_a_damaged_log_is_recovered(states, path, tmp_path):
+    data = path.read_bytes()
+    hurt = tmp_path / "hurt.mcap"
+    hurt.write_bytes(data[: 2 * len(data) // 3])
+    with pytest.raises(LogError, match="cut short"):
+        logs.read(hurt)
+    said = logs.recover(hurt)
+    log = logs.read(said.path)
+    assert (log.status, log.system, list(log.balls)) == ("recovered", "parallel", [1, 2])
+    assert 100 < log.states.num_rows < len(states)
+    for ball, table in log.balls.items():
+        assert any(line.startswith(f"/ball/{ball}: {table.num_rows} messages") for line in said.saved)
+        assert_is(table, states[: table.num_rows], ("t", *BALL), ("t", *(f"{name}_{ball}" for name in BALL)))
+
+
+@pytest.mark.parametrize("topic", ["/ball/2", "/oscillator"])
+def test_a_lost_description_is_made_anew(path, tmp_path, topic):
+    data = bytearray(path.read_bytes())
+    data[data.index(topic.encode())] ^= 0xFF
+    hurt = tmp_path / "hurt.mcap"
+    hurt.write_bytes(data)
+    log = logs.read(logs.recover(hurt).path)
+    whole = logs.read(path)
+    assert log.states.equals(whole.states)
+    assert log.balls[1].equals(whole.balls[1])
+    assert log.balls[2].equals(whole.balls[2])
+
+
+def test_states_of_half_a_ball_are_refused(run, states, tmp_path):
+    names = [name for name in states.dtype.names if name != "w_2"]
+    with pytest.raises(SchemaError, match="states lack w_2"):
+        write(tmp_path / "half.mcap", run, states[names])
+    assert list(tmp_path.iterdir()) == []
