@@ -169,10 +169,10 @@ def checks(name: str | None = None, *, study: Home | None = None) -> list[dict[s
 
 
 def _checks(name: str, study: Home) -> bool:
-    """Whether a pipeline has a stage of kind ``check``; one that is only stored may have had one."""
+    """Whether a pipeline has a stage that makes checks; one that is only stored may have had one."""
     from vines.pipeline import available
     from vines.stages.api._parts import load_pipeline
 
     if name not in available(study.root):
         return True
-    return any(stage.kind.name == "check" for stage in load_pipeline(name, study=study).stages.values())
+    return any("checks" in stage.kind.tables for stage in load_pipeline(name, study=study).stages.values())
