@@ -63,8 +63,10 @@ def test_every_channel_is_what_the_run_says(run, states, path):
     assert_is(log.impacts, run.impacts, log.impacts.column_names)
     assert_is(log.sticks, run.sticks, log.sticks.column_names)
     with path.open("rb") as stream:
-        channels = make_reader(stream).get_summary().channels.values()
-    assert sorted(channel.topic for channel in channels) == ["/ball/1", "/ball/2", "/impact", "/oscillator", "/stick"]
+        summary = make_reader(stream).get_summary()
+    assert summary is not None
+    topics = sorted(channel.topic for channel in summary.channels.values())
+    assert topics == ["/ball/1", "/ball/2", "/impact", "/oscillator", "/stick"]
 
 
 def test_the_same_run_gives_the_same_bytes(run, states, path, tmp_path):

@@ -123,6 +123,10 @@ def test_tables_hold_the_check_values(pair):
         (('needs = ["points", "doubling"]', 'needs = ["points", "ball"]'), "one and the same parameter"),
         (("threshold = 1.0", "threshold = -1.0"), "threshold"),
         (('kind = "branch"', 'kind = "curve"\ntype = "fold"'), "the kind 'curve' cannot do the system 'impact_pair'"),
+        (
+            ('kind = "branch"\nword = "LR"\npoints = 5', 'kind = "transient"'),
+            "cannot do the system 'impact_pair': its capsule moves as it is driven, so nothing decays; it can do",
+        ),
         (('word = "LR"', 'word = "L1"'), "'L1' is not a word of the system"),
     ],
 )

@@ -74,6 +74,8 @@ class Kind:
         What it is for each other system that it can do beside the VI-NES: ``make(balls)`` returns the kind of the same
         name with the parameters, options, tables and body for that system with so many numbered balls (0 where none
         has a number). Its options have the field ``system``, which so belongs to the key.
+    meaningless : mapping of str to str
+        Systems that it never will do, and why; the refusal says so.
     system : str
         The system that it is for.
     balls : int
@@ -101,6 +103,7 @@ class Kind:
     scaled: tuple[str, ...] = ()
     kernels: tuple[str, ...] | Callable[[Any, bool], tuple[str, ...]] = ()
     systems: Mapping[str, Callable[[int], Kind]] = field(default_factory=dict)
+    meaningless: Mapping[str, str] = field(default_factory=dict)
     system: str = VI_NES.name
     balls: int = 0
 
@@ -155,8 +158,9 @@ class Kind:
             raise UnknownNameError(f"unknown system {system!r}: {nearest(system, system_names())}")
         if system not in self.systems:
             others = sorted(name for name, each in kinds().items() if system in each.systems)
+            why = f": {self.meaningless[system]}" if system in self.meaningless else ""
             raise DeclarationError(
-                f"the kind {self.name!r} cannot do the system {system!r}; it can do "
+                f"the kind {self.name!r} cannot do the system {system!r}{why}; it can do "
                 f"{', '.join(sorted([VI_NES.name, *self.systems]))}; kinds that can do {system!r}: "
                 f"{', '.join(others) or 'none'}"
             )
