@@ -22,6 +22,8 @@ _TRAIL = 0.25
 """Length of the trail in the phase plane, in forcing cycles."""
 _LEGEND = 0.4
 """Room that a still picture leaves for a legend, as a part of the run."""
+_STACKED = 3
+"""Tracks that fit above each other."""
 _LOW = 0.3
 """Room below the ruler in a low view of a cavity, b."""
 _DARK = [13, 17, 23]
@@ -126,14 +128,20 @@ def _column(run: Shown, still: bool) -> rrb.Vertical:
     )
 
 
-def _cavities(run: Shown) -> list[rrb.Spatial2DView]:
-    """Return the views of cavity and ball, one above the other where there are several."""
-    return [_track(run, ball, label) for ball, label in enumerate(run.parts, 1)] if run.several else [cavity_view(run)]
+def _cavities(run: Shown) -> list[rrb.Spatial2DView | rrb.Grid]:
+    """Return the views of cavity and ball: several above each other, many in two columns."""
+    if not run.several:
+        return [cavity_view(run)]
+    tracks = [_track(run, ball, label) for ball, label in enumerate(run.parts, 1)]
+    return [rrb.Grid(*tracks, grid_columns=2)] if len(tracks) > _STACKED else [*tracks]
 
 
 def _shares(run: Shown, one: float) -> list[float]:
     """Return the heights of the views of the cavities, of which a single one would have the height `one`."""
-    return [1.9 if len(run.parts) == 2 else 5.0 / len(run.parts)] * len(run.parts) if run.several else [one]
+    if not run.several:
+        return [one]
+    balls = len(run.parts)
+    return [1.0 * -(-balls // 2) + 3.0] if balls > _STACKED else [min(1.9, 5.0 / balls)] * balls
 
 
 def _lanes_share(run: Shown) -> float:
