@@ -86,7 +86,7 @@ def test_the_catalogue_is_read_only(quickstart, sql):
 
 def test_init_and_its_next_step(project, tmp_path):
     folder = tmp_path / "my study"
-    shown = project.vines("init", folder).stdout
+    shown = project.vines("init", "--from", "quickstart", folder).stdout
     assert f"cd '{folder}'" in shown
     assert (folder / "pipelines" / "quickstart.toml").is_file()
 

@@ -10,7 +10,7 @@ from tests.made_once import own_copy
 from tests.project import Project
 from vines.cli import COMMANDS
 
-# name: (arguments, exit code); LOG is a log of the quickstart, OUT a path that is not there
+# name: (arguments, exit code); LOG is a log of the quickstart, OUT and RRD paths that are not there
 
 pytestmark = pytest.mark.long(18)
 
@@ -37,7 +37,7 @@ WORKING = {
     "merge": (["merge", "quickstart"], 0),
     "report": (["report", "quickstart", "--out", "OUT"], 0),
     "export": (["export", "OUT", "quickstart"], 0),
-    "view --save": (["view", "LOG", "--save", "OUT"], 0),
+    "view --save": (["view", "LOG", "--save", "RRD"], 0),
     "rig": (["rig", "--help"], 0),  # begins with how it was called
     "warm-up": (["warm-up"], 0),
 }
@@ -45,8 +45,8 @@ ELSEWHERE = {"browse"}  # serves until Ctrl-C; that it says what is wrong is tes
 
 
 def filled_in(arguments, project, tmp_path):
-    """Put paths in the place of LOG and OUT."""
-    paths = {"LOG": sorted(project.data.rglob("*.mcap"))[0], "OUT": tmp_path / "out"}
+    """Put paths in the place of LOG, OUT and RRD."""
+    paths = {"LOG": sorted(project.data.rglob("*.mcap"))[0], "OUT": tmp_path / "out", "RRD": tmp_path / "out.rrd"}
     return [paths.get(each, each) for each in arguments]
 
 
@@ -70,6 +70,7 @@ def test_a_process_does_its_work(quickstart, tmp_path, name):
     process = project.process(*filled_in(arguments, project, tmp_path), check=False)
     assert (process.returncode, process.stderr) == (code, "")
     assert (tmp_path / "out").exists() == ("OUT" in arguments)
+    assert (tmp_path / "out.rrd").exists() == ("RRD" in arguments)
 
 
 def test_an_error_is_one_line_of_a_process_too(project):

@@ -155,19 +155,20 @@ def _salvaged(file: Path, data: bytes, complaint: LogError, max_chunk: int) -> _
         raise LogError(f"{file} is not an MCAP file (it begins with {data[:8]!r}); nothing can be recovered")
     found = salvage(data, Unpacker(len(data), max_chunk))
     head = head_of(found)
-    messages, unverified = _believed(found, head)
+    messages, unverified, doubled = _believed(found, head)
     if not messages:
         if isinstance(complaint, ChunkError):
             raise complaint
         reason = "no message is intact" if head.channels else "no description of a channel is intact"
         raise LogError(f"{file}: {reason} in {len(data)} bytes, nothing can be recovered; make the run again")
     told = account(found, head, messages, unverified)
+    lost = (*told.lost, f"{doubled} messages that stand in the file before, to the byte") if doubled else told.lost
     stream = BytesIO()
     note = {"from": file.name, "sha256": hashlib.sha256(data).hexdigest()}
-    _write(LogFile(stream, profile=found.profile), note, head, messages, told.saved, told.lost)
+    _write(LogFile(stream, profile=found.profile), note, head, messages, told.saved, lost)
     made = stream.getvalue()
     _compare(file, made, head, messages, max_chunk)
-    return _Saved(made, told.saved, told.lost, told.every_message)
+    return _Saved(made, told.saved, lost, told.every_message)
 
 
 def _by_channel(messages: Sequence[bytes]) -> dict[int, Messages]:
@@ -183,12 +184,13 @@ def _by_channel(messages: Sequence[bytes]) -> dict[int, Messages]:
     return every
 
 
-def _believed(found: Salvage, head: Head) -> tuple[list[bytes], int]:
-    """Return the messages that can be taken, in the order of time, and for how many of them nothing vouches.
+def _believed(found: Salvage, head: Head) -> tuple[list[bytes], int, int]:
+    """Return the messages that can be taken, in order of time, for how many nothing vouches, and how many were twice.
 
     A checksum vouches for those in chunks, or else the digest of the whole channel. Those without either are taken from
     a file that holds no digests, and from a log of vines only if it was cut and nothing else is wrong with it: then
-    record follows record up to the cut.
+    record follows record up to the cut. Where no digest tells how often a message was written, those that are equal to
+    the byte, time included, are one: damage copies what stands in a file.
     """
     checked, loose = (
         [message for message in group if head.describes(_channel(message))] for group in (found.checked, found.loose)
@@ -196,8 +198,11 @@ def _believed(found: Salvage, head: Head) -> tuple[list[bytes], int]:
     fitting = _fitting(head, [*checked, *loose]) if head.ours and loose else set()
     if head.ours and not found.only_cut:
         loose = [message for message in loose if _channel(message) in fitting]
+    doubled = 0
+    if not head.ours:
+        doubled = len(loose) - len(loose := list(dict.fromkeys(loose)))
     unverified = sum(_channel(message) not in fitting for message in loose)
-    return sorted([*checked, *loose], key=_time_and_sequence), unverified
+    return sorted([*checked, *loose], key=_time_and_sequence), unverified, doubled
 
 
 def _fitting(head: Head, messages: Sequence[bytes]) -> set[int]:
