@@ -183,6 +183,17 @@ def test_a_pool_finds_points_in_all_parts(tmp_path):
         pool.row("points", P[9])
 
 
+def test_a_part_that_comes_meanwhile_does_not_shift_what_was_located(tmp_path):
+    """A worker of a run that was killed may commit a part of a lower number between two looks."""
+    store = Store(tmp_path)
+    part(store, 2, ROWS[:2])
+    pool = store.pool("k")
+    found = pool.locate(Ids.of([P[1]]))
+    part(store, 1, ROWS[2:])
+    assert len(pool.parts()) == 2
+    assert found.parts[found.part[0]].ids.hex()[found.row[0]] == P[1]
+
+
 def test_a_part_stores_no_empty_columns_and_gives_them_back(tmp_path):
     store = Store(tmp_path)
     part(store, 1, ROWS)

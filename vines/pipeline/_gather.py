@@ -15,7 +15,7 @@ from vines import schema
 from vines.errors import StoreError
 from vines.pipeline._links import with_links
 from vines.pipeline._plan import Prepared
-from vines.store import Located, Part, Pool, Store, TableFile, describe_table
+from vines.store import Located, Part, Store, TableFile, describe_table
 
 if TYPE_CHECKING:
     import pyarrow as pa
@@ -64,15 +64,13 @@ def put_together(
         If points or rows are not there after all; then nothing is stored.
     """
     stage = prepared.stage
-    pool = store.pool(prepared.pool_key)
-    located = pool.locate(grid.ids)
+    located = store.pool(prepared.pool_key).locate(grid.ids)
     absent = located.part < 0
     if absent.any():
         raise _lost(prepared, grid, np.flatnonzero(absent))
     failed = grid.ids.take(located.failed).hex()
     key = prepared.result_key(grid, failed)
-    parts = pool.parts()
-    versions = _versions(parts[number] for number in np.unique(located.part).tolist())
+    versions = _versions(located.parts[number] for number in np.unique(located.part).tolist())
     if store.has(key) and not replace:
         return Gathered(key, len(failed), versions)
     provenance = prepared.ingredients.provenance(key)
@@ -83,7 +81,7 @@ def put_together(
         for name in stage.kind.tables:
             sorted_by = _sorted_by(grid, name)
             with TableFile(folder / f"{name}.parquet", name, provenance=provenance, sorted_by=sorted_by) as file:
-                for start, rows in _blocks(pool, located, name):
+                for start, rows in _blocks(located, name):
                     if name == stage.kind.tables[0]:
                         _match(prepared, grid, start, rows)
                     file.add(rows)
@@ -98,7 +96,7 @@ def put_together(
             "failed": len(failed),
             "remark": remark,
             "tables": about,
-            "logs": _logs(prepared, grid, located, parts, folder) if stage.kind.logs else [],
+            "logs": _logs(prepared, grid, located, folder) if stage.kind.logs else [],
         }
         store.commit(key, folder, manifest, replace=replace)
     return Gathered(key, len(failed), versions)
@@ -144,13 +142,13 @@ def _lost(prepared: Prepared, grid: Grid | Refined, places: np.ndarray) -> Store
     )
 
 
-def _blocks(pool: Pool, located: Located, name: str) -> Iterator[tuple[int, pa.Table]]:
+def _blocks(located: Located, name: str) -> Iterator[tuple[int, pa.Table]]:
     """Yield where a block of points begins, and its rows of a table in their order; rows of one point keep theirs."""
     import pyarrow as pa
     import pyarrow.compute
 
     pc: Any = pyarrow.compute
-    parts = pool.parts()
+    parts = located.parts
     tables = _Tables(parts, name)
     for start in range(0, len(located.part), _BLOCK):
         numbers = located.part[start : start + _BLOCK]
@@ -175,9 +173,7 @@ def _blocks(pool: Pool, located: Located, name: str) -> Iterator[tuple[int, pa.T
         yield start, whole
 
 
-def _logs(
-    prepared: Prepared, grid: Grid | Refined, located: Located, parts: list[Part], folder: Path
-) -> list[dict[str, Any]]:
+def _logs(prepared: Prepared, grid: Grid | Refined, located: Located, folder: Path) -> list[dict[str, Any]]:
     """Put the log files into the result and return what the manifest says of them."""
     import pyarrow.parquet as pq
 
@@ -189,7 +185,7 @@ def _logs(
     columns = with_links(prepared.stage, grid.columns(range(len(grid))))
     found = []
     for i, point in enumerate(grid.ids.hex()):
-        part = parts[located.part[i]]
+        part = located.parts[located.part[i]]
         log = part.logs.get(point)
         if log is not None:
             part.check(log)

@@ -158,12 +158,11 @@ def _values(grid: Grid | Refined, pool: Pool, rule: Refine) -> Mapping[str, list
     import pyarrow as pa
 
     located = pool.locate(grid.ids)
-    parts = pool.parts()
     primary = grid.stage.kind.tables[0]
     found: dict[str, list[Any]] = {name: [None] * len(grid) for name in rule.on}
     for number in np.unique(located.part).tolist():
         places = np.flatnonzero(located.part == number)
-        table: Any = parts[number].table(primary).take(pa.array(located.row[places]))
+        table: Any = located.parts[number].table(primary).take(pa.array(located.row[places]))
         for name in rule.on:
             for place, value in zip(places.tolist(), table.column(name).to_pylist(), strict=True):
                 found[name][place] = value

@@ -109,14 +109,17 @@ class Located:
 
     Attributes
     ----------
+    parts : list of Part
+        The parts that were there when the points were looked up: another process may add some at any time.
     part : numpy.ndarray of int32
-        Number of the part in :meth:`Pool.parts`, -1 for a point that is not there.
+        Number of the part in `parts`, -1 for a point that is not there.
     row : numpy.ndarray of int32
         Its place among the points of the part.
     failed : numpy.ndarray of bool
         Whether it failed whenever it was tried.
     """
 
+    parts: list[Part]
     part: np.ndarray
     row: np.ndarray
     failed: np.ndarray
@@ -190,9 +193,10 @@ class Pool:
         there = at >= 0
         if not len(every):
             none = np.full(len(wanted), -1, dtype=np.int32)
-            return Located(none, none, there)
+            return Located(parts, none, none, there)
         at[~there] = 0
         return Located(
+            parts,
             np.where(there, number[at], -1).astype(np.int32),
             np.where(there, row[at], -1).astype(np.int32),
             there & failed[at],
@@ -222,7 +226,7 @@ class Pool:
         found = self.locate(Ids.of([point]))
         if found.part[0] < 0 or found.failed[0]:
             raise StoreError(f"point {point} is not in the pool {self.folder.name[:12]}; run the stage again")
-        return self.parts()[found.part[0]].table(table).slice(int(found.row[0]), 1).to_pylist()[0]
+        return found.parts[found.part[0]].table(table).slice(int(found.row[0]), 1).to_pylist()[0]
 
 
 def commit_part(
