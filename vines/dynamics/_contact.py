@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from vines.dynamics._constants import Constants
 from vines.dynamics._flight import derivatives, fifth, forced_fifth, free_ball, modulus, pull, sixth, turn
-from vines.dynamics._steps import leaving_step, only_root, step_ahead, step_back, taylor_root
+from vines.dynamics._steps import certain_ways, leaving_step, only_root, step_ahead, step_back, taylor_root
 from vines.kernels import by_type, fused_njit
 
 __all__ = [
@@ -162,16 +162,8 @@ def contact_within(c, motion, x2, v2, wall, released, tau, stop):
                 return NO_CONTACT, tau, 0, 0.0, 0.0
             return CONTACT, found, side, x, v
         behind = max(1.0 + side * w, 0.0)
-        span = min(window, 1.5 * gap / pace) if pace > 0.0 else window
-        forth = step_ahead(gap, pace, d2, d3, d4, bound, span)
-        back = step_back(behind, pace, -d2, -d3, -d4, bound, window)
+        forth, back = certain_ways(gap, behind, pace, d2, d3, d4, bound, window)
         h = min(forth, back)
-        if h < 0.25 * window:
-            # Over a shorter span the curvature is bounded more closely.
-            span = 2.0 * h
-            forth = max(forth, step_ahead(gap, pace, d2, d3, d4, bound, span))
-            back = max(back, step_back(behind, pace, -d2, -d3, -d4, bound, span))
-            h = min(forth, back)
         if not h > FEW_ULP * tau:
             if tau > stop:
                 return NO_CONTACT, tau, 0, 0.0, 0.0

@@ -40,6 +40,32 @@ def step_back(gap, pace, d2, d3, d4, fifth, span):
 
 
 @fused_njit
+def certain_ways(gap, behind, pace, d2, d3, d4, fifth, window):
+    """Return (forth, back), times up to `window` before which a moving ball is certain not to meet either wall.
+
+    Parameters
+    ----------
+    gap, behind : float
+        Distances from the wall that it moves to and from that behind it, at least 0.
+    pace, d2, d3, d4 : float
+        Its velocity and further derivatives against the frame, towards the wall ahead.
+    fifth : float
+        Bound of the fifth derivative.
+    window : float
+    """
+    span = min(window, 1.5 * gap / pace) if pace > 0.0 else window
+    forth = step_ahead(gap, pace, d2, d3, d4, fifth, span)
+    back = step_back(behind, pace, -d2, -d3, -d4, fifth, window)
+    h = min(forth, back)
+    if h < 0.25 * window:
+        # Over a shorter span the curvature is bounded more closely.
+        span = 2.0 * h
+        forth = max(forth, step_ahead(gap, pace, d2, d3, d4, fifth, span))
+        back = max(back, step_back(behind, pace, -d2, -d3, -d4, fifth, span))
+    return forth, back
+
+
+@fused_njit
 def only_root(gap, d1, d2, d3, d4, fifth, reach):
     """Say whether a rising function is certain to reach the level exactly once in [0, reach]."""
     rising = d1 + reach * (

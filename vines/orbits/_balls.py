@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import cmath
 import math
 
 from vines.dynamics.kernels import after_impact_kernel, derivatives, flight, tangent_product, turn
@@ -11,7 +10,7 @@ from vines.dynamics.parallel import ParallelConstants
 from vines.dynamics.parallel.kernels import BALL, R_V2, R_X2
 from vines.kernels import copy_values, linked_njit, new_cube, njit, zero_matrix
 from vines.orbits._budget import orbit_rows
-from vines.orbits._chains import ball_of, chain_closing, gravity, response, steady
+from vines.orbits._chains import ball_of, chain_closing, gravity, response, response_of, steady, steady_of
 from vines.orbits._equations import closing_kernel, closing_unit, prepared
 from vines.orbits._survey import NO_TURNING, inspect_flight, survey_kernel
 
@@ -30,26 +29,19 @@ def _closing_unit(c):
     return 1.0, 1.0 + math.hypot(c.free.own.qr, c.free.own.qi)
 
 
-@closing_kernel.register(ParallelConstants)
-@linked_njit
-def _closing(c, duration, side, t):
-    return chain_closing(c, duration, side, t)
+closing_kernel.register(ParallelConstants)(chain_closing)
 
 
 @steady.register(ParallelConstants)
 @njit
 def _steady(c, t):
-    turned = complex(c.free.own.qr, c.free.own.qi) * cmath.exp(complex(0.0, c.Omega * t))
-    return turned.real, -c.Omega * turned.imag, -c.Omega * c.Omega * turned.real
+    return steady_of(c.free.own, c.Omega, t)
 
 
 @response.register(ParallelConstants)
 @njit
 def _response(c, duration, tau):
-    gamma = c.free.own.gamma
-    s = complex(-c.free.own.half, gamma)
-    kernel = cmath.exp(s * tau) / (1.0 - cmath.exp(s * duration))
-    return kernel.imag / gamma, (s * kernel).imag / gamma, (s * s * kernel).imag / gamma
+    return response_of(c.free.own, duration, tau)
 
 
 @ball_of.register(ParallelConstants)

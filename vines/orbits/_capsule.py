@@ -26,10 +26,7 @@ def _closing_unit(c):
     return 1.0, 1.0 + c.B
 
 
-@closing_kernel.register(PairConstants)
-@linked_njit
-def _closing(c, duration, side, t):
-    return chain_closing(c, duration, side, t)
+closing_kernel.register(PairConstants)(chain_closing)
 
 
 @steady.register(PairConstants)

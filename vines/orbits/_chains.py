@@ -13,24 +13,36 @@ from vines.dynamics.kernels import Constants
 from vines.kernels import by_type, integer_vector, linked_njit, new_cube, new_matrix, new_vector, njit, zero_matrix
 from vines.orbits._elimination import eliminate
 
-__all__ = ["ball_of", "chain_closing", "gravity", "links", "response", "steady"]
+__all__ = ["ball_of", "chain_closing", "gravity", "links", "response", "response_of", "steady", "steady_of"]
+
+
+@njit
+def steady_of(o, Omega, t):
+    """Return what `steady` does, for the constants of an oscillator."""
+    turned = complex(o.qr, o.qi) * cmath.exp(complex(0.0, Omega * t))
+    return turned.real, -Omega * turned.imag, -Omega * Omega * turned.real
+
+
+@njit
+def response_of(o, duration, tau):
+    """Return what `response` does, for the constants of an oscillator."""
+    s = complex(-o.half, o.gamma)
+    kernel = cmath.exp(s * tau) / (1.0 - cmath.exp(s * duration))
+    return kernel.imag / o.gamma, (s * kernel).imag / o.gamma, (s * s * kernel).imag / o.gamma
 
 
 @by_type(Constants)
 @njit
 def steady(c, t):
     """Return position, velocity and acceleration of the frame that meets no ball, for a forcing of phase Omega t."""
-    turned = complex(c.free.qr, c.free.qi) * cmath.exp(complex(0.0, c.Omega * t))
-    return turned.real, -c.Omega * turned.imag, -c.Omega * c.Omega * turned.real
+    return steady_of(c.free, c.Omega, t)
 
 
 @by_type(Constants)
 @njit
 def response(c, duration, tau):
     """Return what a unit kick of the frame, repeated each `duration`, has made of it tau later, and its derivatives."""
-    s = complex(-c.free.half, c.free.gamma)
-    kernel = cmath.exp(s * tau) / (1.0 - cmath.exp(s * duration))
-    return kernel.imag / c.free.gamma, (s * kernel).imag / c.free.gamma, (s * s * kernel).imag / c.free.gamma
+    return response_of(c.free, duration, tau)
 
 
 @by_type(Constants)

@@ -29,6 +29,7 @@ from vines.dynamics._impact_law import after_impact_kernel
 from vines.dynamics._sincos import sincos
 from vines.dynamics._sticking import holds_for, next_release
 from vines.dynamics._tangent import directions, flow_basis, jump_basis, offset
+from vines.dynamics._tilt import falling_ball, pull_of_tilt
 from vines.dynamics._window import width_of, write_end
 from vines.dynamics.impact_pair._constants import Capsule, PairConstants, PairTable
 from vines.kernels import fused_njit, njit
@@ -103,16 +104,8 @@ def _holds_for(c, x, v):
     return math.inf
 
 
-@free_ball.register(PairConstants)
-@fused_njit
-def _free_ball(c, v2, tau):
-    return tau * (v2 - 0.5 * c.G * tau), v2 - c.G * tau
-
-
-@pull.register(PairConstants)
-@fused_njit
-def _pull(c, a):
-    return a + c.G
+free_ball.register(PairConstants)(falling_ball)
+pull.register(PairConstants)(pull_of_tilt)
 
 
 @ringing.register(PairConstants)

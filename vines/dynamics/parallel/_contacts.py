@@ -6,7 +6,7 @@ import math
 
 from vines.dynamics._contact import BEYOND, CONTACT, FEW_ULP, GAP, MAX_STEPS, NO_CONTACT, STEP_CAP, close_in, first_step
 from vines.dynamics._flight import derivatives, fifth, forced_fifth, free_ball, modulus, pull, sixth, turn
-from vines.dynamics._steps import only_root, step_ahead, step_back, taylor_root
+from vines.dynamics._steps import certain_ways, only_root, taylor_root
 from vines.dynamics.parallel._layout import B_FOUND, B_MODE, B_RELEASED, B_STEP, B_V2, B_WALL, B_X2, at
 from vines.kernels import fused_njit
 
@@ -34,15 +34,8 @@ def _look(c, beta, x, v, a, j, k, d5, d6, bound, x2, v2, tau):
     if reach <= window and only_root(gap, pace, d2, d3, d4, bound, reach):
         return h, math.inf, side
     behind = max(beta + side * w, 0.0)
-    span = min(window, 1.5 * gap / pace) if pace > 0.0 else window
-    forth = step_ahead(gap, pace, d2, d3, d4, bound, span)
-    back = step_back(behind, pace, -d2, -d3, -d4, bound, window)
+    forth, back = certain_ways(gap, behind, pace, d2, d3, d4, bound, window)
     h = min(forth, back)
-    if h < 0.25 * window:
-        span = 2.0 * h
-        forth = max(forth, step_ahead(gap, pace, d2, d3, d4, bound, span))
-        back = max(back, step_back(behind, pace, -d2, -d3, -d4, bound, span))
-        h = min(forth, back)
     return math.inf, h, (side if forth <= back else -side)
 
 

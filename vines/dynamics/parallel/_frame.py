@@ -23,6 +23,7 @@ from vines.dynamics._flight import (
 )
 from vines.dynamics._integrals import stays_below
 from vines.dynamics._sticking import holds_for
+from vines.dynamics._tilt import falling_ball, pull_of_tilt
 from vines.dynamics.parallel._constants import Frame, ParallelConstants
 from vines.kernels import fused_njit, njit
 
@@ -99,22 +100,9 @@ def _speed_terms(c, ur, ui, gr, gi):
     return abs(ur) + abs(ui) + (1.0 + c.Omega) * (abs(gr) + abs(gi)) + abs(c.G)
 
 
-@holds_for.register(ParallelConstants)
-@fused_njit
-def _holds_for(c, ur, ui, gr, gi):
-    return math.inf
-
-
-@free_ball.register(ParallelConstants)
-@fused_njit
-def _free_ball(c, v2, tau):
-    return tau * (v2 - 0.5 * c.G * tau), v2 - c.G * tau
-
-
-@pull.register(ParallelConstants)
-@fused_njit
-def _pull(c, a):
-    return a + c.G
+holds_for.register(ParallelConstants)(holds_for.first)
+free_ball.register(ParallelConstants)(falling_ball)
+pull.register(ParallelConstants)(pull_of_tilt)
 
 
 @ringing.register(ParallelConstants)
