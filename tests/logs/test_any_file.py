@@ -14,8 +14,8 @@ from mcap.data_stream import RecordBuilder
 from mcap.reader import make_reader
 from mcap.writer import MCAP0_MAGIC
 
+from tests.logs.refused import or_refused
 from vines import logs, schema
-from vines.errors import LogError
 
 pytestmark = pytest.mark.long(20)
 
@@ -116,16 +116,6 @@ def files(draw):
     return data[: draw(st.sampled_from([len(data), len(data), draw(st.integers(0, len(data)))]))], every
 
 
-def refused_in_a_line(attempt):
-    """Return what an attempt gives, or None if it is refused in one line."""
-    try:
-        return attempt()
-    except LogError as error:
-        said = str(error)
-    assert said.isprintable()
-    return None
-
-
 @KEEP
 @given(made=files())
 def test_any_file_is_read_or_refused_and_nothing_is_made_up(tmp_path, made):
@@ -133,10 +123,10 @@ def test_any_file_is_read_or_refused_and_nothing_is_made_up(tmp_path, made):
     file, out = tmp_path / "any.mcap", tmp_path / "out.mcap"
     file.write_bytes(data)
     out.unlink(missing_ok=True)
-    log = refused_in_a_line(lambda: logs.read(file))
+    log = or_refused(lambda: logs.read(file))
     if log is not None:
         assert all(remark.isprintable() for remark in log.remarks)
-    said = refused_in_a_line(lambda: logs.recover(file, out))
+    said = or_refused(lambda: logs.recover(file, out))
     assert out.exists() == (said is not None)
     if said is None:
         return

@@ -16,6 +16,7 @@ from mcap.records import Channel
 from mcap.writer import CompressionType, Writer
 
 from tests.logs.conftest import made_up
+from tests.logs.refused import or_refused
 from tests.logs.rewriting import rewritten
 from tests.logs.test_recover import TIMES, is_part
 from tests.logs.test_round_trip import same
@@ -227,16 +228,6 @@ def records_of(data):
 
 def recovered(file):
     return logs.read(logs.recover(file).path)
-
-
-def or_refused(attempt):
-    """Return what an attempt gives, or None if it is refused in one line."""
-    try:
-        return attempt()
-    except LogError as error:
-        said = str(error)
-    assert said.isprintable()
-    return None
 
 
 def test_rewritten_rig_keeps_each_sensor_to_its_name(tmp_path):

@@ -120,21 +120,30 @@ def measures_from(p: Any, totals: npt.NDArray[np.float64]) -> Measures:
     v1_square, v2_square = t[entry.V1_SQUARE], t[entry.V2_SQUARE]
     per = 1.0 / duration if duration > 0 else math.nan
     return Measures(
-        duration=duration,
-        period=p.period,
-        kinetic_1=0.5 * v1_square * per,
         kinetic_2=0.5 * mass * v2_square * per,
         kinetic_ratio=mass * v2_square / v1_square if v1_square > 0 else math.nan,
-        max_abs_x1=t[entry.MAX_ABS_X1],
-        t_max_abs_x1=t[entry.T_MAX_ABS_X1],
-        rms_x1=max(t[entry.X1_SQUARE] * per, 0.0) ** 0.5,
-        base_work=t[entry.BASE_WORK],
-        damper_loss=t[entry.DAMPER_LOSS],
-        impact_loss_left=t[entry.LOSS_LEFT],
-        impact_loss_right=t[entry.LOSS_RIGHT],
-        energy_change=t[entry.ENERGY_CHANGE],
-        impacts_left=int(t[entry.IMPACTS_LEFT]),
-        impacts_right=int(t[entry.IMPACTS_RIGHT]),
-        sticks_left=int(t[entry.STICKS_LEFT]),
-        sticks_right=int(t[entry.STICKS_RIGHT]),
+        **of_the_frame(p, t),
     )
+
+
+def of_the_frame(p: Any, t: list[float]) -> dict[str, Any]:
+    """Return all measures but the kinetic energy of what flies from totals as a list: they are those of any balls."""
+    duration = t[entry.DURATION]
+    per = 1.0 / duration if duration > 0 else math.nan
+    return {
+        "duration": duration,
+        "period": p.period,
+        "kinetic_1": 0.5 * t[entry.V1_SQUARE] * per,
+        "max_abs_x1": t[entry.MAX_ABS_X1],
+        "t_max_abs_x1": t[entry.T_MAX_ABS_X1],
+        "rms_x1": max(t[entry.X1_SQUARE] * per, 0.0) ** 0.5,
+        "base_work": t[entry.BASE_WORK],
+        "damper_loss": t[entry.DAMPER_LOSS],
+        "impact_loss_left": t[entry.LOSS_LEFT],
+        "impact_loss_right": t[entry.LOSS_RIGHT],
+        "energy_change": t[entry.ENERGY_CHANGE],
+        "impacts_left": int(t[entry.IMPACTS_LEFT]),
+        "impacts_right": int(t[entry.IMPACTS_RIGHT]),
+        "sticks_left": int(t[entry.STICKS_LEFT]),
+        "sticks_right": int(t[entry.STICKS_RIGHT]),
+    }

@@ -5,7 +5,7 @@ from __future__ import annotations
 import dataclasses
 import math
 from collections.abc import Iterable, Mapping
-from typing import TYPE_CHECKING, Any, Self
+from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 from vines.errors import ParameterError, nearest
 from vines.model._conversion import dimensionless
@@ -25,11 +25,17 @@ class Parameters:
     """
 
     __slots__ = ()
+    DECLARATION: ClassVar[System]
+    """The declaration of a system whose number of balls is not open; one with an open number has its own `declared`."""
+
+    def __post_init__(self) -> None:
+        for parameter in self.system.parameters:
+            object.__setattr__(self, parameter.name, parameter.check(getattr(self, parameter.name)))
 
     @property
     def system(self) -> System:
-        """The system that these are parameters of."""
-        raise NotImplementedError
+        """The declaration of the system that these are parameters of."""
+        return self.DECLARATION
 
     @property
     def period(self) -> float:
@@ -123,8 +129,9 @@ class Parameters:
 
     @classmethod
     def declared(cls, balls: int = 0) -> System:
-        """Return the system as it is declared, with so many balls where that is open."""
-        raise NotImplementedError
+        """Return the declaration of the system, with so many balls where that is open."""
+        del balls
+        return cls.DECLARATION
 
     def _values(self) -> list[float]:
         found: list[float] = []

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, ClassVar
 
 from vines.model._parameters import Parameters
 from vines.model._system import System
@@ -48,23 +48,10 @@ class Params(Parameters):
     6.283185
     """
 
+    DECLARATION: ClassVar[System] = VI_NES
+
     mu: float
     A: float
     Omega: float = _default("Omega")
     r: float = _default("r")
     lam: float = _default("lam")
-
-    def __post_init__(self) -> None:
-        for parameter in VI_NES.parameters:
-            object.__setattr__(self, parameter.name, parameter.check(getattr(self, parameter.name)))
-
-    @property
-    def system(self) -> System:
-        """The declaration of the vibro-impact nonlinear energy sink."""
-        return VI_NES
-
-    @classmethod
-    def declared(cls, balls: int = 0) -> System:
-        """Return the declaration of the vibro-impact nonlinear energy sink; it has one ball."""
-        del balls
-        return VI_NES

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, ClassVar
 
 from vines.model import Parameters, System, read_system
 
@@ -51,21 +51,8 @@ class ImpactPair(Parameters):
     B = 0.6, G = 0.0690862, r = 0.5 (dimensionless)
     """
 
+    DECLARATION: ClassVar[System] = _SYSTEM
+
     B: float
     G: float = _default("G")
     r: float = _default("r")
-
-    def __post_init__(self) -> None:
-        for parameter in _SYSTEM.parameters:
-            object.__setattr__(self, parameter.name, parameter.check(getattr(self, parameter.name)))
-
-    @property
-    def system(self) -> System:
-        """The declaration of the impact pair."""
-        return _SYSTEM
-
-    @classmethod
-    def declared(cls, balls: int = 0) -> System:
-        """Return the declaration of the impact pair; it has one ball."""
-        del balls
-        return _SYSTEM

@@ -4,20 +4,10 @@ from __future__ import annotations
 
 import importlib
 
-from vines.model import Parameters, most_balls, read_system, system_names
+from vines.model import Parameters, most_balls, read_system
+from vines.model import system_names as names
 
 __all__ = ["names", "parameters"]
-
-
-def names() -> tuple[str, ...]:
-    """Return the names of all systems, the vibro-impact nonlinear energy sink among them.
-
-    Examples
-    --------
-    >>> names()
-    ('impact_pair', 'parallel', 'vi_nes')
-    """
-    return system_names()
 
 
 def parameters(name: str) -> type[Parameters]:

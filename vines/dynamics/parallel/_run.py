@@ -12,7 +12,7 @@ import numpy.typing as npt
 
 from vines.dynamics import _advance as col
 from vines.dynamics import _totals as entry
-from vines.dynamics._measures import Measures
+from vines.dynamics._measures import Measures, of_the_frame
 from vines.dynamics._room import constants, room_of
 from vines.dynamics._trajectory import STICK as SPELL
 from vines.dynamics._trajectory import Table, Trajectory
@@ -82,25 +82,11 @@ def parallel_measures(p: Any, totals: npt.NDArray[np.float64]) -> ParallelMeasur
 
     balls = tuple(ball(i, mu) for i, mu in enumerate(p.mu))
     return ParallelMeasures(
-        duration=duration,
-        period=p.period,
-        kinetic_1=0.5 * v1_square * per,
         kinetic_2=sum(each.kinetic for each in balls),
         kinetic_ratio=sum(each.kinetic_ratio for each in balls),
-        max_abs_x1=t[entry.MAX_ABS_X1],
-        t_max_abs_x1=t[entry.T_MAX_ABS_X1],
-        rms_x1=max(t[entry.X1_SQUARE] * per, 0.0) ** 0.5,
-        base_work=t[entry.BASE_WORK],
-        damper_loss=t[entry.DAMPER_LOSS],
-        impact_loss_left=t[entry.LOSS_LEFT],
-        impact_loss_right=t[entry.LOSS_RIGHT],
-        energy_change=t[entry.ENERGY_CHANGE],
-        impacts_left=int(t[entry.IMPACTS_LEFT]),
-        impacts_right=int(t[entry.IMPACTS_RIGHT]),
-        sticks_left=int(t[entry.STICKS_LEFT]),
-        sticks_right=int(t[entry.STICKS_RIGHT]),
         balls=balls,
         ties=int(t[own.S_TIES]),
+        **of_the_frame(p, t),
     )
 
 

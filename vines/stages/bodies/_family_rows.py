@@ -20,12 +20,18 @@ if TYPE_CHECKING:
     from vines.orbits import Orbit
     from vines.stages.kinds._family import HarvestLaw
 
-__all__ = ["family_impacts", "family_orbit", "family_point", "only_own", "parameters_of"]
+__all__ = ["family_impacts", "family_orbit", "family_point", "only_own", "parameters_of", "start_of"]
 
 
 def parameters_of(system: str, values: Mapping[str, float]) -> Parameters:
     """Return parameters of a system from their flat names."""
     return parameters(system).of(values)
+
+
+def start_of(p: Parameters, declared: Mapping[str, Any], before: Mapping[str, Any] | None) -> dict[str, float]:
+    """Return the start of a point: as it is declared, or where the point of a row ended that goes before it."""
+    start = p.system.started(declared)
+    return start if before is None else {name: float(before[f"end_{name}"]) for name in start}
 
 
 def family_point(

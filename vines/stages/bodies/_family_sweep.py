@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 from vines.attractors import settle_from
 from vines.pipeline import Batch, Job
 from vines.schema import system_table
-from vines.stages.bodies._family_rows import family_impacts, family_point, parameters_of
+from vines.stages.bodies._family_rows import family_impacts, family_point, parameters_of, start_of
 from vines.stages.bodies._sweep import representative
 
 if TYPE_CHECKING:
@@ -24,9 +24,7 @@ def compute(job: Job[FamilySweepOptions]) -> Batch:
     before = job.start
     for point in job.points:
         p = parameters_of(options.system, point.params)
-        start = p.system.started(options.start)
-        if job.carry is not None and before is not None:
-            start = {name: float(before[f"end_{name}"]) for name in start}
+        start = start_of(p, options.start, before if job.carry is not None else None)
         found = settle_from(p, start, settle=options.settle, record=options.record, watch=options.watch)
         row = family_point(point.id, found, start, job.carry, options.harvest)
         rows.append(row)

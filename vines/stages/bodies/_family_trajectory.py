@@ -10,17 +10,14 @@ from vines.logs import write_run
 from vines.model import Parameters
 from vines.pipeline import Batch, Job
 from vines.schema import system_table
-from vines.stages.bodies._family_rows import family_impacts, family_point, parameters_of
+from vines.stages.bodies._family_rows import family_impacts, family_point, parameters_of, start_of
 from vines.stages.bodies._sweep import representative
+from vines.stages.bodies._trajectory import CLASSIFY_AFTER, CLASSIFY_OVER
 
 if TYPE_CHECKING:
     from vines.stages.kinds._family import FamilyTrajectoryOptions
 
 __all__ = ["compute"]
-
-CLASSIFY_AFTER = 400
-"""Forcing periods before the attractor is named when the log itself starts without any transient left out."""
-CLASSIFY_OVER = 64
 
 
 def compute(job: Job[FamilyTrajectoryOptions]) -> Batch:
@@ -32,9 +29,7 @@ def compute(job: Job[FamilyTrajectoryOptions]) -> Batch:
     before = job.start
     for point in job.points:
         p = parameters_of(options.system, point.params)
-        start = p.system.started(options.start)
-        if job.carry is not None and before is not None:
-            start = {name: float(before[f"end_{name}"]) for name in start}
+        start = start_of(p, options.start, before if job.carry is not None else None)
         state = _run(p, start, options.settle).final if options.settle else start
         run = _run(p, state, options.record)
         wait = 0 if options.settle else CLASSIFY_AFTER

@@ -18,7 +18,7 @@ from vines.stages.bodies._sweep import representative
 if TYPE_CHECKING:
     from vines.stages.kinds.trajectory import TrajectoryOptions
 
-__all__ = ["compute"]
+__all__ = ["CLASSIFY_AFTER", "CLASSIFY_OVER", "compute"]
 
 CLASSIFY_AFTER = 400
 """Forcing periods before the attractor is named when the log itself starts without any transient left out."""

@@ -14,7 +14,7 @@ from vines.errors import ParameterError
 from vines.model import VI_NES, System, read_system, word_for
 from vines.pipeline import Kind
 from vines.schema import OF_EACH_SYSTEM, system_table
-from vines.stages.kinds._simulation import check_length
+from vines.stages.kinds._simulation import Bare, InLog, Keep, PerPeriod, Record, Settle, Watch, check_length
 from vines.systems import Harvest, parameters
 
 __all__ = [
@@ -45,19 +45,10 @@ class FamilySweepOptions(msgspec.Struct, frozen=True, forbid_unknown_fields=True
 
     system: str
     start: Start = {}
-    settle: Annotated[int, Meta(ge=0, description="Forcing periods that are left out")] = 400
-    record: Annotated[int, Meta(ge=2, description="Forcing periods that are classified and measured")] = 64
-    watch: Annotated[
-        int,
-        Meta(ge=16, description="Where nothing repeats: forcing periods more before a Lyapunov exponent is believed"),
-    ] = 512
-    keep: Annotated[
-        int,
-        Meta(
-            ge=0,
-            description="Recorded periods whose impacts are kept, of a periodic attractor one repetition; 0 keeps none",
-        ),
-    ] = 64
+    settle: Settle = 400
+    record: Record = 64
+    watch: Watch = 512
+    keep: Keep = 64
     harvest: Annotated[HarvestLaw | None, Meta(description="What impacts yield, for the harvested power")] = None
 
 
@@ -66,12 +57,10 @@ class FamilyTrajectoryOptions(msgspec.Struct, frozen=True, forbid_unknown_fields
 
     system: str
     start: Start = {}
-    settle: Annotated[int, Meta(ge=0, description="Forcing periods that are left out")] = 400
-    record: Annotated[int, Meta(ge=2, description="Forcing periods in the log")] = 10
-    per_period: Annotated[int, Meta(ge=2, description="Samples of the state in a forcing period")] = 200
-    bare: Annotated[
-        bool, Meta(description="Whether the log also carries what a viewer without vines understands (docs/logs.md)")
-    ] = True
+    settle: Settle = 400
+    record: InLog = 10
+    per_period: PerPeriod = 200
+    bare: Bare = True
 
 
 class FamilyTransientOptions(msgspec.Struct, frozen=True, forbid_unknown_fields=True):

@@ -12,7 +12,36 @@ from vines.bounds import check_periods
 from vines.errors import StateError
 from vines.model import VI_NES, Params
 
-__all__ = ["Start", "check_length", "check_simulation"]
+__all__ = [
+    "Bare",
+    "InLog",
+    "Keep",
+    "PerPeriod",
+    "Record",
+    "Settle",
+    "Start",
+    "Watch",
+    "check_length",
+    "check_simulation",
+]
+
+Settle = Annotated[int, Meta(ge=0, description="Forcing periods that are left out")]
+Record = Annotated[int, Meta(ge=2, description="Forcing periods that are classified and measured")]
+Watch = Annotated[
+    int, Meta(ge=16, description="Where nothing repeats: forcing periods more before a Lyapunov exponent is believed")
+]
+Keep = Annotated[
+    int,
+    Meta(
+        ge=0,
+        description="Recorded periods whose impacts are kept, of a periodic attractor one repetition; 0 keeps none",
+    ),
+]
+InLog = Annotated[int, Meta(ge=2, description="Forcing periods in the log")]
+PerPeriod = Annotated[int, Meta(ge=2, description="Samples of the state in a forcing period")]
+Bare = Annotated[
+    bool, Meta(description="Whether the log also carries what a viewer without vines understands (docs/logs.md)")
+]
 
 _State = msgspec.defstruct(
     "_State", [(each.name, Annotated[float, Meta(description=each.text)], each.start) for each in VI_NES.state]

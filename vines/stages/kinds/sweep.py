@@ -10,7 +10,7 @@ from msgspec import Meta
 from vines.pipeline import Kind
 from vines.stages.kinds._family import FamilySweepOptions, of_systems
 from vines.stages.kinds._parameters import PARAMETERS
-from vines.stages.kinds._simulation import Start, check_simulation
+from vines.stages.kinds._simulation import Keep, Record, Settle, Start, Watch, check_simulation
 
 __all__ = ["KIND", "SweepOptions"]
 
@@ -24,19 +24,10 @@ class SweepOptions(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     start: Annotated[
         Start | Literal["random"], Meta(description="Start state (dimensionless), or 'random' to draw it at each point")
     ] = msgspec.field(default_factory=Start)
-    settle: Annotated[int, Meta(ge=0, description="Forcing periods that are left out")] = 400
-    record: Annotated[int, Meta(ge=2, description="Forcing periods that are classified and measured")] = 64
-    watch: Annotated[
-        int,
-        Meta(ge=16, description="Where nothing repeats: forcing periods more before a Lyapunov exponent is believed"),
-    ] = 512
-    keep: Annotated[
-        int,
-        Meta(
-            ge=0,
-            description="Recorded periods whose impacts are kept, of a periodic attractor one repetition; 0 keeps none",
-        ),
-    ] = 64
+    settle: Settle = 400
+    record: Record = 64
+    watch: Watch = 512
+    keep: Keep = 64
     random: Annotated[int, Meta(ge=0, description="Further starts that are drawn at each point")] = 0
     seed: Annotated[int, Meta(ge=0, description="Seed of these draws")] = 0
 

@@ -10,7 +10,7 @@ from msgspec import Meta
 from vines.pipeline import Kind
 from vines.stages.kinds._family import FamilyTrajectoryOptions, of_systems
 from vines.stages.kinds._parameters import PARAMETERS
-from vines.stages.kinds._simulation import Start, check_simulation
+from vines.stages.kinds._simulation import Bare, InLog, PerPeriod, Settle, Start, check_simulation
 
 __all__ = ["KIND", "TrajectoryOptions"]
 
@@ -19,12 +19,10 @@ class TrajectoryOptions(msgspec.Struct, frozen=True, forbid_unknown_fields=True)
     """One run of the simulator: `settle` periods unrecorded, then `record` periods into an MCAP log."""
 
     start: Annotated[Start, Meta(description="Start state (dimensionless)")] = msgspec.field(default_factory=Start)
-    settle: Annotated[int, Meta(ge=0, description="Forcing periods that are left out")] = 400
-    record: Annotated[int, Meta(ge=2, description="Forcing periods in the log")] = 10
-    per_period: Annotated[int, Meta(ge=2, description="Samples of the state in a forcing period")] = 200
-    bare: Annotated[
-        bool, Meta(description="Whether the log also carries what a viewer without vines understands (docs/logs.md)")
-    ] = True
+    settle: Settle = 400
+    record: InLog = 10
+    per_period: PerPeriod = 200
+    bare: Bare = True
 
 
 _VI_NES = Kind(
