@@ -11,6 +11,8 @@ import tempfile
 import time
 
 FLAGS = (
+    # Half a minute of machine code for a page that is looked at once is not worth while.
+    "--js-flags=--wasm-lazy-compilation --no-wasm-tier-up",
     *("--headless=new", "--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader"),
     *("--enable-unsafe-swiftshader", "--ignore-gpu-blocklist", "--no-first-run", "--disable-background-networking"),
 )
