@@ -176,7 +176,7 @@ def test_a_signal_ends_a_run_that_is_inside_a_kernel_for_years(project, number, 
     running = project.start("run", "endless", stderr=subprocess.PIPE, stdout=subprocess.DEVNULL)
     while not any(project.data.glob("staging/*/work-*")) and running.poll() is None:
         time.sleep(0.01)
-    time.sleep(4.0)  # the kernel is loaded and runs
+    time.sleep(1.5)  # the kernel is loaded and runs
     running.send_signal(number)
     _, told = running.communicate(timeout=60)
     assert (running.returncode, told) == (
@@ -195,7 +195,7 @@ def test_a_signal_ends_a_query_that_takes_for_ever(quickstart, number, tmp_path)
     running = quickstart.start("query", ENDLESS, "--out", tmp_path / "answer.csv", stderr=subprocess.PIPE)
     while not any(tmp_path.iterdir()) and running.poll() is None:
         time.sleep(0.01)
-    time.sleep(1.0)  # DuckDB is at it
+    time.sleep(0.5)  # DuckDB is at it
     running.send_signal(number)
     _, told = running.communicate(timeout=60)
     assert (running.returncode, told) == (130, "vines: stopped\n")
@@ -205,7 +205,7 @@ def test_a_signal_ends_a_query_that_takes_for_ever(quickstart, number, tmp_path)
 def test_ctrl_c_ends_a_query_in_python_and_the_session_goes_on(quickstart):
     script = (
         "import os, signal, threading, time, vines\n"
-        "def stop():\n    time.sleep(2)\n    os.kill(os.getpid(), signal.SIGINT)\n"
+        "def stop():\n    time.sleep(1)\n    os.kill(os.getpid(), signal.SIGINT)\n"
         "signal.signal(signal.SIGINT, signal.default_int_handler)\n"
         "threading.Thread(target=stop).start()\n"
         f"try:\n    vines.query({ENDLESS!r})\nexcept KeyboardInterrupt:\n"
@@ -228,7 +228,7 @@ def test_a_signal_ends_a_command_that_waits_for_another(project, number):
         children = Path(f"/proc/{running.pid}/task/{running.pid}/children")
         while not children.read_text() and running.poll() is None:
             time.sleep(0.01)
-        time.sleep(2.0)
+        time.sleep(0.7)
         running.send_signal(number)
         _, told = running.communicate(timeout=60)
     assert (running.returncode, told) == (130, "vines: stopped\n")

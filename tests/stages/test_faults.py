@@ -12,7 +12,7 @@ import pytest
 
 from tests.project import Project
 
-pytestmark = pytest.mark.long(18)
+pytestmark = [pytest.mark.long(18), pytest.mark.usefixtures("coarse_look")]
 
 DECLARED = """
 [params]

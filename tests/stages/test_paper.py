@@ -4,22 +4,18 @@ import json
 import shutil
 import tomllib
 from pathlib import Path
-from unittest import mock
 
 import pytest
 
 from tests.project import Project
-from vines.figures._style import RC
 
-pytestmark = pytest.mark.long(45)
+pytestmark = [pytest.mark.long(45), pytest.mark.usefixtures("coarse_look")]
 
 PIPELINES = Path(__file__).resolve().parents[2] / "pipelines"
 FIGURES = [f"fig{k}" for k in range(2, 12)]
 MEMBERS = tomllib.loads((PIPELINES / "paper.toml").read_text("utf-8"))["pipelines"]
 SHORT = {"settle": 60, "record": 32, "watch": 64, "random": 1}
 COUNT = 5
-COARSE_LOOK = {"xtick.minor.visible": False, "ytick.minor.visible": False, "savefig.dpi": 60}
-"""Half the time of drawing goes into minor ticks and pixels, which say nothing about a declaration."""
 
 
 def coarse(member):
@@ -47,8 +43,7 @@ def paper(tmp_path_factory):
     shutil.copytree(PIPELINES, root / "pipelines")
     project = Project(root)
     settings = [part for member in MEMBERS for text in coarse(member) for part in ("--set", text)]
-    with mock.patch.dict(RC, COARSE_LOOK):
-        project.first = project.vines("run", "paper", "--quiet", "--jobs", "1", *settings, check=False)
+    project.first = project.vines("run", "paper", "--quiet", "--jobs", "1", *settings, check=False)
     return project
 
 

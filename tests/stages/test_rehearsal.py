@@ -12,7 +12,7 @@ from vines.errors import VinesError
 from vines.rig import load_reconstruction, save_reconstruction
 from vines.stages import reconstruct_run
 
-pytestmark = pytest.mark.long(35)
+pytestmark = [pytest.mark.long(35), pytest.mark.usefixtures("coarse_look")]
 
 PIPELINES = Path(__file__).parents[2] / "pipelines"
 COARSE = {

@@ -13,7 +13,7 @@ from vines.stages.plots._runs import run_curves
 from vines.stages.plots.sheet import PLOT
 from vines.store import Store
 
-pytestmark = pytest.mark.long(14)
+pytestmark = [pytest.mark.long(14), pytest.mark.usefixtures("coarse_look")]
 
 
 @pytest.fixture

@@ -9,6 +9,7 @@ same id, and its file of output is truncated unless ``--open-mode=append``; no s
 import json
 import os
 import re
+import shutil
 import stat
 import subprocess
 import sys
@@ -17,7 +18,13 @@ import pytest
 
 from tests.stages.recipe import assert_as_one_run, write_recipe
 
-pytestmark = pytest.mark.long(14)
+pytestmark = [
+    pytest.mark.long(14),
+    pytest.mark.skipif(
+        shutil.which("slurmctld") is not None and os.geteuid() == 0,
+        reason="SLURM is installed, and test_slurm_node runs the recipe on the real one",
+    ),
+]
 
 SBATCH = r'''#!PYTHON
 """Queue a job and print its number; the test runs the queue."""

@@ -11,6 +11,8 @@ import tempfile
 import time
 
 FLAGS = (
+    # Half a minute of machine code for a page that is looked at once is not worth while.
+    "--js-flags=--wasm-lazy-compilation --no-wasm-tier-up",
     *("--headless=new", "--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader"),
     *("--enable-unsafe-swiftshader", "--ignore-gpu-blocklist", "--no-first-run", "--disable-background-networking"),
 )
@@ -99,10 +101,19 @@ class Browser:
         data = self.call("Page.captureScreenshot", session=self._session, format="png")["data"]
         return base64.b64decode(data)
 
-    def at_rest(self, shows=lambda picture: True, seconds=180.0):
-        """Return a picture once there is something to see, what `shows` looks for too, and two in a row are equal."""
+    def at_rest(self):
+        """Return a picture once there is something to see and two in a row are equal."""
+        pictures = [b""]
+
+        def rests(now):
+            pictures.append(now)
+            return now == pictures[-2] and len(now) > 60_000
+
+        return self.until(rests)
+
+    def until(self, shows, seconds=180.0):
+        """Return the first picture in which there is what `shows` looks for; to take one is work for the page."""
         deadline = time.monotonic() + seconds
-        before = b""
         while time.monotonic() < deadline:
             time.sleep(1.5)
             try:
@@ -111,10 +122,9 @@ class Browser:
                 if "Not attached to an active page" not in str(error):  # between a blank page and that which was opened
                     raise
                 continue
-            if now == before and len(now) > 60_000 and shows(now):
+            if shows(now):
                 return now
-            before = now
-        raise TimeoutError(f"the page did not come to rest within {seconds:g} s; it said {self.console[-5:]}")
+        raise TimeoutError(f"the page did not show it within {seconds:g} s; it said {self.console[-5:]}")
 
 
 @contextlib.contextmanager
