@@ -30,6 +30,8 @@ record = 4
 [stages.picture]
 kind = "figure"
 plot = "bifurcation"
+panels = ["x1"]
+width = 3.0
 needs = ["up"]
 """
 SQL = "select pipeline, stage, A, kinetic_ratio, name from points where pipeline = 'small' order by stage, A"
