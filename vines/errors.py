@@ -29,6 +29,7 @@ __all__ = [
     "RigError",
     "RunFailed",
     "SchemaError",
+    "StaleWarning",
     "StateError",
     "StoreError",
     "UnknownNameError",
@@ -86,6 +87,10 @@ class DamageError(StoreError):
 
 class DamageWarning(UserWarning):
     """An answer is without results that are damaged; the message names them."""
+
+
+class StaleWarning(UserWarning):
+    """What is handed out was computed for another declaration, or with other code, than there is now."""
 
 
 class EngineError(VinesError, RuntimeError):

@@ -12,6 +12,7 @@ import os
 import shlex
 import sys
 import warnings
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -20,7 +21,7 @@ import click
 from vines import __version__
 from vines.cli._interrupt import stoppable
 from vines.cli._supervised import PATIENCE, go_on_in_a_child, is_supervised
-from vines.errors import DamageWarning, VinesError, nearest
+from vines.errors import DamageWarning, StaleWarning, VinesError, nearest
 
 __all__ = ["app", "main"]
 
@@ -52,6 +53,8 @@ COMMANDS = {
 }
 
 
+INCOMPLETE = 1
+"""Exit code where an answer is without results that are damaged."""
 _KEEPING = frozenset({"merge", "run"})
 """Commands that keep what they have computed."""
 _SERVING = frozenset({"browse", "view"})
@@ -143,9 +146,12 @@ def main(*, supervised: bool = True) -> None:
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):  # a letter that the terminal does not have is no error
             stream.reconfigure(errors="backslashreplace")
-    warnings.showwarning = _show
+    incomplete: list[str] = []
     try:
-        with stoppable(remedy, silent=is_supervised()):
+        with warnings.catch_warnings(), stoppable(remedy, silent=is_supervised()):
+            for ours in (DamageWarning, StaleWarning):
+                warnings.simplefilter("always", ours)
+            warnings.showwarning = partial(_show, incomplete)
             code = app.main(standalone_mode=False)
     except click.exceptions.NoArgsIsHelpError as error:
         click.echo(error.format_message())
@@ -168,12 +174,14 @@ def main(*, supervised: bool = True) -> None:
     except MemoryError as error:
         click.echo(f"vines: not enough memory{f': {error}' if str(error) else ''}", err=True)
         code = 2
-    sys.exit(code if isinstance(code, int) else 0)
+    sys.exit((code if isinstance(code, int) else 0) or (INCOMPLETE if incomplete else 0))
 
 
-def _show(message: Warning | str, category: type[Warning], *place: Any) -> None:
-    """Print in one line what an answer lacks, and other warnings as Python does."""
+def _show(incomplete: list[str], message: Warning | str, category: type[Warning], *place: Any) -> None:
+    """Print our warnings in a line, and remember what an answer lacks; print those of others as Python does."""
     if issubclass(category, DamageWarning):
+        incomplete.append(str(message))
+    if issubclass(category, (DamageWarning, StaleWarning)):
         click.echo(f"vines: {message}", err=True)
     else:
         click.echo(warnings.formatwarning(message, category, *place[:2]), err=True, nl=False)
