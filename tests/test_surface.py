@@ -7,7 +7,7 @@ import pytest
 
 import vines
 from vines import schema
-from vines.cli import COMMANDS
+from vines.cli._app import COMMANDS
 from vines.cli._rig import COMMANDS as RIG
 from vines.stages import list_kinds
 

@@ -8,6 +8,7 @@ wrong, the value, what is allowed, and the remedy. The command line prints that 
 from __future__ import annotations
 
 import difflib
+import errno
 from collections.abc import Iterable
 
 __all__ = [
@@ -29,11 +30,13 @@ __all__ = [
     "RigError",
     "RunFailed",
     "SchemaError",
+    "StaleWarning",
     "StateError",
     "StoreError",
     "UnknownNameError",
     "ViewerError",
     "VinesError",
+    "is_of_the_machine",
     "nearest",
     "printable",
 ]
@@ -86,6 +89,10 @@ class DamageError(StoreError):
 
 class DamageWarning(UserWarning):
     """An answer is without results that are damaged; the message names them."""
+
+
+class StaleWarning(UserWarning):
+    """What is handed out was computed for another declaration, or with other code, than there is now."""
 
 
 class EngineError(VinesError, RuntimeError):
@@ -146,6 +153,27 @@ class RunFailed(VinesError, RuntimeError):  # noqa: N818 - reads as what happene
     """Some points of a run failed; the rest is stored."""
 
     exit_code: int = 3
+
+
+_OF_THE_MACHINE = frozenset(
+    getattr(errno, name)
+    for name in (
+        *("EAGAIN", "EDQUOT", "EIO", "EMFILE", "ENFILE", "ENOLCK"),
+        *("ENOMEM", "ENOSPC", "EROFS", "ESTALE", "ETIMEDOUT"),
+    )
+    if hasattr(errno, name)
+)
+
+
+def is_of_the_machine(error: BaseException) -> bool:
+    """Whether an error tells of the machine, such as a full disk or too many open files, and not of what was asked.
+
+    Examples
+    --------
+    >>> is_of_the_machine(OSError(28, "No space left on device")), is_of_the_machine(FileNotFoundError(2, "no"))
+    (True, False)
+    """
+    return isinstance(error, OSError) and error.errno in _OF_THE_MACHINE
 
 
 def printable(text: str) -> str:

@@ -67,11 +67,19 @@ def _declares(folder: Path) -> bool:
 
 
 def data_folder(root: Path | None = None) -> Path:
-    """Return the folder of results: ``VINES_DATA``, or ``data/`` under the root of the project."""
+    """Return the folder of results: ``VINES_DATA``, or ``data/`` under the root of the project; it need not exist.
+
+    Raises
+    ------
+    FileMissingError
+        If something else is there.
+    """
     named = os.environ.get("VINES_DATA")
-    if named:
-        return Path(named).expanduser().resolve()
-    return (root or find_root()) / "data"
+    folder = Path(named).expanduser().resolve() if named else (root or find_root()) / "data"
+    if not folder.is_dir() and os.path.lexists(folder):
+        by = "VINES_DATA names it" if named else "move it away, or name another folder with VINES_DATA"
+        raise FileMissingError(f"{folder} should be the folder of results and is none; {by}")
+    return folder
 
 
 def cache_folder() -> Path:

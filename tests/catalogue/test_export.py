@@ -1,15 +1,21 @@
 """An export: whole or not at all, the same bytes each time, and open to DuckDB, pandas and polars without vines."""
 
 import csv
+import errno
 import hashlib
 import json
 import os
+import shutil
 import subprocess
 import sys
 import sysconfig
 from pathlib import Path
 
 import pytest
+from filelock import FileLock
+
+from tests.made_once import own_copy
+from tests.project import Project
 
 OTHERS = """
 import importlib.util, json, os, sys
@@ -129,3 +135,54 @@ def test_it_is_written_as_a_whole_or_not_at_all(quickstart, tmp_path):
     assert "begin with" in told
     assert not (tmp_path / "empty" / "logs").exists()
     assert "not part of this export" in (tmp_path / "empty" / "README.md").read_text()
+
+
+def test_two_exports_to_one_place_and_what_a_killed_one_left(quickstart, tmp_path):
+    target = tmp_path / "out"
+    left = tmp_path / ".out.export.lock.0123456789ab"
+    (left / "tables").mkdir(parents=True)
+    (tmp_path / ".out.export.lock").touch()
+    with FileLock(tmp_path / ".out.export.lock"):
+        done = quickstart.vines("export", target, "quickstart", check=False)
+    assert (done.returncode, done.stderr.count("\n")) == (2, 1)
+    assert f"another export is writing {target}" in done.stderr
+    assert left.exists()
+    quickstart.vines("export", target, "quickstart")
+    assert [path.name for path in tmp_path.iterdir()] == ["out"]
+
+
+def test_a_full_disk_leaves_nothing_and_is_told_with_the_place(quickstart, tmp_path, monkeypatch):
+    def full(source, target):
+        Path(target).write_bytes(b"half")
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC), str(source))  # as shutil tells it: of the source
+
+    monkeypatch.setattr(shutil, "copyfile", full)
+    done = quickstart.vines("export", tmp_path / "out", "quickstart", check=False)
+    assert done.returncode == 2
+    assert done.stderr == f"vines: {tmp_path / 'out'} cannot be written: No space left on device; " + (
+        "nothing of the export is there\n"
+    )
+    assert not [*tmp_path.iterdir()]
+
+
+def test_the_place_may_be_a_link_and_not_the_store(quickstart, tmp_path):
+    (tmp_path / "real").mkdir()
+    (tmp_path / "link").symlink_to("real")
+    quickstart.vines("export", tmp_path / "link", "quickstart")
+    assert (tmp_path / "real" / "SHA256SUMS").is_file()
+    done = quickstart.vines("export", quickstart.data / "results" / "mine", "quickstart", check=False)
+    assert done.returncode == 2
+    assert "name another folder" in done.stderr
+
+
+def test_what_is_declared_otherwise_now_is_said(quickstart, tmp_path):
+    project = Project(own_copy(quickstart.root, tmp_path / "project"))
+    assert project.vines("export", tmp_path / "same", "quickstart").stderr == ""
+    assert "Not as declared" not in (tmp_path / "same" / "README.md").read_text()
+    declared = project.root / "pipelines" / "quickstart.toml"
+    declared.write_text(declared.read_text().replace("settle = 400", "settle = 401", 1))
+    said = project.vines("export", tmp_path / "other", "quickstart").stderr
+    assert "is stale: settle 400 → 401" in said
+    assert "the export holds what is stored" in said
+    readme = (tmp_path / "other" / "README.md").read_text()
+    assert "is stale: settle 400 → 401" in readme.partition("## Not as declared")[2]

@@ -157,3 +157,15 @@ def test_data_that_may_only_be_read_answer_status_query_and_a_run_with_nothing_t
     assert "nothing to compute" in copy.vines("run", "quickstart").stdout
     assert "up to date" in copy.vines("status", "quickstart").stdout
     assert "181" in copy.vines("query", "select count(*) from quickstart.up").stdout
+
+
+def test_a_file_where_the_folder_of_results_should_be(project, monkeypatch):
+    (project.root / "data").write_text("mine")
+    for named in ("", str(project.root / "data")):
+        with monkeypatch.context() as patched:
+            if named:
+                patched.setenv("VINES_DATA", named)
+            for command in (("status",), ("query", "select 1"), ("run", "quickstart"), ("gc",)):
+                done = project.vines(*command, check=False)
+                assert (done.returncode, done.stderr.count("\n"), done.stdout) == (2, 1, ""), command
+                assert f"{project.root / 'data'} should be the folder of results and is none" in done.stderr

@@ -278,3 +278,13 @@ def test_a_list_without_an_order_is_refused_where_states_are_carried(lab):
         DeclarationError, match="the values of A neither rise nor fall throughout, and a chain runs up or"
     ):
         load(declared, root=lab.folder)
+
+
+def test_a_full_disk_is_no_property_of_a_point(lab):
+    """No point is stored as failed for what the machine lacks: it ends the run, and the next one computes it."""
+    full = lab.declare(UP.replace('"toy"', '"toy"\n    tally = "/dev/full"'))
+    for jobs in (1, 2):
+        with pytest.raises(OSError, match="No space left on device"):
+            lab.run(full, jobs=jobs)
+        assert not [*lab.store.pools.glob("*/0*")]
+        assert lab.store.pins("toys") == {}

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import contextlib
 import csv
+import errno
+import glob
 import hashlib
 import io
 import json
@@ -22,6 +24,8 @@ from vines.store import Result, describe_file
 
 __all__ = ["Collected", "export_results"]
 
+_OF_THE_DISK = frozenset({errno.EDQUOT, errno.EFBIG, errno.ENOSPC, errno.ENOTEMPTY, errno.EROFS})
+"""What can be wrong with where an export is written, not with what it is made of."""
 _LOCAL = ("written", "host")
 """What a manifest says of when and where, which is no part of the data."""
 
@@ -42,6 +46,8 @@ class Collected:
         Texts of LICENSE and CITATION.cff.
     logs : bool
         Whether the MCAP logs go along.
+    stale : sequence of str
+        Which stages are declared otherwise now, or not computed, a line each.
     """
 
     results: Sequence[tuple[str, str, Result]]
@@ -50,6 +56,7 @@ class Collected:
     licence: str
     citation: str
     logs: bool = False
+    stale: Sequence[str] = ()
 
     def place(self, pipeline: str, stage: str, file: str) -> str | None:
         """Return where a file of a result lies in the export; None if it does not go along."""
@@ -76,7 +83,7 @@ def export_results(collected: Collected, target: Path) -> list[str]:
     Raises
     ------
     StoreError
-        If the folder is not empty.
+        If the folder is not empty, another export writes there, or it cannot be written.
     DamageError
         If a file of a result is missing or damaged.
     """
@@ -103,7 +110,7 @@ def export_results(collected: Collected, target: Path) -> list[str]:
         _write(folder / "load.sql", _load(collected))
         _write(folder / "dictionary.csv", _dictionary(collected))
         _write(folder / "datapackage.json", _datapackage(collected))
-        _write(folder / "README.md", readme(collected.results, collected.titles, collected.logs))
+        _write(folder / "README.md", readme(collected.results, collected.titles, collected.logs, collected.stale))
         names = sorted(path.relative_to(folder).as_posix() for path in folder.rglob("*") if path.is_file())
         _write(folder / "SHA256SUMS", "".join(f"{_sha256(folder / name)}  {name}\n" for name in names))
     return [*names, "SHA256SUMS"]
@@ -111,16 +118,31 @@ def export_results(collected: Collected, target: Path) -> list[str]:
 
 @contextlib.contextmanager
 def _staged(target: Path) -> Iterator[Path]:
-    """Give a folder that takes the place of the target once it is whole."""
-    folder = target.parent / f".{target.name}.{uuid.uuid4().hex[:12]}"
-    folder.mkdir()
+    """Give a folder that takes the place of the target once it is whole; what a killed export left goes."""
+    from filelock import FileLock, Timeout
+
+    lock = FileLock(target.parent / f".{target.name}.export.lock")
     try:
+        lock.acquire(timeout=0)
+    except Timeout:
+        raise StoreError(f"another export is writing {target}; wait for it, or name another folder") from None
+    folder = target.parent / f"{lock.lock_file}.{uuid.uuid4().hex[:12]}"
+    try:
+        for left in target.parent.glob(f"{glob.escape(Path(lock.lock_file).name)}.*"):
+            shutil.rmtree(left, ignore_errors=True)
+        folder.mkdir()
         yield folder
         if target.is_dir():
             target.rmdir()
         folder.rename(target)
+    except OSError as error:
+        if error.errno not in _OF_THE_DISK:
+            raise
+        raise StoreError(f"{target} cannot be written: {error.strerror}; nothing of the export is there") from None
     finally:
         shutil.rmtree(folder, ignore_errors=True)
+        Path(lock.lock_file).unlink(missing_ok=True)
+        lock.release()
 
 
 def _copy(source: Path, target: Path) -> None:

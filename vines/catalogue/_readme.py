@@ -62,7 +62,9 @@ Units stand in the metadata of each column, in the JSON text under the key `vine
 """
 
 
-def readme(results: Sequence[tuple[str, str, Result]], titles: Mapping[str, str], logs: bool) -> str:
+def readme(
+    results: Sequence[tuple[str, str, Result]], titles: Mapping[str, str], logs: bool, stale: Sequence[str] = ()
+) -> str:
     """Return the text of README.md.
 
     Parameters
@@ -73,10 +75,16 @@ def readme(results: Sequence[tuple[str, str, Result]], titles: Mapping[str, str]
         Title of each pipeline.
     logs : bool
         Whether the logs are there.
+    stale : sequence of str
+        Stages that are declared otherwise now.
     """
     files = [f"{pipeline}.{stage}.{name}" for pipeline, stage, result in results for name in result.tables]
     text = _HEAD.replace("{first}", files[0] if files else "<pipeline>.<stage>.<table>")
-    lines = [text.replace("{logs}", "" if logs else ": not part of this export"), "## Tables", ""]
+    lines = [text.replace("{logs}", "" if logs else ": not part of this export")]
+    if stale:
+        lines += ["## Not as declared", "", "`declarations/` asks for more or something else than what is here:", ""]
+        lines += [*(f"- {each}" for each in stale), ""]
+    lines += ["## Tables", ""]
     rows: dict[str, int] = {}
     for _, _, result in results:
         for name, about in result.manifest["tables"].items():

@@ -1,128 +1,12 @@
 """The command line: parse, call one function, print.
 
-Subcommands live in modules of their own that are imported when they are called, so that ``vines --help`` is quick.
+Nothing is imported here, so that Ctrl-C while the rest is loaded ends in one line, as it does later.
 """
 
-from __future__ import annotations
+__all__ = ["main"]
 
-import gc
-import importlib
-import io
-import os
-import shlex
-import sys
-import warnings
-from pathlib import Path
-from typing import Any
-
-import click
-
-from vines import __version__
-from vines.cli._interrupt import stoppable
-from vines.cli._supervised import PATIENCE, go_on_in_a_child, is_supervised
-from vines.errors import DamageWarning, VinesError, nearest
-
-__all__ = ["app", "main"]
-
-# name: (module, one line for --help)
-COMMANDS = {
-    "init": ("vines.cli._init", "Start a study of your own in a new folder."),
-    "list": ("vines.cli._list", "List the pipelines and what they are for."),
-    "status": ("vines.cli._status", "Say what is computed, what is stale, and why."),
-    "run": ("vines.cli._run", "Compute what a pipeline still lacks."),
-    "merge": ("vines.cli._merge", "Put together what shards of a run computed."),
-    "graph": ("vines.cli._graph", "Draw a pipeline as a Mermaid flowchart."),
-    "kinds": ("vines.cli._kinds", "List the kinds of stages, or the options of one."),
-    "plots": ("vines.cli._plots", "List the plots of figures, or the options of one."),
-    "tables": ("vines.cli._tables", "List the result tables."),
-    "schema": ("vines.cli._schema", "Describe the columns of a table, with units."),
-    "query": ("vines.cli._query", "Ask the result tables in SQL."),
-    "verify": ("vines.cli._verify", "Are the stored results intact and physically consistent?"),
-    "check": ("vines.cli._check", "Do the results reproduce the published values?"),
-    "report": ("vines.cli._report", "Write one HTML page: figures, checks, tables, provenance."),
-    "export": ("vines.cli._export", "Copy results into a folder that needs no vines."),
-    "solve": ("vines.cli._solve", "Print the periodic orbit of a word of impacts."),
-    "view": ("vines.cli._view", "Look at logged runs in the Rerun viewer."),
-    "browse": ("vines.cli._browse", "Browse all logs as a table in the Rerun viewer."),
-    "recover": ("vines.cli._recover", "Save what is intact in a damaged log."),
-    "diff": ("vines.cli._diff", "Compare two results, parameters and values."),
-    "gc": ("vines.cli._gc", "Remove results that nothing refers to."),
-    "rig": ("vines.cli._rig", "Measured data of a rig: ingest, reconstruct, compare; or a synthetic one."),
-    "warm-up": ("vines.cli._warm_up", "Compile the kernels now, not at the first run."),
-}
-
-
-_KEEPING = frozenset({"merge", "run"})
-"""Commands that keep what they have computed."""
-_SERVING = frozenset({"browse", "view"})
-"""Commands that a signal is how to end: they end their server in good order."""
-_SERVER_PATIENCE = 12.0
-"""Seconds that they have for it on a busy machine; they take less than one otherwise."""
-_THRESHOLDS = (100_000, 50, 100)
-"""New objects, and rounds, after which Python looks for cycles; its own are 700, 10, 10."""
-
-
-class LazyGroup(click.Group):
-    """A group that knows the names and summaries of its commands and imports one when it is called.
-
-    Parameters
-    ----------
-    known : dict of str to (str, str)
-        Module, and line for ``--help``, of each command, in the order in which a user meets them.
-    """
-
-    def __init__(self, *args: Any, known: dict[str, tuple[str, str]], **kwargs: Any) -> None:
-        super().__init__(*args, **kwargs)
-        self.known = known
-
-    def list_commands(self, ctx: click.Context) -> list[str]:
-        """Return the names of the commands."""
-        del ctx
-        return list(self.known)
-
-    def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
-        """Import a command."""
-        del ctx
-        if cmd_name not in self.known:
-            return None
-        return importlib.import_module(self.known[cmd_name][0]).command
-
-    def resolve_command(self, ctx: click.Context, args: list[str]) -> Any:
-        """Name the nearest command if there is none of that name."""
-        if args and args[0] not in self.known and not args[0].startswith("-"):
-            raise click.UsageError(f"no command {args[0]!r}: {nearest(args[0], self.known)}", ctx)
-        return super().resolve_command(ctx, args)
-
-    def invoke(self, ctx: click.Context) -> Any:
-        """Call the command; of an interruption nothing is printed here, where click would print an empty line."""
-        try:
-            return super().invoke(ctx)
-        except KeyboardInterrupt:
-            raise click.exceptions.Abort from None
-
-    def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
-        """Write the list of commands without importing them."""
-        del ctx
-        with formatter.section("Commands"):
-            formatter.write_dl([(name, line) for name, (_, line) in self.known.items()])
-
-
-@click.group(cls=LazyGroup, known=COMMANDS, context_settings={"help_option_names": ["-h", "--help"]})
-@click.version_option(__version__, prog_name="vines")
-@click.option(
-    "--root",
-    metavar="DIR",
-    type=click.Path(path_type=Path),
-    help="Root of the project; else VINES_ROOT, or the nearest parent with pipelines/.",
-)
-def app(root: Path | None) -> None:
-    """Reproducible studies of the vibro-impact nonlinear energy sink.
-
-    \b
-    vines run quickstart        compute a first study
-    vines list                  see what else there is
-    """  # noqa: D301 - click reads \b as "keep these lines"
-    del root  # commands ask for it: vines.cli._study
+_STOPPED = 130
+"""As `vines.cli._interrupt.STOPPED`, which may not be loaded yet."""
 
 
 def main(*, supervised: bool = True) -> None:
@@ -133,56 +17,19 @@ def main(*, supervised: bool = True) -> None:
     supervised : bool
         Whether it goes on in a child process, which a signal ends even inside a kernel or a query.
     """
-    command = next((each for each in sys.argv[1:] if each in COMMANDS), "")
-    remedy = f"'{shlex.join(['vines', *sys.argv[1:]])}' goes on" if command in _KEEPING else ""
-    if supervised:
-        go_on_in_a_child(remedy, patience=_SERVER_PATIENCE if command in _SERVING else PATIENCE)
-    os.environ.setdefault("RERUN_ANALYTICS", "0")
-    # What libraries make at their import lives to the end; to look for cycles there takes a twelfth of a first run.
-    gc.set_threshold(*_THRESHOLDS)
-    for stream in (sys.stdout, sys.stderr):
-        if isinstance(stream, io.TextIOWrapper):  # a letter that the terminal does not have is no error
-            stream.reconfigure(errors="backslashreplace")
-    warnings.showwarning = _show
+    waited_for = _by_nobody
     try:
-        with stoppable(remedy, silent=is_supervised()):
-            code = app.main(standalone_mode=False)
-    except click.exceptions.NoArgsIsHelpError as error:
-        click.echo(error.format_message())
-        code = 0
-    except click.ClickException as error:
-        click.echo(f"vines: {error.format_message()}", err=True)
-        code = error.exit_code
-    except VinesError as error:
-        click.echo(f"vines: {error}", err=True)
-        code = error.exit_code
-    except BrokenPipeError:
-        # The reader of our output went away (`vines query … | head`); nothing is wrong.
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        code = 0
-    except OSError as error:
-        # A folder that cannot be made, a full disk, a time-out: ours to tell in a line, not to trace.
-        place = f"{error.filename}: " if error.filename else ""
-        click.echo(f"vines: {place}{error.strerror or error}{_named(error)}", err=True)
-        code = 2
-    except MemoryError as error:
-        click.echo(f"vines: not enough memory{f': {error}' if str(error) else ''}", err=True)
-        code = 2
-    sys.exit(code if isinstance(code, int) else 0)
+        from vines.cli._app import run
+        from vines.cli._supervised import is_supervised as waited_for
+
+        run(supervised=supervised)
+    except KeyboardInterrupt:
+        import os
+
+        if not waited_for():  # else the process that waits tells it
+            os.write(2, b"vines: stopped\n")
+        raise SystemExit(_STOPPED) from None
 
 
-def _show(message: Warning | str, category: type[Warning], *place: Any) -> None:
-    """Print in one line what an answer lacks, and other warnings as Python does."""
-    if issubclass(category, DamageWarning):
-        click.echo(f"vines: {message}", err=True)
-    else:
-        click.echo(warnings.formatwarning(message, category, *place[:2]), err=True, nl=False)
-
-
-def _named(error: OSError) -> str:
-    """Say which variable named the folder that an error is about, if one did."""
-    for variable in ("VINES_DATA", "VINES_ROOT"):
-        folder = os.environ.get(variable)
-        if folder and error.filename and Path(os.fsdecode(error.filename)).is_relative_to(Path(folder).absolute()):
-            return f"; {variable} names the folder {folder}"
-    return ""
+def _by_nobody() -> bool:
+    return False

@@ -5,17 +5,14 @@ from __future__ import annotations
 import os
 import re
 import tempfile
-import warnings
 from pathlib import Path
 
 import click
 import msgspec
 
 from vines.cli._study import the_study
-from vines.errors import DamageWarning, QueryError
+from vines.errors import QueryError
 
-INCOMPLETE = 1
-"""Exit code where the answer is without results that are damaged."""
 SUFFIXES = {".csv": "csv", ".json": "json", ".parquet": "parquet"}
 
 
@@ -57,13 +54,7 @@ def command(sql: str, form: str | None, out: Path | None) -> None:
         raise QueryError(
             f"--out {out}: the suffix {out.suffix!r} names no format; allowed: {allowed}; or give --format"
         )
-    with warnings.catch_warnings(record=True) as told:
-        warnings.simplefilter("always", DamageWarning)
-        _answer(sql, form, out)
-    for each in told:
-        click.echo(f"vines: {each.message}", err=True)
-    if any(issubclass(each.category, DamageWarning) for each in told):
-        raise click.exceptions.Exit(INCOMPLETE)
+    _answer(sql, form, out)
 
 
 def _answer(sql: str, form: str | None, out: Path | None) -> None:

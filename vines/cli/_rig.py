@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import click
 
-from vines.cli import LazyGroup
+from vines.cli._app import LazyGroup
 
 COMMANDS = {
     "init": ("vines.cli._rig_init", "Write a commented template of a run folder."),

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import struct
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from vines.errors import printable
@@ -18,14 +18,27 @@ UNVERIFIED = "unverified"
 
 @dataclass(frozen=True)
 class Account:
-    """What was saved and what was lost, a line each, and whether every message that was counted is there."""
+    """What was saved and what was lost, a line each.
+
+    Attributes
+    ----------
+    saved, lost : tuple of str
+        The lines.
+    every_message : bool
+        Whether every message that was counted is there.
+    aside : int
+        How many of the lines on what was lost tell of messages that are set aside.
+    """
 
     saved: tuple[str, ...]
     lost: tuple[str, ...]
     every_message: bool
+    aside: int
 
 
-def account(found: Salvage, head: Head, messages: Sequence[bytes], unverified: int) -> Account:
+def account(
+    found: Salvage, head: Head, messages: Sequence[bytes], unverified: Mapping[bytes, int], aside: Mapping[bytes, str]
+) -> Account:
     """Return in words what is saved and what is lost.
 
     Parameters
@@ -35,11 +48,15 @@ def account(found: Salvage, head: Head, messages: Sequence[bytes], unverified: i
     head : Head
         Its descriptions that can be believed.
     messages : sequence of bytes
-        The message records that are saved.
-    unverified : int
-        How many of them nothing vouches for.
+        The message records that can be believed.
+    unverified : mapping of bytes to int
+        Those of them that nothing vouches for, and how often each is there.
+    aside : mapping of bytes to str
+        Those of them that are not saved because they cannot be read, and what each does in the place of that.
     """
-    saved, lost = _channels(head, messages)
+    saved, lost = _channels(head, [message for message in messages if message not in aside])
+    strange = _aside(head, [message for message in messages if message in aside], aside)
+    lost += strange
     # Without any count the messages that are missing are not known.
     every_message = bool(head.status) and found.ended and not lost
     undescribed = sum(not head.describes(_channel(message)) for message in found.checked)
@@ -57,9 +74,25 @@ def account(found: Salvage, head: Head, messages: Sequence[bytes], unverified: i
     if not found.ended:
         count = "" if head.status else "; how many messages followed is not known"
         lost.append(f"the end of the file, after byte {found.size - 1}{count}")
-    if unverified:
-        saved.append(f"{unverified} of the messages have no checksum: they are {UNVERIFIED}")
-    return Account(tuple(map(printable, saved)), tuple(map(printable, lost)), every_message)
+    doubtful = sum(count for message, count in unverified.items() if message not in aside)
+    if doubtful:
+        saved.append(f"{doubtful} of the messages have no checksum: they are {UNVERIFIED}")
+    return Account(tuple(map(printable, saved)), tuple(map(printable, lost)), every_message, len(strange))
+
+
+def _aside(head: Head, messages: Sequence[bytes], why: Mapping[bytes, str]) -> list[str]:
+    """Return a line a channel of the messages that are set aside."""
+    by_channel: dict[int, list[bytes]] = {}
+    for message in messages:
+        by_channel.setdefault(_channel(message), []).append(message)
+    return [
+        f"{head.channels[number].topic}: {len(each)} messages that {why[each[0]]}, the first at t {_time(each[0]):.6g}"
+        for number, each in by_channel.items()
+    ]
+
+
+def _time(message: bytes) -> float:
+    return struct.unpack_from("<Q", message, 15)[0] / 1e9
 
 
 def _channel(message: bytes) -> int:

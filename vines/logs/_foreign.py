@@ -18,9 +18,11 @@ from vines.logs._walk import Found
 if TYPE_CHECKING:
     import pyarrow as pa
 
-__all__ = ["foreign_tables"]
+__all__ = ["foreign_tables", "is_readable", "why_unfit"]
 
 _READABLE = ("protobuf", "json")
+_UNFIT = (DecodeError, KeyError, NotImplementedError, OverflowError, RecursionError, TypeError, ValueError)
+"""What decoding raises of messages that are not what they should be."""
 
 
 def foreign_tables(
@@ -40,7 +42,8 @@ def foreign_tables(
     Returns
     -------
     tuple of (dict of str to pyarrow.Table, list of str)
-        The tables by topic, and the channels in an encoding that is neither protobuf nor JSON.
+        The tables by topic, and what a reader should know: channels in an encoding that is neither protobuf nor JSON,
+        and columns of values of several types.
 
     Raises
     ------
@@ -48,26 +51,44 @@ def foreign_tables(
         If a message does not fit its schema, or holds what no table can.
     """
     tables: dict[str, pa.Table] = {}
-    unread = [f"{topic.topic} ({topic.message_encoding})" for topic in topics.values() if not _readable(topic)]
+    unread = [f"{topic.topic} ({topic.message_encoding})" for topic in topics.values() if not is_readable(topic)]
+    remarks: list[str] = []
+    if unread:
+        remarks.append(f"channels that vines cannot decode (it reads protobuf and JSON): {', '.join(sorted(unread))}")
     for number, topic in topics.items():
-        if not _readable(topic):
+        if not is_readable(topic):
             continue
         try:
-            made = _table(_rows(topic, found.schema(number), found.messages[number]))
-        except OverflowError:
-            raise LogError(f"{file}: the messages on {topic.topic} hold an integer beyond 64 bits") from None
-        except RecursionError:
-            raise LogError(f"{file}: the messages on {topic.topic} are nested too deeply") from None
-        except (DecodeError, ValueError, TypeError, KeyError, NotImplementedError) as unfit:
-            said = " ".join(str(unfit).split())
-            raise LogError(f"{file}: the messages on {topic.topic} do not fit their schema ({said})") from unfit
+            made, mixed = _table(_rows(topic, found.schema(number), found.messages[number]))
+        except _UNFIT as unfit:
+            raise LogError(f"{file}: the messages on {topic.topic} {_said(unfit)}") from None
         # Two channels may share a topic; their numbers keep them apart.
         tables[topic.topic if topic.topic not in tables else f"{topic.topic}#{number}"] = made
-    return tables, sorted(unread)
+        remarks += [f"{name} on {topic.topic} has values of several types: each stands as JSON text" for name in mixed]
+    return tables, remarks
 
 
-def _readable(topic: records.Channel) -> bool:
+def is_readable(topic: records.Channel) -> bool:
+    """Whether a channel is in an encoding that can be decoded."""
     return topic.message_encoding in _READABLE
+
+
+def why_unfit(topic: records.Channel, schema: records.Schema | None, message: Messages) -> str:
+    """Return why a message of such a channel cannot be read alone; empty if it can."""
+    try:
+        _table(_rows(topic, schema, message))
+    except _UNFIT as unfit:
+        return _said(unfit)
+    return ""
+
+
+def _said(unfit: BaseException) -> str:
+    """Return in words what messages do that cannot be read."""
+    if isinstance(unfit, OverflowError):
+        return "hold an integer beyond 64 bits"
+    if isinstance(unfit, RecursionError):
+        return "are nested too deeply"
+    return f"do not fit their schema ({' '.join(str(unfit).split())})"
 
 
 def _rows(topic: records.Channel, schema: records.Schema | None, messages: Messages) -> list[dict[str, Any]]:
@@ -127,13 +148,22 @@ def _value(each: Any, value: Any) -> Any:
     return value
 
 
-def _table(rows: list[dict[str, Any]]) -> pa.Table:
+def _table(rows: list[dict[str, Any]]) -> tuple[pa.Table, list[str]]:
+    """Return rows as a table, and its columns of values of several types."""
     import pyarrow as pa
 
     names = list(dict.fromkeys(["log_time", *(name for row in rows for name in row)]))
     columns = [pa.array([row["log_time"] for row in rows], pa.uint64())]
-    columns += [_column([row.get(name) for row in rows]) for name in names[1:]]
-    return pa.table(columns, names=names)
+    mixed: list[str] = []
+    for name in names[1:]:
+        values = [row.get(name) for row in rows]
+        try:
+            columns.append(_column(values))
+        except (pa.ArrowInvalid, pa.ArrowTypeError, pa.ArrowNotImplementedError):
+            mixed.append(name)
+            texts = [None if each is None else json.dumps(each, ensure_ascii=False) for each in values]
+            columns.append(pa.array(texts, pa.string()))
+    return pa.table(columns, names=names), mixed
 
 
 def _column(values: list[Any]) -> pa.Array:
@@ -145,5 +175,9 @@ def _column(values: list[Any]) -> pa.Array:
         # Numbers from 2^63 on, as in fields of type uint64, fit 64 bits too.
         try:
             return pa.array(values, pa.uint64())
-        except (pa.ArrowInvalid, pa.ArrowTypeError):
-            raise larger from None
+        except (pa.ArrowInvalid, pa.ArrowTypeError, OverflowError):
+            if len(values) == 1:
+                raise larger from None
+        for each in values:
+            _column([each])  # each fits alone: it is the type that they do not share
+        raise pa.ArrowTypeError("integers with and without a sign") from None

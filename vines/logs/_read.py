@@ -14,6 +14,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+import numpy as np
 from mcap import records
 
 from vines.errors import FileMissingError, LogError, LogVersionError, printable
@@ -36,7 +37,7 @@ from vines.logs._channels import (
 from vines.logs._checked import rewritten, written_counts
 from vines.logs._contents import Messages
 from vines.logs._decode import differing_fields, table
-from vines.logs._foreign import foreign_tables
+from vines.logs._foreign import foreign_tables, is_readable, why_unfit
 from vines.logs._unpack import CHUNK_LIMIT, Unpacker
 from vines.logs._walk import AGAIN, BROKEN, Found, line_of, walk
 from vines.model import VI_NES
@@ -44,7 +45,7 @@ from vines.model import VI_NES
 if TYPE_CHECKING:
     import pyarrow as pa
 
-__all__ = ["Log", "assemble", "bytes_of_file", "read"]
+__all__ = ["Log", "assemble", "bytes_of_file", "read", "unfit"]
 
 
 @dataclass(frozen=True)
@@ -192,6 +193,31 @@ def assemble(file: Path, data: bytes, max_chunk: int = CHUNK_LIMIT) -> Log:
         raise LogError(f"{file} is damaged ({line_of(broken)}); {AGAIN}") from broken
 
 
+def unfit(file: Path, found: Found) -> dict[bytes, str]:
+    """Return the message records of a file that cannot be read, and what each does in the place of that."""
+    known = _known(file, found)
+    strange: dict[bytes, str] = {}
+    for number, messages in found.messages.items():
+        topic, schema = found.topics[number], found.schema(number)
+        if number not in known and not is_readable(topic):
+            continue
+        for message in messages.in_order():
+            alone = Messages([np.frombuffer(message, np.uint8).reshape(1, -1)], [np.zeros(1, np.int64)])
+            why = _why_unfit(alone, known[number]) if number in known else why_unfit(topic, schema, alone)
+            if why:
+                strange[message] = why
+    return strange
+
+
+def _why_unfit(message: Messages, channel: Channel) -> str:
+    """Return why a message of vines cannot be read; empty if it can."""
+    try:
+        table(message, channel)
+    except BROKEN as broken:
+        return f"do not fit their schema ({line_of(broken)})"
+    return ""
+
+
 def _known(file: Path, found: Found) -> dict[int, Channel]:
     """Return the channels that carry messages of vines; refuse a schema that differs from ours."""
     known: dict[int, Channel] = {}
@@ -276,11 +302,9 @@ def _log(file: Path, found: Found, verdict: _Verdict, tables: dict[int, pa.Table
     """Return the log."""
     about, known = found.metadata.get(RUN, {}), verdict.known
     kind = _kind(found, known, about)
-    others, unread = foreign_tables(file, verdict.others, found)
+    others, of_others = foreign_tables(file, verdict.others, found)
     salvaged = found.metadata.get(RECOVERED, {})
-    remarks = list(verdict.remarks)
-    if unread:
-        remarks.append(f"channels that vines cannot decode (it reads protobuf and JSON): {', '.join(unread)}")
+    remarks = [*verdict.remarks, *of_others]
     if salvaged:
         remarks.append(f"recovered; lost: {'; '.join(salvaged.get('lost', '').splitlines())}")
         remarks += [line for line in salvaged.get("saved", "").splitlines() if line.endswith(f"are {UNVERIFIED}")]

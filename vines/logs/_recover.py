@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 import os
 import struct
-from collections import defaultdict
+from collections import Counter, defaultdict
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from io import BytesIO
@@ -22,10 +22,10 @@ from vines.logs._contents import Messages
 from vines.logs._file import LogFile
 from vines.logs._head import Head, head_of
 from vines.logs._pack import CHUNK_BYTES
-from vines.logs._read import Log, assemble, bytes_of_file
+from vines.logs._read import Log, assemble, bytes_of_file, unfit
 from vines.logs._salvage import Salvage, salvage
 from vines.logs._unpack import CHUNK_LIMIT, Unpacker
-from vines.logs._walk import walk
+from vines.logs._walk import Found, walk
 from vines.logs._write import replacing
 
 __all__ = ["Recovery", "read_damaged", "recover"]
@@ -66,8 +66,9 @@ def recover(
     """Salvage a damaged or unfinished MCAP file into a new one.
 
     Only what its own checksum vouches for is taken: whole chunks by their CRC, provenance, parameters and
-    descriptions by the SHA-256 that a log of vines holds of each. The new file is read back and compared with what was
-    taken before it gets its name. The damaged file is not touched.
+    descriptions by the SHA-256 that a log of vines holds of each. A message that is intact and cannot be read, such as
+    one that does not fit its schema, is set aside, counted and named, and the others are saved. The new file is read
+    back and compared with what was taken before it gets its name. The damaged file is not touched.
 
     Parameters
     ----------
@@ -161,14 +162,27 @@ def _salvaged(file: Path, data: bytes, complaint: LogError, max_chunk: int) -> _
             raise complaint
         reason = "no message is intact" if head.channels else "no description of a channel is intact"
         raise LogError(f"{file}: {reason} in {len(data)} bytes, nothing can be recovered; make the run again")
-    told = account(found, head, messages, unverified)
-    lost = (*told.lost, f"{doubled} messages that stand in the file before, to the byte") if doubled else told.lost
-    stream = BytesIO()
     note = {"from": file.name, "sha256": hashlib.sha256(data).hexdigest()}
-    _write(LogFile(stream, profile=found.profile), note, head, messages, told.saved, lost)
-    made = stream.getvalue()
-    _compare(file, made, head, messages, max_chunk)
-    return _Saved(made, told.saved, lost, told.every_message)
+    aside: dict[bytes, str] = {}
+    while True:
+        told = account(found, head, messages, unverified, aside)
+        lost = (*told.lost, f"{doubled} messages that stand in the file before, to the byte") if doubled else told.lost
+        kept = [message for message in messages if message not in aside]
+        stream = BytesIO()
+        _write(LogFile(stream, profile=found.profile), note, head, kept, told.saved, lost)
+        made = stream.getvalue()
+        back = _compare(file, made, head, kept, max_chunk)
+        try:
+            assemble(file, made, max_chunk)
+        except LogError as refused:
+            strange = unfit(file, back)
+            aside |= strange
+            if not strange or len(aside) == len(set(messages)):
+                raise LogError(f"{refused}; what is intact cannot be read either, so nothing is written") from None
+        else:
+            # A foreign file counts nothing: it has every message if it is whole but for those that are set aside.
+            whole = not head.ours and found.ended and not found.lost and len(lost) == told.aside
+            return _Saved(made, told.saved, lost, told.every_message or whole)
 
 
 def _by_channel(messages: Sequence[bytes]) -> dict[int, Messages]:
@@ -184,8 +198,8 @@ def _by_channel(messages: Sequence[bytes]) -> dict[int, Messages]:
     return every
 
 
-def _believed(found: Salvage, head: Head) -> tuple[list[bytes], int, int]:
-    """Return the messages that can be taken, in order of time, for how many nothing vouches, and how many were twice.
+def _believed(found: Salvage, head: Head) -> tuple[list[bytes], Counter[bytes], int]:
+    """Return the messages that can be taken, in order of time, those nothing vouches for, and how many were twice.
 
     A checksum vouches for those in chunks, or else the digest of the whole channel. Those without either are taken from
     a file that holds no digests, and from a log of vines only if it was cut and nothing else is wrong with it: then
@@ -201,7 +215,7 @@ def _believed(found: Salvage, head: Head) -> tuple[list[bytes], int, int]:
     doubled = 0
     if not head.ours:
         doubled = len(loose) - len(loose := list(dict.fromkeys(loose)))
-    unverified = sum(_channel(message) not in fitting for message in loose)
+    unverified = Counter(message for message in loose if _channel(message) not in fitting)
     return sorted([*checked, *loose], key=_time_and_sequence), unverified, doubled
 
 
@@ -271,8 +285,8 @@ def _shares(messages: Sequence[bytes]) -> Iterator[Sequence[bytes]]:
     yield messages[start:]
 
 
-def _compare(file: Path, made: bytes, head: Head, messages: Sequence[bytes], max_chunk: int) -> None:
-    """Refuse a new log that does not read back as what was taken, channel by channel."""
+def _compare(file: Path, made: bytes, head: Head, messages: Sequence[bytes], max_chunk: int) -> Found:
+    """Return what is in a new log; refuse one that does not read back as what was taken, channel by channel."""
     back = walk(file, made, Unpacker(len(made), max(max_chunk, len(made) * 100)))
     taken = _by_channel(messages)
     for number, each in taken.items():
@@ -285,7 +299,4 @@ def _compare(file: Path, made: bytes, head: Head, messages: Sequence[bytes], max
             )
     if set(back.messages) != set(taken):
         raise LogError(f"{file}: what was saved does not read back as it was; nothing is written")
-    try:
-        assemble(file, made, max_chunk)
-    except LogError as refused:
-        raise LogError(f"{refused}; what is intact cannot be read either, so nothing is written") from None
+    return back

@@ -67,8 +67,12 @@ class Demand:
             return
         try:
             seen = self.token.read_text("utf-8") == self.text
-        except OSError:
+        except FileNotFoundError:
             seen = False
+        except OSError as error:
+            raise EngineError(
+                f"{_who()} cannot read the folder {self.data} of this run ({error.strerror}); nothing was given to it"
+            ) from None
         if not seen:
             raise EngineError(
                 f"{_who()} does not see the folder {self.data} of this run, so nothing was given to it; "

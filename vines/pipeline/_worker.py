@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from vines import schema
-from vines.errors import SchemaError
+from vines.errors import SchemaError, is_of_the_machine
 from vines.pipeline._demand import Demand
 from vines.pipeline._jobs import Batch, Job, Point, Points
 from vines.store import Store, commit_part
@@ -226,7 +226,9 @@ def _attempt(
         batch = compute(job)
     except ImportError:  # a package is missing on this machine: no property of a point, which another may compute
         raise
-    except Exception as error:  # whatever a body raises is a property of a point, and the others go on
+    except Exception as error:  # whatever else a body raises is a property of a point, and the others go on
+        if is_of_the_machine(error):
+            raise
         if len(points) == 1:
             _fail(task, points, _say(error), gathered)
             return None

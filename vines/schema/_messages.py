@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 from google.protobuf import descriptor_pb2, descriptor_pool, message_factory
+from google.protobuf.message import DecodeError
 
 from vines.errors import SchemaError, UnknownNameError, nearest
 from vines.places import shipped
@@ -72,8 +73,10 @@ def file_descriptor_set() -> descriptor_pb2.FileDescriptorSet:
     ------
     FileMissingError
         If the installation is incomplete.
+    OSError
+        If the system does not let the compiled set be read.
     SchemaError
-        If the compiled set cannot be read.
+        If it is damaged.
 
     Examples
     --------
@@ -88,9 +91,10 @@ def file_descriptor_set() -> descriptor_pb2.FileDescriptorSet:
 def _compiled(name: str) -> descriptor_pb2.FileDescriptorSet:
     path = shipped("schemas") / name
     found = descriptor_pb2.FileDescriptorSet()
+    data = path.read_bytes()
     try:
-        found.ParseFromString(path.read_bytes())
-    except Exception as broken:
+        found.ParseFromString(data)
+    except DecodeError as broken:
         raise SchemaError(f"{path} cannot be read as protobuf descriptors ({broken}); install vines again") from broken
     return found
 

@@ -193,8 +193,8 @@ def _folder(name: str) -> Path:
     entry = brought(GROUP)[name]
     try:
         found = find_spec(entry.value)
-    except ImportError:
-        found = None
+    except ImportError as error:
+        raise PlugInError(f"table {name!r}: the package {entry.value} cannot be loaded: {error}") from None
     for place in (found.submodule_search_locations or ()) if found is not None else ():
         if (Path(place) / f"{name}.toml").is_file():
             return Path(place)

@@ -4,9 +4,12 @@ from __future__ import annotations
 
 import hashlib
 import os
+import stat
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
+
+from vines.store._object import is_lasting
 
 __all__ = ["damage_of", "describe_file", "describe_files"]
 
@@ -37,11 +40,23 @@ def damage_of(folder: Path, name: str, said: Mapping[str, Any], *, contents: boo
         What :func:`describe_file` said when it was written.
     contents : bool
         Whether to read it; else only whether it is there in its size.
+
+    Raises
+    ------
+    OSError
+        If the system does not let it be read, which says nothing of what it holds.
     """
     try:
-        size = os.stat(folder / name).st_size  # noqa: PTH116 - it is called often
+        there = os.stat(folder / name)  # noqa: PTH116 - it is called often
     except (FileNotFoundError, NotADirectoryError):
         return f"{name} is missing"
+    except OSError as error:
+        if not is_lasting(error):
+            raise
+        return f"{name} is damaged: {error.strerror}"
+    if not stat.S_ISREG(there.st_mode):
+        return f"{name} is damaged: it is no file"
+    size = there.st_size
     if size != said["bytes"]:
         return f"{name} is damaged: it has {size} bytes, {said['bytes']} were written"
     if contents and describe_file(folder / name) != said:

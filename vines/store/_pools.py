@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import contextlib
-import json
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -14,6 +13,7 @@ from vines.errors import DamageError, StoreError
 from vines.store._atomic import commit_folder, write_text
 from vines.store._described import damage_of, describe_files
 from vines.store._keys import canonical, key_of
+from vines.store._object import is_lasting, read_object
 from vines.store._parquet import write_parquet
 from vines.store._provenance import versions
 from vines.store._results import seal
@@ -290,7 +290,7 @@ def _read_part(folder: Path) -> Part:
     from vines.store._ids import Ids
 
     try:
-        about = json.loads((folder / "part.json").read_text("utf-8"))
+        about = read_object(folder / "part.json")
         check = about.pop("check", None)
         text = about["ids"] if isinstance(about["ids"], str) else "".join(about["ids"])
         ids = Ids.from_hex(text)
@@ -300,19 +300,20 @@ def _read_part(folder: Path) -> Part:
         for name, said in about.get("files", {}).items():
             if problem := damage_of(folder, name, said, contents=False):
                 raise DamageError(f"{folder}: {problem}; {_REMEDY}")
-    except (
-        FileNotFoundError,
-        ValueError,
-        KeyError,
-        AttributeError,
-    ) as error:  # no other error of the system: it may pass
-        raise DamageError(f"{folder}: {error}; {_REMEDY}") from None
-    return Part(
-        folder=folder,
-        ids=ids,
-        failed=frozenset(about["failed"]),
-        logs=about["logs"],
-        versions=about.get("versions", {}),
-        files=about.get("files", {}),
-        code=about.get("code", ""),
-    )
+        return Part(
+            folder=folder,
+            ids=ids,
+            failed=frozenset(about["failed"]),
+            logs=about["logs"],
+            versions=about.get("versions", {}),
+            files=about.get("files", {}),
+            code=about.get("code", ""),
+        )
+    except OSError as error:
+        if not is_lasting(error):
+            raise
+        raise DamageError(f"{folder}: part.json: {error.strerror}; {_REMEDY}") from None
+    except KeyError as error:
+        raise DamageError(f"{folder}: {error} is missing in part.json; {_REMEDY}") from None
+    except (ValueError, TypeError, AttributeError) as error:
+        raise DamageError(f"{folder}: part.json: {error}; {_REMEDY}") from None

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -12,11 +11,16 @@ from vines import schema
 from vines.errors import DamageError, UnknownNameError, nearest
 from vines.store._described import damage_of
 from vines.store._keys import key_of
+from vines.store._object import read_object
 
 if TYPE_CHECKING:
     import pyarrow as pa
 
 __all__ = ["Result", "describe_table", "read_result", "seal"]
+
+
+_FORM = {"files": dict, "tables": dict}
+"""What each manifest has."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -115,9 +119,13 @@ def read_result(folder: Path, *, strict: bool = True) -> Result:
     path = folder / "manifest.json"
     remedy = "the next run of its pipeline makes it again"
     try:
-        manifest = json.loads(path.read_text("utf-8"))
+        manifest = read_object(path)
         check = manifest.pop("check", None)
-    except (OSError, ValueError, AttributeError) as error:
+        if lacking := [name for name, kind in _FORM.items() if not isinstance(manifest.get(name), kind)]:
+            raise ValueError(f"{lacking[0]!r} is missing in it, or is something else")
+    except OSError as error:
+        raise DamageError(f"{path} cannot be read: {error.strerror}; {remedy}") from None
+    except ValueError as error:
         raise DamageError(f"{path} cannot be read: {error}; {remedy}") from None
     if strict and check is not None and (check != key_of(manifest) or manifest.get("key") != folder.name):
         raise DamageError(f"{path} is damaged: it is not what was written; {remedy}")

@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import json
 import platform
+import re
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from datetime import UTC, datetime
 from pathlib import Path
@@ -14,6 +15,7 @@ from vines.errors import DamageError, StoreError
 from vines.store._atomic import commit_folder, write_text
 from vines.store._described import describe_files
 from vines.store._keys import key_of
+from vines.store._object import is_lasting, read_object
 from vines.store._results import Result, read_result, seal
 from vines.store._staging import clear_staging, staging
 from vines.store._wholeness import look, remember
@@ -24,6 +26,8 @@ if TYPE_CHECKING:
 __all__ = ["Store"]
 
 _PINS = ".pins.json"
+_KEY = re.compile(r"\w+", re.ASCII)
+"""What the name of a folder may be: a pin leads nowhere else."""
 
 
 class Store:
@@ -127,9 +131,11 @@ class Store:
             return "it is not stored"
         try:
             result = read_result(folder)
+            return look(result, self._seen(key), files, thorough=thorough)
         except DamageError as error:
             return str(error)
-        return look(result, self._seen(key), files, thorough=thorough)
+        except OSError as error:
+            return f"{error.filename or folder} cannot be read: {error.strerror}"
 
     def result(self, key: str, *, strict: bool = True) -> Result:
         """Return a stored result.
@@ -216,19 +222,25 @@ class Store:
         ------
         DamageError
             If the file is damaged.
+        StoreError
+            If the system does not let it be read.
         """
         path = self._pin_file(pipeline)
+        remedy = f"'vines run {pipeline}' makes it again; if there is no such pipeline any more, remove it"
         try:
-            pins = json.loads(path.read_text("utf-8"))
-            checks = {stage: pin.pop("check", None) for stage, pin in pins.items()}
+            pins = read_object(path)
+            checks = {stage: _form_of(stage, pin).pop("check", None) for stage, pin in pins.items()}
         except (FileNotFoundError, NotADirectoryError):
             return {}
-        except (ValueError, AttributeError) as error:
-            raise DamageError(f"{path} is damaged: {error}; 'vines run {pipeline}' makes it again") from None
+        except OSError as error:
+            if not is_lasting(error):
+                raise StoreError(f"{path} cannot be read: {error.strerror}") from None
+            raise DamageError(f"{path} is damaged: {error.strerror}; {remedy}") from None
+        except ValueError as error:
+            raise DamageError(f"{path} is damaged: {error}; {remedy}") from None
         for stage, pin in pins.items():
             if checks[stage] not in (None, _check(pipeline, stage, pin)):
-                text = f"{path} is damaged: it is not what was written"
-                raise DamageError(f"{text}; 'vines run {pipeline}' makes it again")
+                raise DamageError(f"{path} is damaged: it is not what was written; {remedy}")
         return pins
 
     def pin(self, pipeline: str, stage: str, pin: Mapping[str, Any]) -> None:
@@ -249,8 +261,8 @@ class Store:
 
         Raises
         ------
-        DamageError
-            If one of the files is damaged.
+        StoreError
+            If one of the files is damaged, or cannot be read.
         """
         return {name: self.pins(name) for name in self._pinned_names()}
 
@@ -261,7 +273,7 @@ class Store:
         for name in self._pinned_names():
             try:
                 found[name] = self.pins(name)
-            except DamageError as error:
+            except StoreError as error:
                 damaged[name] = str(error)
         return found, damaged
 
@@ -274,6 +286,20 @@ class Store:
 
     def _pin_file(self, pipeline: str) -> Path:
         return self.pipelines / f"{pipeline}{_PINS}"
+
+
+def _form_of(stage: str, pin: Any) -> dict[str, Any]:
+    """Return a pin that has the form of one.
+
+    Raises
+    ------
+    ValueError
+        If it has not.
+    """
+    keys = [pin.get("result"), pin.get("pool", "none")] if isinstance(pin, dict) else []
+    if not keys or not all(isinstance(key, str) and _KEY.fullmatch(key) for key in keys):
+        raise ValueError(f"no key of a result stands under {stage!r}")
+    return pin
 
 
 def _check(pipeline: str, stage: str, pin: Mapping[str, Any]) -> str:

@@ -40,8 +40,8 @@ def guarded(port: int) -> Iterator[int]:
                 inner.request("GET", self.path)
                 answer = inner.getresponse()
                 body = answer.read()
-            except OSError:
-                self.send_error(502, "the viewer's server has ended")
+            except OSError as error:
+                self.send_error(502, f"the viewer's server does not answer: {error.strerror or error}")
                 return
             finally:
                 inner.close()

@@ -12,6 +12,7 @@ import tempfile
 import threading
 import time
 from collections.abc import Callable, Iterator
+from functools import partial
 from importlib.util import find_spec
 from pathlib import Path
 from types import FrameType
@@ -28,6 +29,10 @@ if TYPE_CHECKING:
 __all__ = ["catalogue", "headless", "native", "native_url", "served"]
 
 _START_SECONDS = 60.0
+_END_SECONDS = 0.3
+"""For which a program is waited for that was told to end."""
+_LOOK_SECONDS = 0.05
+"""Between two looks whether one has ended."""
 _NO_VULKAN = ("Failed to get render context", "No graphics adapter", "No suitable graphics adapter")
 """What the viewer says on its way out where there is no Vulkan."""
 _VULKAN = "on Debian: apt-get install mesa-vulkan-drivers libvulkan1"
@@ -118,7 +123,7 @@ def served(what: Path | str) -> Iterator[tuple[str, Callable[[], object]]]:
         source = f"rerun+http://127.0.0.1:{data}/proxy" if recording else what
         # From here on Ctrl-C and SIGTERM are how it is meant to end, also before somebody waits.
         with contextlib.suppress(KeyboardInterrupt):
-            yield f"http://127.0.0.1:{port}/?url={quote(str(source), safe='')}&theme=dark", process.wait
+            yield f"http://127.0.0.1:{port}/?url={quote(str(source), safe='')}&theme=dark", partial(_wait, process)
 
 
 @contextlib.contextmanager
@@ -189,10 +194,17 @@ def _answers(port: int) -> bool:
         return probe.connect_ex(("127.0.0.1", port)) == 0
 
 
+def _wait(process: subprocess.Popen[bytes]) -> None:
+    """Wait until a program ends; ``Popen.wait`` goes on for a quarter of a second after Ctrl-C."""
+    while process.poll() is None:
+        time.sleep(_LOOK_SECONDS)
+
+
 def _end(process: subprocess.Popen[bytes]) -> None:
+    """End a program; what it shows lies in a file, so nothing is lost where it does not hear in time."""
     process.terminate()
     try:
-        process.wait(timeout=10)
+        process.wait(timeout=_END_SECONDS)
     except subprocess.TimeoutExpired:
         process.kill()
         process.wait()

@@ -40,7 +40,14 @@ def test_what_is_no_reconstruction_is_one_line(dwell, tmp_path):
     np.savez(tmp_path / "other.npz", form=np.frombuffer(b'{"run": 1}', np.uint8))
     (tmp_path / "cut.npz").write_bytes(data[: len(data) // 2])
     (tmp_path / "text.npz").write_text("nothing")
-    for name in ("other", "cut", "text"):
-        with pytest.raises(RigError, match=f"{name}.npz is no reconstruction of this version of vines") as caught:
+    (tmp_path / "refused.npz").symlink_to("/proc/self/mem")  # the system refuses to read it
+    for name, says in (
+        ("other", "is no reconstruction of this version of vines: "),
+        ("text", "is no reconstruction of this version of vines: "),
+        ("cut", "is damaged (File is not a zip file)"),
+        ("refused", "cannot be read: Input/output error"),
+    ):
+        with pytest.raises(RigError) as caught:
             load_reconstruction(tmp_path / f"{name}.npz")
+        assert str(caught.value).startswith(f"{tmp_path / name}.npz {says}")
         assert "\n" not in str(caught.value)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import warnings
 from pathlib import Path
 
-from vines.errors import FileMissingError, PackageMissingError, RigError
+from vines.errors import FileMissingError, PackageMissingError, RigError, is_of_the_machine
 from vines.rig.formats._format import FORMATS, Format
 from vines.rig.formats._raw import RawFile
 
@@ -50,6 +50,8 @@ def read_file(path: Path, dialect: str = "") -> RawFile:
     except MemoryError:
         raise RigError(f"{path.name}: its header asks for more memory than there is; the file is damaged") from None
     except Exception as error:
+        if is_of_the_machine(error) or isinstance(error, PermissionError):
+            raise RigError(f"{path.name} cannot be read: {getattr(error, 'strerror', error)}") from None
         # The libraries raise whatever they stumble over in a damaged file; it is theirs, and the reason is in it.
         reason = " ".join(str(error).replace(str(path), "it").split()) or type(error).__name__
         raise RigError(f"{path.name} cannot be read as {form.label}: {reason[:200]}") from None

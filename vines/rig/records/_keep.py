@@ -54,7 +54,7 @@ def load_reconstruction(path: Path) -> Reconstruction:
     FileMissingError
         If there is no such file.
     RigError
-        If it is not one, or was written by another version of vines.
+        If it cannot be read, is damaged, is no reconstruction, or was written by another version of vines.
     """
     if not path.is_file():
         raise FileMissingError(f"{path}: there is no such file; 'vines rig reconstruct RUN' makes one")
@@ -67,6 +67,10 @@ def load_reconstruction(path: Path) -> Reconstruction:
                 return complex(value["re"], value["im"]) if kind is complex else held[f"array_{value['array']:02d}"]
 
             return msgspec.convert(form, Reconstruction, dec_hook=whole)
-    except (OSError, ValueError, KeyError, TypeError, BadZipFile, zlib.error) as error:
+    except OSError as error:
+        raise RigError(f"{path} cannot be read: {error.strerror or error}") from None
+    except (BadZipFile, EOFError, zlib.error) as error:
+        raise RigError(f"{path} is damaged ({error}); 'vines rig reconstruct RUN' makes it again") from None
+    except (ValueError, KeyError, TypeError) as error:
         # msgspec's and json's errors are ValueErrors.
         raise RigError(f"{path} is no reconstruction of this version of vines: {str(error).splitlines()[0]}") from None

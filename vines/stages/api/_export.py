@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Collection, Iterable
 from pathlib import Path
 
-from vines.errors import DamageError, FileMissingError, UnknownNameError
+from vines.errors import DamageError, FileMissingError, StaleWarning, StoreError, UnknownNameError
 from vines.pipeline import available, with_included
 from vines.places import shipped
 from vines.stages.api._home import Home, current
+from vines.stages.api._parts import load_parts
 from vines.stages.api._stored import stored_pipelines
 
 __all__ = ["export"]
@@ -49,12 +51,21 @@ def export(
     FileMissingError
         If the licence or the citation cannot be read.
     StoreError
-        If the folder is not empty, or a file of a result is missing.
+        If the folder is not empty, is being exported to, cannot be written, or lies where results are kept; or if a
+        file of a result is missing or damaged.
+
+    Warns
+    -----
+    StaleWarning
+        If a result is not what its declaration asks for now; the README of the export says so too.
     """
     from vines.catalogue import Collected, export_results, stage_results
 
     study = study or current()
     store = study.store
+    target = folder.resolve()
+    if target.is_relative_to(store.data.resolve()):
+        raise StoreError(f"{folder} lies in {store.data}, which is for what vines keeps there; name another folder")
     pinned, damaged = store.readable_pins()
     wanted = stored_pipelines(names, {*pinned, *damaged}, study.root)
     stored, absent = stage_results(store, wanted)
@@ -65,7 +76,8 @@ def export(
     if not results:
         raise UnknownNameError("nothing is stored yet that could be exported; run 'vines run quickstart' first")
     declarations, titles = _declared(wanted, names, study.root)
-    return export_results(
+    stale = [line for name in wanted if name in available(study.root) for line in _stale(name, study)]
+    files = export_results(
         Collected(
             results=results,
             declarations=declarations,
@@ -73,9 +85,25 @@ def export(
             licence=_text(licence, "LICENSE", study.root),
             citation=_text(citation, "CITATION.cff", study.root),
             logs=logs,
+            stale=stale,
         ),
-        folder.absolute(),
+        target,
     )
+    for line in stale:
+        warnings.warn(f"{line}; the export holds what is stored", StaleWarning, stacklevel=2)
+    return files
+
+
+def _stale(name: str, study: Home) -> list[str]:
+    """Return the stages of a pipeline whose stored result is not what is declared now, and why, a line each."""
+    from vines.pipeline import plan
+
+    return [
+        f"{name}.{each.name} is {each.state}: {each.reason}"
+        for part in load_parts(name, study=study)
+        for each in plan(part.pipeline, study.store)
+        if each.state != "up_to_date"
+    ]
 
 
 def _declared(pipelines: Collection[str], names: Iterable[str], root: Path) -> tuple[dict[str, str], dict[str, str]]:

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import os
+import warnings
 from pathlib import Path
 
-from vines.errors import FileMissingError, UnknownNameError, nearest
+from vines.errors import DamageError, DamageWarning, FileMissingError, UnknownNameError, nearest
 from vines.stages.api._home import Home, current
 from vines.store import Store
 
@@ -18,27 +19,37 @@ def recordings_folder(*, study: Home | None = None) -> Path:
 
 
 def all_logs(*, study: Home | None = None) -> list[Path]:
-    """Return the MCAP files of all logs of the catalogue.
+    """Return the MCAP files of all logs of the catalogue; a `DamageWarning` names what is without its logs.
 
     Raises
     ------
     UnknownNameError
         If nothing with logs has been run.
     """
-    found = [path for logs in _pinned((study or current()).store).values() for path in logs.values()]
+    pinned, absent = _pinned((study or current()).store)
+    found = [path for logs in pinned.values() for path in logs.values()]
+    for why in absent.values():
+        warnings.warn(f"{why}; its logs are left out", DamageWarning, stacklevel=2)
     if not found:
         raise UnknownNameError("there are no logs: nothing with logs has been run here; try 'vines run quickstart'")
     return list(dict.fromkeys(found))
 
 
-def _pinned(store: Store) -> dict[str, dict[str, Path]]:
-    """Return for each stage that is pinned its logs by their points."""
-    return {
-        f"{pipeline}.{stage}": store.result(pin["result"]).logs
-        for pipeline, stages in store.readable_pins()[0].items()
-        for stage, pin in stages.items()
-        if store.has(pin["result"]) and store.result(pin["result"]).logs
-    }
+def _pinned(store: Store) -> tuple[dict[str, dict[str, Path]], dict[str, str]]:
+    """Return for each stage that is pinned its logs by their points, and why a stage or pipeline has none to give."""
+    from vines.catalogue import stage_results
+
+    results, absent = stage_results(store)
+    logs: dict[str, dict[str, Path]] = {}
+    for pipeline, stage, result in results:
+        if not result.logs:
+            continue
+        problem = store.problem(result.key, {log["file"] for log in result.manifest["logs"]})
+        if problem:
+            absent[f"{pipeline}.{stage}"] = f"{result.folder}: {problem}; 'vines run {pipeline}' mends it"
+        else:
+            logs[f"{pipeline}.{stage}"] = result.logs
+    return logs, absent
 
 
 def find_logs(name: str, *, study: Home | None = None) -> list[Path]:
@@ -57,6 +68,8 @@ def find_logs(name: str, *, study: Home | None = None) -> list[Path]:
         If it is a path and there is no such file.
     UnknownNameError
         If there is no such pipeline, stage or log, or if it has not been run.
+    DamageError
+        If it is there and its pin, its result or one of its logs is damaged.
     """
     path = Path(name)
     # What is no regular file is told as what it is where it is read.
@@ -66,7 +79,7 @@ def find_logs(name: str, *, study: Home | None = None) -> list[Path]:
                 f"{name}: there is no such file; 'vines query \"select * from logs\"' lists the logs"
             )
         return [path]
-    logs = _pinned((study or current()).store)
+    logs, absent = _pinned((study or current()).store)
     stage, _, point = name.partition("/")
     if stage in logs:
         if not point:
@@ -82,6 +95,11 @@ def find_logs(name: str, *, study: Home | None = None) -> list[Path]:
     by_id = {key: path for paths in logs.values() for key, path in paths.items()}
     if name in by_id:
         return [by_id[name]]
+    for where in (stage, stage.partition(".")[0]):
+        if where in absent:
+            raise DamageError(f"log {name!r}: {absent[where]}")
+    if absent:
+        raise DamageError(f"no log {name!r} among those that can be read; {next(iter(absent.values()))}")
     if not logs:
         raise UnknownNameError(f"no log {name!r}: nothing with logs has been run here; try 'vines run quickstart'")
     raise UnknownNameError(f"no log {name!r}: {nearest(name, logs)}")

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from vines.errors import StoreError, UnknownNameError, VinesError, nearest
+from vines.errors import DamageError, StoreError, UnknownNameError, VinesError, nearest
 from vines.pipeline import available, code_digests, mermaid, mermaid_of_all, plan, pool_keys, what_changed
 from vines.stages.api._home import Home, current
 from vines.stages.api._parts import load_parts
@@ -138,10 +138,12 @@ def _result(store: Store, name: str) -> Result:
 
     if (Path(name) / "manifest.json").is_file():
         return read_result(Path(name))
-    every, _ = store.readable_pins()
+    every, damaged = store.readable_pins()
     pinned = {f"{each}.{stage}": pin["result"] for each, pins in every.items() for stage, pin in pins.items()}
     if name in pinned:
         return store.result(pinned[name])
+    if (pipeline := name.partition(".")[0]) in damaged:
+        raise DamageError(f"result {name!r}: {damaged[pipeline]}")
     keys: list[Any] = [path.name for path in store.results.glob("*")] if store.results.is_dir() else []
     found = [key for key in keys if len(name) >= 4 and key.startswith(name)]
     if len(found) == 1:

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable, Mapping
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any, Literal
 
-from vines.errors import EngineError, PackageMissingError, VinesError
+from vines.errors import EngineError, PackageMissingError, StoreError, VinesError, is_of_the_machine
 from vines.pipeline import available, code_digests, plan
 from vines.stages.api._home import Home, current
 from vines.stages.api._parts import Part, load_parts, members_of
@@ -121,6 +121,11 @@ def _run_part(
             raise
         tell(Event("failed", name, text=str(error)))
         return [StageOutcome(name, "failed", reason=str(error))]
+    except OSError as error:
+        if not is_of_the_machine(error):
+            raise
+        place = error.filename or store.data
+        raise StoreError(f"{place}: {error.strerror}; what is finished is kept, the next run goes on") from error
     return [replace(outcome, name=part.prefix + outcome.name) for outcome in summary.stages]
 
 

@@ -78,6 +78,8 @@ class Section:
     runs: Sequence[Run]
     tables: Sequence[Head]
     stages: Sequence[StageFacts]
+    missing: Sequence[str] = ()
+    """What it is without, and why, a line each."""
 
 
 def plain(title: str) -> str:
@@ -159,6 +161,7 @@ def _section(section: Section, *, alone: bool) -> str:
     head = "" if alone else f"<h2>{escape(section.name)}: {escape(section.title)}</h2>"
     if not alone and section.source:
         head += f'<p class="dim">{escape(section.source)}</p>'
+    head += "".join(f"<p><strong>Not on this page:</strong> {escape(each)}</p>" for each in section.missing)
     parts = [head]
     if section.comparisons:
         parts.append(_comparisons(section))

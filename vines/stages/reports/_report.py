@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import warnings
+from collections.abc import Mapping
 from datetime import datetime
 from pathlib import Path
+from typing import Any
 
-from vines.errors import FileMissingError, UnknownNameError, nearest
+from vines.errors import DamageWarning, FileMissingError, UnknownNameError, nearest
 from vines.pipeline import available, with_included
 from vines.stages.api._home import Home, current
 from vines.stages.api._stored import stored_pipelines
@@ -24,7 +27,8 @@ def report(name: str, out: Path | None = None, *, study: Home | None = None) -> 
     name : str
         The pipeline or collection. Of a collection, members that were never run are left out.
     out : Path, optional
-        The file; ``data/reports/<name>.html`` if left out. An existing one is replaced.
+        The file; ``data/reports/<name>.html`` if left out. An existing one is replaced. What is pinned and damaged or
+        gone is named on it, and by a `DamageWarning`.
     study : Home, optional
         Whose; the one that the current folder belongs to if left out.
 
@@ -52,8 +56,13 @@ def report(name: str, out: Path | None = None, *, study: Home | None = None) -> 
     if out is not None and not path.parent.is_dir():
         raise FileMissingError(f"{out}: the folder {path.parent} does not exist; make it first")
     title, source = _declared(name, files)
-    sections = [_section(store, pipeline, files, path.parent) for pipeline in pipelines]
+    sections = [
+        _section(store, pipeline, pinned.get(pipeline, {}), damaged.get(pipeline, ""), files, path.parent)
+        for pipeline in pipelines
+    ]
     write_text(path, page(name, title, source, sections))
+    for missing in (each for section in sections for each in section.missing):
+        warnings.warn(f"{missing}; the page is without it", DamageWarning, stacklevel=2)
     return path
 
 
@@ -62,13 +71,21 @@ def _declared(name: str, files: dict[str, Path]) -> tuple[str, str]:
     return str(form.get("title", "")), str(form.get("source", ""))
 
 
-def _section(store: Store, pipeline: str, files: dict[str, Path], folder: Path) -> Section:
-    pins = store.pins(pipeline)
+def _section(
+    store: Store, pipeline: str, pins: Mapping[str, Any], damage: str, files: dict[str, Path], folder: Path
+) -> Section:
     order = [stage for stage in _stages(pipeline, files) if stage in pins]
     stages = [*order, *(stage for stage in sorted(pins) if stage not in order)]
-    results = {stage: store.result(pins[stage]["result"]) for stage in stages if store.has(pins[stage]["result"])}
+    problems = {stage: store.problem(pins[stage]["result"]) for stage in stages}
+    results = {stage: store.result(pins[stage]["result"]) for stage in stages if not problems[stage]}
+    missing = [
+        f"{pipeline}.{stage}: result {pins[stage]['result'][:12]}: {problem}; 'vines run {pipeline}' mends it"
+        for stage, problem in problems.items()
+        if problem
+    ]
     title, source = _declared(pipeline, files)
-    return section_of(pipeline, title, source, results, folder, _seconds(store, pipeline))
+    told = [damage, *missing] if damage else missing
+    return section_of(pipeline, title, source, results, folder, _seconds(store, pipeline), told)
 
 
 def _stages(pipeline: str, files: dict[str, Path]) -> list[str]:

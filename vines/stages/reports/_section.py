@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -26,6 +26,7 @@ def section_of(
     results: Mapping[str, Result],
     folder: Path,
     seconds: Mapping[str, float] | None = None,
+    missing: Sequence[str] = (),
 ) -> Section:
     """Return what a page tells of a pipeline.
 
@@ -40,6 +41,8 @@ def section_of(
     seconds : mapping of str to float, optional
         How long stages took. If left out, nothing is told that a clock says, so that the page of the same results
         is the same.
+    missing : sequence of str
+        What the page is without, and why.
     """
     clock, took = seconds is not None, seconds or {}
     return Section(
@@ -52,6 +55,7 @@ def section_of(
         runs=[run for stage, result in results.items() for run in _runs(f"{pipeline}.{stage}", result, folder)],
         tables=[head for stage, result in results.items() for head in _heads(f"{pipeline}.{stage}", result)],
         stages=[_facts(stage, result, took.get(stage), clock) for stage, result in results.items()],
+        missing=missing,
     )
 
 
