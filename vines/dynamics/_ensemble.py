@@ -158,7 +158,8 @@ class _Runs:
         work = _Work(self, what)
         n = len(self.table)
         cores = threads_allowed() if self.threads is None else max(1, self.threads)
-        size = min(BLOCK, max(lanes.LANES, -(-n // (4 * cores))))
+        # On one core nobody waits for a block to end but the lanes that have no more trajectory of it.
+        size = min(BLOCK, n if cores == 1 else max(lanes.LANES, -(-n // (4 * cores))))
         blocks = [slice(k, min(k + size, n)) for k in range(0, n, size)]
         each_thread(work.run, blocks, cores)
         return work.result()
