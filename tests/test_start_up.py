@@ -46,6 +46,25 @@ except SystemExit as end:
     assert loaded(code, tmp_path) == []
 
 
+def test_tables_are_written_and_read_without_pandas(tmp_path):
+    (tmp_path / "pipelines").mkdir()
+    text = '[stages.table_1]\nkind = "dimensionless"\nparams = { m = 0.05, E = 0.000225, omega = 55.39 }\n'
+    (tmp_path / "pipelines" / "rig.toml").write_text(text, "utf-8")
+    code = """
+import sys
+from vines.cli import main
+for words in (["run", "rig", "--quiet"], ["verify", "rig"], ["query", "select count(*) from dimensionless"]):
+    sys.argv = ["vines", *words]
+    try:
+        main(supervised=False)
+    except SystemExit as end:
+        assert end.code == 0, words
+"""
+    found = loaded(code, tmp_path)
+    assert "pyarrow" in found
+    assert "pandas" not in found
+
+
 LAZY = sorted(
     ".".join(stub.relative_to(Path(vines.__file__).parents[1]).parent.parts)
     for stub in Path(vines.__file__).parent.rglob("__init__.pyi")

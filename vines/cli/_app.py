@@ -22,6 +22,7 @@ from vines import __version__
 from vines.cli._interrupt import stoppable
 from vines.cli._supervised import PATIENCE, go_on_in_a_child, is_supervised
 from vines.errors import DamageWarning, StaleWarning, VinesError, nearest
+from vines.late_pandas import load_pandas_late
 
 __all__ = ["COMMANDS", "LazyGroup", "app", "run"]
 
@@ -59,6 +60,8 @@ _KEEPING = frozenset({"merge", "run"})
 """Commands that keep what they have computed."""
 _SERVING = frozenset({"browse", "view"})
 """Commands that a signal is how to end: they end their server in good order."""
+_PROMPT = frozenset({"", "graph", "init", "kinds", "list", "plots", "schema", "tables"})
+"""Commands that read or write a few small files, and none: Python hears a signal at once, nobody has to wait for it."""
 _SERVER_PATIENCE = 12.0
 """Seconds that they have for it on a busy machine; they take less than one otherwise."""
 _THRESHOLDS = (100_000, 50, 100)
@@ -132,9 +135,10 @@ def run(*, supervised: bool) -> None:
     """Run the command line, see :func:`vines.cli.main`."""
     command = next((each for each in sys.argv[1:] if each in COMMANDS), "")
     remedy = f"'{shlex.join(['vines', *sys.argv[1:]])}' goes on" if command in _KEEPING else ""
-    if supervised:
+    if supervised and command not in _PROMPT:
         go_on_in_a_child(remedy, patience=_SERVER_PATIENCE if command in _SERVING else PATIENCE)
     os.environ.setdefault("RERUN_ANALYTICS", "0")
+    load_pandas_late()
     # What libraries make at their import lives to the end; to look for cycles there takes a twelfth of a first run.
     gc.set_threshold(*_THRESHOLDS)
     for stream in (sys.stdout, sys.stderr):

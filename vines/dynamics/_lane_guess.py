@@ -14,12 +14,16 @@ GROUP = 16
 HORIZON = 0.6
 """Share of the longest move up to which Taylor's polynomial of tenth order is of use."""
 
+SHORT = 0.5
+"""A hop below this share of the usual time is taken for the next flight."""
+
 
 @loop_njit
 def predict(L):
     """Find roughly how long the next flight will last, in the first of the lanes where they have struck.
 
-    At the usual time Taylor's polynomial of tenth order gives w and three derivatives, and these the next contact.
+    At the usual time, or after the hop to which the ball is pushed back, Taylor's polynomial of tenth order gives w and
+    three derivatives, and these the next contact.
     """
     for i in range(GROUP):
         omega = L[f.OMEGA + i]
@@ -29,7 +33,7 @@ def predict(L):
         vh = L[f.V_FREE + i]
         move = kept(L[f.MOVE + i], L[f.UNIT + i])
         horizon = HORIZON * L[f.LIMIT + i]
-        T = min(L[f.USUAL + i], horizon)
+        usual = min(L[f.USUAL + i], horizon)
         xq, _, vq = forced_motion(L[f.Q_RE + i], L[f.Q_IM + i], omega, L[f.COS + i], L[f.SIN + i])
         h2, h3, h4, h5, h6 = free_derivatives(lam, xh, vh)
         h7, h8, h9, h10, _ = free_derivatives(lam, h5, h6)
@@ -51,6 +55,16 @@ def predict(L):
         d8 = h8 + q8
         d9 = h9 - omega2 * q7
         d10 = h10 - omega2 * q8
+        # Pushed back to the wall that it has left, as in a chatter, a ball hops: -pace + push t + jerk t^2 = 0. That is
+        # solved by a step of Newton's from t = pace/push.
+        pace = abs(v)
+        push = -0.5 * d2 if v > 0.0 else 0.5 * d2
+        jerk = (-1 / 6) * d3 if v > 0.0 else (1 / 6) * d3
+        bend = push * push + jerk * pace
+        rise = push * (bend + jerk * pace)
+        hop = pace * bend / rise
+        hops = (push > 0.0) & (rise > 0.0) & (hop > 0.0) & (hop < SHORT * usual)
+        T = hop if hops else usual
         tail = d8 * (1 / 40320) + T * (d9 * (1 / 362880) + T * (d10 * (1 / 3628800)))
         middle = d5 * (1 / 120) + T * (d6 * (1 / 720) + T * (d7 * (1 / 5040) + T * tail))
         value = w + T * (v + T * (d2 * 0.5 + T * (d3 * (1 / 6) + T * (d4 * (1 / 24) + T * middle))))

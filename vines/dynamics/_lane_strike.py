@@ -21,7 +21,7 @@ EXACT = 1.5e-5
 """Largest last correction, in units of NEAR: its cube, as the next would be, is below rounding."""
 
 ALIKE = 0.2
-"""Two flights differ by no more than this share of NEAR if the one after them is expected to be like an earlier one."""
+"""By how much two flights may differ, in units of NEAR and of their length, for the next to be like the one between."""
 
 
 @loop_njit
@@ -163,7 +163,7 @@ def strike(L):
         # The last flight was like that two before it: then the next will be like the one before it.
         last = kept(L[f.LAST + i], unit)
         before = kept(L[f.ONE_BEFORE + i], unit)
-        rough = hit & (not (abs(tau - before) <= ALIKE * L[f.NEAR + i]))
+        rough = hit & (not (abs(tau - before) <= ALIKE * min(L[f.NEAR + i], tau)))
         L[f.ROUGH + i] = 1.0 if rough else 0.0
         L[f.ONE_BEFORE + i] = last if hit else before
         L[f.LAST + i] = tau if hit else last

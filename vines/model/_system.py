@@ -1,4 +1,7 @@
-"""What a system is made of: the form in which parameters, states, contacts and symmetries are declared once."""
+"""What a system is made of: the form in which parameters, states, contacts and symmetries are declared once.
+
+Structs of msgspec, because a dataclass compiles some ten functions when it is made, and each command line makes these.
+"""
 
 from __future__ import annotations
 
@@ -8,16 +11,16 @@ import itertools
 import json
 import math
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
 from typing import Any
+
+import msgspec
 
 from vines.errors import ParameterError, StateError, nearest
 
 __all__ = ["Body", "Contact", "Coordinate", "Energies", "Parameter", "Range", "Symmetry", "System", "finite"]
 
 
-@dataclass(frozen=True, slots=True)
-class Range:
+class Range(msgspec.Struct, frozen=True):
     """An interval of numbers.
 
     Parameters
@@ -54,8 +57,7 @@ class Range:
         return f"{self.least:g} {lower} {name} {upper} {self.most:g}"
 
 
-@dataclass(frozen=True, slots=True)
-class Parameter:
+class Parameter(msgspec.Struct, frozen=True):
     """A number that a system is given.
 
     Attributes
@@ -114,8 +116,7 @@ class Parameter:
         return number
 
 
-@dataclass(frozen=True, slots=True)
-class Coordinate:
+class Coordinate(msgspec.Struct, frozen=True):
     """A number of the state.
 
     Attributes
@@ -136,8 +137,7 @@ class Coordinate:
     allowed: Range = Range()
 
 
-@dataclass(frozen=True, slots=True)
-class Body:
+class Body(msgspec.Struct, frozen=True):
     """A body that moves along one line: what it is, its position and velocity."""
 
     name: str
@@ -145,8 +145,7 @@ class Body:
     velocity: Coordinate
 
 
-@dataclass(frozen=True, slots=True)
-class Contact:
+class Contact(msgspec.Struct, frozen=True):
     """A wall that a ball meets: its letter in words, the sign of the gap there, its name, the ball's number if any."""
 
     letter: str
@@ -155,8 +154,7 @@ class Contact:
     ball: int = 0
 
 
-@dataclass(frozen=True, slots=True)
-class Symmetry:
+class Symmetry(msgspec.Struct, frozen=True):
     """A map of motions onto motions.
 
     Attributes
@@ -177,8 +175,7 @@ class Symmetry:
     broken_by: tuple[str, ...] = ()
 
 
-@dataclass(frozen=True, slots=True)
-class Energies:
+class Energies(msgspec.Struct, frozen=True):
     """Names of energies: what is stored, what has come in and what has gone since the start of a run."""
 
     stored: tuple[str, ...]
@@ -186,8 +183,7 @@ class Energies:
     lost: tuple[str, ...]
 
 
-@dataclass(frozen=True)
-class System:
+class System(msgspec.Struct, frozen=True, dict=True):
     """A system of bodies, walls and one forcing, declared once for every room.
 
     Attributes

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 from vines import schema
 from vines.errors import SchemaError, is_of_the_machine
+from vines.late_pandas import load_pandas_late
 from vines.pipeline._demand import Demand
 from vines.pipeline._jobs import Batch, Job, Point, Points
 from vines.store import Store, commit_part
@@ -121,6 +122,7 @@ def prepare_worker(parent: int) -> None:
     import threading
 
     one_thread()
+    load_pandas_late()
     signal.signal(signal.SIGINT, signal.SIG_IGN)
 
     def watch() -> None:
