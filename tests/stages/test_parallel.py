@@ -5,7 +5,7 @@ import pytest
 
 import vines
 from vines.logs import read
-from vines.stages import run
+from vines.stages import run, verify
 
 SPLIT = """
 title = "one mass over two cavities"
@@ -103,5 +103,10 @@ def test_tables_hold_the_check_values_ball_by_ball(project, monkeypatch):
     orbits = vines.query("select * from parallel_orbits where A = 0.03").to_pylist()
     assert orbits[0]["stable"]
     assert orbits[0]["kinetic_ratio_2"] == pytest.approx(0.103992311198, abs=1e-10)
+    found = verify("split", recompute=60)
+    assert found.good, [line.first for line in found.lines if line.first]
+    again = {line.name: line.checked for line in found.lines if line.area == "recomputed"}
+    assert set(again) == {f"parallel_{name}" for name in ("points", "impacts", "orbits")}
+    assert all(again.values())
     both = vines.query("select distinct system, name from all_points union select system, name from all_orbits")
     assert both.to_pylist() == [{"system": "parallel", "name": "1:1|1:1"}]
