@@ -78,7 +78,7 @@ def test_tables_hold_the_check_values(pair):
     assert (kept.parameters, kept.impacts.num_rows) == ({"B": 0.65, "G": 0.05, "r": 0.5}, 6)
     found = verify("pair", recompute=60)
     assert found.good, [line.first for line in found.lines if line.first]
-    again = {line.name: line.checked for line in found.lines if line.area == "recomputed"}
+    again = {line.name: line.checked for line in found.lines if line.group == "recomputed"}
     assert {f"impact_pair_{name}" for name in ("points", "impacts", "orbits", "bifurcations")} < set(again)
     assert all(again.values())
     first = vines.query('select * from "pair.points" where B = 0.6').to_pylist()[0]
