@@ -1,4 +1,4 @@
-"""What absorbers are worth over a range of forcing: bands of coexisting attractors, widths of ranges, maps of designs."""
+"""What absorbers are worth over a range of forcing: bands of attractors, widths of ranges, maps of designs."""
 
 from __future__ import annotations
 
