@@ -125,11 +125,11 @@ def test_curves_of_the_tilted_sink_satisfy_their_equations(kind, stop, names, bo
 
 def test_the_sink_without_tilt_has_the_curves_of_the_vi_nes():
     box = {"A": (0.015, 0.02), "r": (0.6, 0.7)}
-    one = follow_curve(met(find_orbit("LR", Params(mu=0.01, A=0.017)), "A", 0.02, "symmetry_breaking"), ("A", "r"), box=box)
-    orbit = find_orbit("LR", Parallel(mu=(0.01,), A=0.017))
-    other = follow_curve(
-        met(orbit, "A", 0.02, "symmetry_breaking"), ("A", "r_1"), box={"A": box["A"], "r_1": box["r"]}
+    one = follow_curve(
+        met(find_orbit("LR", Params(mu=0.01, A=0.017)), "A", 0.02, "symmetry_breaking"), ("A", "r"), box=box
     )
+    orbit = find_orbit("LR", Parallel(mu=(0.01,), A=0.017))
+    other = follow_curve(met(orbit, "A", 0.02, "symmetry_breaking"), ("A", "r_1"), box={"A": box["A"], "r_1": box["r"]})
     assert other.values[[0, -1]] == pytest.approx(one.values[[0, -1]], abs=1e-11)
 
 

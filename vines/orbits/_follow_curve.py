@@ -36,7 +36,7 @@ _RANK = 1e-10
 """Least singular value of the equations relative to the largest: below it they do not depend on the parameters."""
 
 _ROUNDING = 1e-6
-"""Residual beyond which the equations have lost their digits: next to an undamped resonance they are small differences."""
+"""Residual beyond which the equations have lost their digits: next to a resonance they are small differences."""
 
 _FIRST = 4
 """Points before which a curve is not looked at for having closed."""
@@ -159,8 +159,8 @@ def _problem(bifurcation: Bifurcation, parameters: tuple[str, str], spans: Float
     if bifurcation.type == "symmetry_breaking" and breaks:
         name = breaks.pop()
         raise ParameterError(
-            f"parameters are {parameters}; there is no symmetry to break unless {name} = 0: the curve becomes a cusp of "
-            f"the folds of {orbit.word} there; give two others, or follow a fold"
+            f"parameters are {parameters}; there is no symmetry to break unless {name} = 0, and folds of {orbit.word} "
+            "have a cusp there; give two others, or follow a fold"
         )
     form = CurveProblem if isinstance(orbit.params, Params) else ChainCurve
     return form(bifurcation.type, orbit, parameters, tuple(spans.tolist()))

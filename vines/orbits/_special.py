@@ -28,6 +28,7 @@ RESONANCES = {"resonance_1_1": 1.0, "resonance_1_2": -1.0, "resonance_1_3": -0.5
 _LARGEST = 1e7
 """Modulus of a multiplier beyond which the others are too much rounding to tell what they do."""
 
+
 class Special(NamedTuple):
     """A kind of codimension-two point.
 

@@ -1,12 +1,18 @@
-"""The plot ``regimes``: what is reached over two parameters, and K2/K1 beside it."""
+"""The plot ``regimes``: what is reached over two parameters, a measure beside it, and curves of bifurcations."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
-from vines.stages.plots._checks import one_stage
+from msgspec import Meta
+
+from vines.errors import DeclarationError
+from vines.model import most_balls, read_system
+from vines.schema import table
+from vines.stages.plots._checks import called, one_system
+from vines.stages.plots._lines import lines
 from vines.stages.plots._plot import Plot, PlotOptions
 
 if TYPE_CHECKING:
@@ -16,18 +22,54 @@ if TYPE_CHECKING:
 
 __all__ = ["PLOT", "RegimesOptions"]
 
-_COLUMNS = ("regime", "name", "n", "m", "p", "symmetric", "recurrent_sticking", "kinetic_ratio")
+_COLUMNS = ("regime", "name", "p", "symmetric", "recurrent_sticking")
+
+_COLUMNS_OF = {
+    "kinetic_ratio": ("kinetic_ratio",),
+    "impact_power": ("impact_power",),
+    "harvested_power": ("harvested_left", "harvested_right"),
+}
+"""The columns of which each measure is the sum."""
 
 
 class RegimesOptions(PlotOptions, frozen=True, tag="regimes"):
-    """One sweep over two parameters, the first along x: a map of what is reached, and one of K2/K1."""
+    """One sweep over two parameters, the first along x: a map of what is reached, and one of K2/K1 or of a power.
+
+    Of several balls K2 is the sum. Of a system whose cavity is driven itself the second map is of the power that
+    impacts take, if nothing is said. Stages of kind `curve` over the same two parameters are laid over both maps.
+    """
+
+    measure: Annotated[
+        Literal["kinetic_ratio", "impact_power", "harvested_power"] | None,
+        Meta(description="What the second map shows; `harvested_power` is that of the declared law at both ends"),
+    ] = None
 
 
 def _check(stage: Stage, pipeline: Pipeline) -> None:
-    def fits(one: Stage) -> bool:
-        return one.kind.tables[:1] == ("points",) and len(one.axes) == 2
+    needed = [pipeline.stages[name] for name in stage.needs]
+    sweeps = [one for one in needed if called(one.kind.tables[:1], "points") and len(one.axes) == 2]
+    curves = [one for one in needed if called(one.kind.tables, "curves")]
+    if len(sweeps) != 1 or len(sweeps) + len(curves) != len(needed):
+        raise DeclarationError(
+            "a map of regimes draws one sweep over two parameters, and over it stages of kind 'curve'; "
+            f"needs = [{', '.join(stage.needs)}] is not that"
+        )
+    [sweep] = sweeps
+    one_system(needed, "a map of regimes")
+    names = {axis.name for axis in sweep.axes}
+    others = [one.name for one in curves if {axis.name for axis in one.axes} != names]
+    if others:
+        raise DeclarationError(f"{', '.join(others)} varies other parameters than {sweep.name}; give the same two")
+    _check_measure(stage.options.measure, sweep)
 
-    one_stage(stage, pipeline, fits, "one sweep over two parameters")
+
+def _check_measure(measure: str | None, sweep: Stage) -> None:
+    """Refuse what the table of the sweep has no column for, and a harvest without a law."""
+    columns = _COLUMNS_OF.get(measure or "", ())
+    if set(columns) - set(table(sweep.kind.tables[0]).names):
+        raise DeclarationError(f"measure is {measure!r}, which {sweep.kind.system!r} does not have; give another")
+    if measure == "harvested_power" and sweep.options.harvest is None:
+        raise DeclarationError(f"measure is {measure!r}; {sweep.name} declares no law: give it harvest = {{ ... }}")
 
 
 def _draw(inputs: Mapping[str, Input], options: RegimesOptions) -> Figure:
@@ -37,19 +79,27 @@ def _draw(inputs: Mapping[str, Input], options: RegimesOptions) -> Figure:
     from vines.stages.plots._caption import fixed
     from vines.stages.plots._grid import grid_of
 
-    (stage,) = inputs.values()
+    (stage,) = (each for each in inputs.values() if called(each.tables, "points"))
     first, second = stage.axes
-    table = stage.table().select([first, second, *_COLUMNS])
-    grid = grid_of(table, first, second)
+    system = table(stage.tables[0]).system
+    balls = most_balls(system)
+    driven = "x1_no_ball" in read_system(system, balls).without
+    measure = options.measure or ("impact_power" if driven else "kinetic_ratio")
+    points = stage.table().select([first, second, *_COLUMNS, *_COLUMNS_OF[measure]])
+    grid = grid_of(points, first, second)
     shown = RegimeMap(
         axes=(first, second),
         x=grid.x,
         y=grid.y,
         regime=grid.of(_classes(grid.rows), -1),
         sticks=grid.of(grid.rows["recurrent_sticking"].eq(True).to_numpy(), False),
-        name=grid.of(np.array(table["name"].to_pylist(), dtype=object), None),
-        ratio=grid.of(grid.rows["kinetic_ratio"].to_numpy(), math.nan),
+        name=grid.of(np.array(points["name"].to_pylist(), dtype=object), None),
+        ratio=grid.of(grid.rows[[*_COLUMNS_OF[measure]]].sum(axis=1, skipna=False).to_numpy(), math.nan),
+        measure="kinetic_ratios" if balls and measure == "kinetic_ratio" else measure,
         caption=fixed(stage, stage.axes),
+        curves=tuple(
+            line for each in inputs.values() if called(each.tables, "curves") for line in lines(each, first, second)
+        ),
     )
     return regimes_figure(shown, title=options.title, width=options.width)
 
@@ -62,10 +112,13 @@ def _classes(frame: Any) -> Any:
 
     places = {name: k for k, name in enumerate(REGIME_CLASSES)}
     regime = frame["regime"].to_numpy()
-    n, m, p = (frame[name].fillna(0).to_numpy(dtype=np.int64) for name in ("n", "m", "p"))
+    counts = [_counts(name) for name in frame["name"]]
+    p = frame["p"].fillna(0).to_numpy(dtype=np.int64)
+    unequal = np.array([any(n != m for n, m in balls) for balls in counts], dtype=bool)
+    several = np.array([any(n != 1 for n, _ in balls) for balls in counts], dtype=bool)
     symmetric = frame["symmetric"].eq(True).to_numpy()
     kind = np.select(
-        [p > 1, n != m, n > 1, symmetric],
+        [p > 1, unequal, several, symmetric],
         [places["p > 1 periods"], places["n:m, n ≠ m"], places["n:n, n > 1"], places["1:1, symmetric"]],
         places["1:1, asymmetric"],
     )
@@ -75,9 +128,24 @@ def _classes(frame: Any) -> Any:
     return kind
 
 
+def _counts(name: Any) -> list[tuple[int, int]]:
+    """Return the impacts of each ball on both ends, from the name of an attractor; none if it has no name.
+
+    Examples
+    --------
+    >>> _counts("1:1|4:2/2T"), _counts(None)
+    ([(1, 1), (4, 2)], [])
+    """
+    if not isinstance(name, str):
+        return []
+    pairs = (ball.split(":") for ball in name.partition("/")[0].split("|"))
+    return [(int(n), int(m)) for n, m in pairs]
+
+
 PLOT = Plot(
-    summary="what is reached over two parameters, and K2/K1",
+    summary="what is reached over two parameters, and K2/K1 or a power, with curves of bifurcations over them",
     options=RegimesOptions,
     draw=_draw,
     check=_check,
+    tables=("points",),
 )
