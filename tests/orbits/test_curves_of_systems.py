@@ -8,12 +8,11 @@ import mpmath as mp
 import numpy as np
 import pytest
 
+from tests.orbits.in_digits import Flown
 from vines.errors import OrbitNotFound, ParameterError
 from vines.model import Params
 from vines.orbits import continue_orbit, find_orbit, follow_curve
 from vines.systems import ImpactPair, Parallel
-
-from tests.orbits.in_digits import Flown
 
 LEVEL = ImpactPair(B=0.6, r=0.5)
 BOX = {"B": (0.1, 1.5), "G": (-0.3, 0.3)}
@@ -59,7 +58,7 @@ def test_fold_of_the_level_pair_is_the_closed_form(level):
     assert curve.symmetric
     assert curve.ends == ("box", "box")
     B, r = curve.values.T
-    assert B == pytest.approx((1 - r) / np.hypot(1 - r, math.pi * (1 + r) / 2), abs=1e-13)
+    assert pytest.approx((1 - r) / np.hypot(1 - r, math.pi * (1 + r) / 2), abs=1e-13) == B
     check(curve)
 
 
@@ -69,9 +68,31 @@ def test_symmetry_breaking_of_the_level_pair_is_the_closed_form(level):
     B, r = curve.values.T
     # det(I + H) = 0 with the map of systems.md gives U, and the quadratic of the symmetric 1:1 then B
     U = 4 * math.pi / ((1 + r) * (math.pi**2 - 4))
-    assert B == pytest.approx(np.hypot((1 - r) * U, 2 - math.pi * (1 + r) * U / 2) / 2, abs=1e-12)
-    assert np.interp(0.65, r[np.argsort(r)], B[np.argsort(r)]) == pytest.approx(0.71831086, abs=1e-4)
+    assert pytest.approx(np.hypot((1 - r) * U, 2 - math.pi * (1 + r) * U / 2) / 2, abs=1e-12) == B
+    # the check values of systems.md are on it
+    for at, value in ((0.5, 0.7692409694848), (0.65, 0.71831086)):
+        assert np.interp(at, r[np.argsort(r)], B[np.argsort(r)]) == pytest.approx(value, abs=1e-4)
     check(curve)
+
+
+def test_bounces_on_the_lower_end_have_straight_curves():
+    # one impact a period: U = 2 pi G/(1 + r), B cos(theta) = pi k G, and det(I + M) = 0 gives B sin(theta) = (1 + k²) G
+    orbit = find_orbit("L", LEVEL.replace(B=0.3, G=0.25))
+    k = (1 - LEVEL.r) / (1 + LEVEL.r)
+    for kind, stop, slope in (("fold", 0.2, math.pi * k), ("period_doubling", 0.5, math.hypot(math.pi * k, 1 + k**2))):
+        found = met(orbit, "B", stop, kind, within=(0.2, 0.5))
+        curve = follow_curve(found, ("B", "G"), box={"B": (0.1, 1.0), "G": (0.1, 0.4)})
+        assert curve.values[:, 0] / curve.values[:, 1] == pytest.approx(slope, abs=1e-12)
+        check(curve, points=1)
+
+
+def test_a_curve_of_multipliers_ends_where_an_impact_loses_its_speed(level):
+    fold = met(level, "B", 0.2, "fold", within=(0.2, 0.7))
+    curve = follow_curve(fold, ("B", "G"), box={"B": (0.2, 0.5), "G": (0.0, 0.4)})
+    assert "grazing" in curve.ends
+    [end] = curve.special
+    assert end.orbit.admissible
+    assert 0 < min(end.orbit.side * end.orbit.w_dot) < 1e-4
 
 
 @pytest.mark.parametrize(("kind", "stop"), [("fold", 0.15), ("period_doubling", 1.2), ("grazing", 1.2)])

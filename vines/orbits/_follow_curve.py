@@ -237,7 +237,25 @@ class _Way:
         if not (math.isfinite(first) and math.isfinite(second)) or (first > 0) == (second > 0):
             return None
         found = self._root(special.function, here, there)
+        if found is None and special.type == END:
+            found = self._before(special.function, here, there)
         return (found[0], special.type, found[1]) if found is not None and special.holds(found[1]) else None
+
+    def _before(self, function: Callable[[Point], float], here: Point, there: Point) -> tuple[float, Point]:
+        """Return the last point found on the side of the first one, where the equations fail at the zero itself.
+
+        That is so where an impact loses its speed: M is infinite there.
+        """
+        chord = Chord(self.zero, here, there)
+        low, high = 0.0, 1.0
+        while high - low > _TOLERANCE:
+            middle = 0.5 * (low + high)
+            try:
+                same = (function(chord.point(middle)) > 0) == (function(here) > 0)
+            except OrbitNotFound:
+                break
+            low, high = (middle, high) if same else (low, middle)
+        return low, chord.point(low)
 
     def _cusp(self, here: Point, there: Point) -> tuple[float, str, Point] | None:
         """Return the cusp between two points: the parameters turn back though the curve goes on."""
