@@ -38,6 +38,9 @@ _RANK = 1e-10
 _ROUNDING = 1e-6
 """Residual beyond which the equations have lost their digits: next to a resonance they are small differences."""
 
+_SOUND = 1e-11
+"""Residual up to which a point is taken next to one at which the equations fail."""
+
 _FIRST = 4
 """Points before which a curve is not looked at for having closed."""
 
@@ -251,10 +254,12 @@ class _Way:
         while high - low > _TOLERANCE:
             middle = 0.5 * (low + high)
             try:
-                same = (function(chord.point(middle)) > 0) == (function(here) > 0)
+                point = chord.point(middle)
             except OrbitNotFound:
                 break
-            low, high = (middle, high) if same else (low, middle)
+            if not np.abs(self.problem.residual(point.y)).max() < _SOUND:
+                break
+            low, high = (middle, high) if (function(point) > 0) == (function(here) > 0) else (low, middle)
         return low, chord.point(low)
 
     def _cusp(self, here: Point, there: Point) -> tuple[float, str, Point] | None:
