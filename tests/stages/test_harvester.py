@@ -116,8 +116,6 @@ def test_balls_in_parallel_have_curves_in_the_parameters_of_each(root):
             "vary.mu = { from = 0.2, to = 1.4 }\n",
             "unknown key 'mu': allowed: B, G, r",
         ),
-        ('measure = "harvested_power"', 'measure = "kinetic_ratio"', "'impact_pair' does not have"),
-        ("harvest = {", "#", "declares no law"),
         ('needs = ["map", ', "needs = [", "one sweep over two parameters, and over it stages of kind"),
     ],
 )

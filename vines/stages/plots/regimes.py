@@ -4,9 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Annotated, Any, Literal
-
-from msgspec import Meta
+from typing import TYPE_CHECKING, Any
 
 from vines.errors import DeclarationError
 from vines.model import most_balls, read_system
@@ -35,14 +33,10 @@ _COLUMNS_OF = {
 class RegimesOptions(PlotOptions, frozen=True, tag="regimes"):
     """One sweep over two parameters, the first along x: a map of what is reached, and one of K2/K1 or of a power.
 
-    Of several balls K2 is the sum. Of a system whose cavity is driven itself the second map is of the power that
-    impacts take, if nothing is said. Stages of kind `curve` over the same two parameters are laid over both maps.
+    Of several balls K2 is the sum. Where the sweep declares a law of harvest the second map is of the power harvested at
+    both ends, else of a system whose cavity is driven itself of the power that impacts take. Stages of kind `curve`
+    over the same two parameters are laid over both maps.
     """
-
-    measure: Annotated[
-        Literal["kinetic_ratio", "impact_power", "harvested_power"] | None,
-        Meta(description="What the second map shows; `harvested_power` is that of the declared law at both ends"),
-    ] = None
 
 
 def _check(stage: Stage, pipeline: Pipeline) -> None:
@@ -60,22 +54,15 @@ def _check(stage: Stage, pipeline: Pipeline) -> None:
     others = [one.name for one in curves if {axis.name for axis in one.axes} != names]
     if others:
         raise DeclarationError(f"{', '.join(others)} varies other parameters than {sweep.name}; give the same two")
-    _check_measure(stage.options.measure, sweep)
 
 
-def _check_measure(measure: str | None, sweep: Stage) -> None:
-    """Refuse what the table of the sweep has no column for, and a harvest without a law."""
-    columns = _COLUMNS_OF.get(measure or "", ())
-    moves = measure != "kinetic_ratio" or not _driven(sweep.kind.system)  # a shaken cavity has no energy to compare with
-    if not moves or set(columns) - set(table(sweep.kind.tables[0]).names):
-        raise DeclarationError(f"measure is {measure!r}, which {sweep.kind.system!r} does not have; give another")
-    if measure == "harvested_power" and sweep.options.harvest is None:
-        raise DeclarationError(f"measure is {measure!r}; {sweep.name} declares no law: give it harvest = {{ ... }}")
-
-
-def _driven(system: str) -> bool:
-    """Say whether the cavity of a system moves as it is driven."""
-    return "x1_no_ball" in read_system(system, most_balls(system)).without
+def _measure(system: str, points: Any) -> str:
+    """Return what the second map shows, from the table of the points."""
+    columns = _COLUMNS_OF["harvested_power"]
+    if set(columns) <= set(points.column_names) and points.num_rows > points[columns[0]].null_count:
+        return "harvested_power"
+    driven = "x1_no_ball" in read_system(system, most_balls(system)).without
+    return "impact_power" if driven else "kinetic_ratio"
 
 
 def _draw(inputs: Mapping[str, Input], options: RegimesOptions) -> Figure:
@@ -89,7 +76,7 @@ def _draw(inputs: Mapping[str, Input], options: RegimesOptions) -> Figure:
     first, second = stage.axes
     system = table(stage.tables[0]).system
     balls = most_balls(system)
-    measure = options.measure or ("impact_power" if _driven(system) else "kinetic_ratio")
+    measure = _measure(system, stage.table())
     points = stage.table().select([first, second, *_COLUMNS, *_COLUMNS_OF[measure]])
     grid = grid_of(points, first, second)
     shown = RegimeMap(
