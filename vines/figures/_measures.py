@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Literal
@@ -93,7 +94,11 @@ class MeasurePanel:
         if self.window is not None:
             ax.set_xlim(*self.window)
         elif ends and min(ends) < max(ends):
-            ax.set_xlim(min(ends), max(ends))
+            # marks at the ends are shown whole
+            more = 0.015 if any(curve.way for curve in self.curves) else 0.0
+            low, high = ((math.log(min(ends)), math.log(max(ends))) if self.log[0] else (min(ends), max(ends)))
+            window = (low - more * (high - low), high + more * (high - low))
+            ax.set_xlim(*map(math.exp, window) if self.log[0] else window)
         if self.y is not None:
             ax.set_ylim(*self.y)
         elif not self.log[1]:

@@ -179,4 +179,5 @@ PLOT = Plot(
     options=DesignsOptions,
     draw=_draw,
     check=_check,
+    tables=("points",),
 )

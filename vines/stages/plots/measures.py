@@ -192,4 +192,5 @@ PLOT = Plot(
     options=MeasuresOptions,
     draw=_draw,
     check=_check,
+    tables=("points",),
 )
