@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-__all__ = ["CurveLine", "Region", "SpecialMark", "chart_figure"]
+__all__ = ["CurveLine", "Region", "SpecialMark", "chart_figure", "curve_entries", "draw_curves"]
 
 Floats = npt.NDArray[np.float64]
 
@@ -99,10 +99,7 @@ def chart_figure(
             # Pixel by pixel: a smooth outline would claim more than the grid knows.
             shown = np.where(region.inside, 1.0, np.nan)
             ax.pcolormesh(region.x, region.y, shown, cmap=_one(_STABLE), shading="nearest", rasterized=True, zorder=0)
-        families = list(dict.fromkeys(curve.family for curve in curves))
-        for curve in curves:
-            style: Any = _STYLES[families.index(curve.family) % len(_STYLES)]
-            ax.plot(curve.x, curve.y, color=_COLOURS[curve.type], linestyle=style, linewidth=1.5, zorder=2)
+        draw_curves(ax, curves)
         symbols: dict[str, str] = dict(zip(dict.fromkeys(mark.type for mark in special), _SYMBOLS, strict=False))
         for mark in special:
             ax.plot([mark.x], [mark.y], linestyle="none", zorder=4, **_special_style(symbols.get(mark.type, "x")))
@@ -111,8 +108,36 @@ def chart_figure(
         ax.set_ylabel(f"{NAMES.get(axes[1], axes[1])}  ${SYMBOLS.get(axes[1], axes[1])}$")
         if caption:
             ax.set_title(caption, fontsize=8.5, loc="left", pad=6)
-        add_legend(figure, _entries(curves, families, symbols, regions))
+        add_legend(figure, _entries(curves, symbols, regions))
     return figure
+
+
+def draw_curves(ax: Axes, curves: Sequence[CurveLine], *, cased: bool = False) -> None:
+    """Draw curves in the colours of their types and the styles of their families, with a white rim where `cased`."""
+    from matplotlib.patheffects import Normal, Stroke
+
+    rim = [Stroke(linewidth=2.7, foreground="white"), Normal()] if cased else []
+    for curve, style in zip(curves, _styles(curves), strict=True):
+        width = 1.3 if cased else 1.5
+        drawn = ax.plot(curve.x, curve.y, color=_COLOURS[curve.type], linestyle=style, linewidth=width, zorder=2)
+        if rim:
+            drawn[0].set_path_effects(rim)
+
+
+def curve_entries(curves: Sequence[CurveLine]) -> list[tuple[str, Any]]:
+    """Return what a legend says of curves, one entry a type of a family: a label and a line."""
+    from matplotlib.lines import Line2D
+
+    styles = {(curve.type, curve.family): style for curve, style in zip(curves, _styles(curves), strict=True)}
+    return [
+        (f"{MARKS[kind][1]}, {family}", Line2D([], [], color=_COLOURS[kind], linewidth=1.5, linestyle=style))
+        for (kind, family), style in styles.items()
+    ]
+
+
+def _styles(curves: Sequence[CurveLine]) -> list[Any]:
+    families = list(dict.fromkeys(curve.family for curve in curves))
+    return [_STYLES[families.index(curve.family) % len(_STYLES)] for curve in curves]
 
 
 def _one(colour: str) -> Any:
@@ -144,7 +169,7 @@ def _scale(ax: Axes, curves: Sequence[CurveLine]) -> None:
 
 
 def _entries(
-    curves: Sequence[CurveLine], families: list[str], symbols: dict[str, str], regions: Sequence[Region]
+    curves: Sequence[CurveLine], symbols: dict[str, str], regions: Sequence[Region]
 ) -> list[tuple[str, tuple[Any, ...]]]:
     from matplotlib.lines import Line2D
     from matplotlib.patches import Patch
@@ -152,10 +177,7 @@ def _entries(
     entries: list[tuple[str, tuple[Any, ...]]] = [
         (region.label, (Patch(facecolor=_STABLE, edgecolor="none"),)) for region in regions
     ]
-    for kind, family in dict.fromkeys((curve.type, curve.family) for curve in curves):
-        style: Any = _STYLES[families.index(family) % len(_STYLES)]
-        line = Line2D([], [], color=_COLOURS[kind], linewidth=1.5, linestyle=style)
-        entries.append((f"{MARKS[kind][1]}, {family}", (line,)))
+    entries += [(label, (line,)) for label, line in curve_entries(curves)]
     for kind, symbol in symbols.items():
         text = re.sub(r"(\d)_(\d)", r"\1:\2", kind).replace("neimark_sacker", "Neimark–Sacker").replace("_", " ")
         entries.append((text, (Line2D([], [], linestyle="none", **_special_style(symbol)),)))

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
+from vines.figures._chart import CurveLine, curve_entries, draw_curves
 from vines.figures._names import NAMES, SYMBOLS
 from vines.figures._style import RC, new_figure
 
@@ -64,7 +65,9 @@ class RegimeMap:
     caption : str
         The fixed parameters.
     measure : str
-        "kinetic_ratio", "kinetic_ratios" of several balls together, or "impact_power".
+        "kinetic_ratio", "kinetic_ratios" of several balls together, "impact_power" or "harvested_power".
+    curves : tuple of CurveLine
+        Bifurcations that are laid over both maps.
     """
 
     axes: tuple[str, str]
@@ -76,14 +79,19 @@ class RegimeMap:
     ratio: npt.NDArray[np.float64]
     caption: str
     measure: str = "kinetic_ratio"
+    curves: tuple[CurveLine, ...] = ()
 
 
 _MEASURES = {
     "kinetic_ratio": ("kinetic energy of ball and mass", r"$K_2/K_1$"),
     "kinetic_ratios": ("kinetic energy of balls and mass", r"$\sum K_2/K_1$"),
     "impact_power": ("power lost in impacts", "power"),
+    "harvested_power": ("power harvested at both ends", "power"),
 }
 """What stands above the second map, and beside its bar."""
+
+_POWERS = ("impact_power", "harvested_power")
+"""Measures that may be zero, and are compared with each other: their scale is linear from zero."""
 
 
 def regimes_figure(data: RegimeMap, *, title: str = "", width: float = 7.0) -> Figure:
@@ -99,7 +107,7 @@ def regimes_figure(data: RegimeMap, *, title: str = "", width: float = 7.0) -> F
         In inches.
     """
     import matplotlib as mpl
-    from matplotlib.colors import LogNorm, to_rgb
+    from matplotlib.colors import LogNorm, Normalize, to_rgb
     from matplotlib.patches import Patch
 
     colours = np.array([to_rgb(colour) for colour in REGIME_CLASSES.values()] + [(1.0, 1.0, 1.0)])
@@ -112,24 +120,26 @@ def regimes_figure(data: RegimeMap, *, title: str = "", width: float = 7.0) -> F
         left.pcolormesh(data.x, data.y, shown, shading="nearest", rasterized=True)
         finite = data.ratio[np.isfinite(data.ratio) & (data.ratio > 0)]
         low, high = np.quantile(finite, [0.005, 1.0]) if finite.size else (1e-3, 1.0)
+        linear = data.measure in _POWERS
         drawn = right.pcolormesh(
             data.x,
             data.y,
-            np.ma.masked_invalid(np.where(data.ratio > 0, data.ratio, np.nan)),
-            norm=LogNorm(max(low, 1e-6 * high), high),
+            np.ma.masked_invalid(data.ratio if linear else np.where(data.ratio > 0, data.ratio, np.nan)),
+            norm=Normalize(0, high) if linear else LogNorm(max(low, 1e-6 * high), high),
             cmap="cividis",
             shading="nearest",
             rasterized=True,
         )
         right.set_facecolor("#ffffff")
-        figure.colorbar(drawn, ax=right, label=beside, extend="min", pad=0.015)
+        figure.colorbar(drawn, ax=right, label=beside, extend="neither" if linear else "min", pad=0.015)
         for ax, letter, what in ((left, "a", "what is reached"), (right, "b", above)):
             ax.set_title(f"({letter})  {what}", fontsize=8.5, loc="left")
+            draw_curves(ax, data.curves, cased=True)
             _scale(ax, data)
         left.set_ylabel(_label(data.axes[1]))
         _write_names(left, data)
         used = np.unique(data.regime)
-        handles = [
+        handles: list[Any] = [
             Patch(facecolor=colour, edgecolor="#777777", linewidth=0.5, label=label)
             for k, (label, colour) in enumerate(REGIME_CLASSES.items())
             if k in used
@@ -139,7 +149,10 @@ def regimes_figure(data: RegimeMap, *, title: str = "", width: float = 7.0) -> F
             handles.append(
                 Patch(facecolor=dark, edgecolor="#777777", linewidth=0.5, label="any, darker: sticking recurs")
             )
-        figure.legend(handles=handles, loc="outside lower center", ncols=5)
+        for label, line in curve_entries(data.curves):
+            line.set_label(label)
+            handles.append(line)
+        figure.legend(handles=handles, loc="outside lower center", ncols=4 if data.curves else 5)
         figure.suptitle(", ".join(part for part in (title, data.caption) if part), fontsize=9)
     return figure
 

@@ -80,17 +80,20 @@ class Walk:
     def _advance(self, here: Point, length: float) -> tuple[Point, int, bool] | None:
         """Return the next point, how many Newton steps it took, and whether it lies on the border; or None."""
         ahead = here.y + length * self.zero.scale * here.tangent
-        crossed = self._crossing(here.y, ahead) if self.only_inside else None
-        if crossed is not None:
-            y, iterations = self._at_border(here.y, ahead, *crossed), 1
-        else:
-            y, iterations = self.zero.correct(ahead, here.tangent) or (None, 0)
+        crossed = self._crossing(here.y, ahead)
+        y, iterations = None, 1
+        if crossed is None or not self.only_inside:
+            y, iterations = self.zero.correct(ahead, here.tangent) or (None, 1)
+        if y is None and crossed is not None:
+            # Beyond the border there may be no system to correct in.
+            y = self._at_border(here.y, ahead, *crossed)
         if y is None:
             return None
         crossed = self._crossing(here.y, y)
         if crossed is not None:
             y = self._at_border(here.y, y, *crossed)
-            if y is None:
+            # Next to a corner another parameter may be beyond its range there.
+            if y is None or not self._within(y):
                 return None
         if np.linalg.norm((y - here.y) / self.zero.scale) > self.reach * length:
             return None
@@ -98,6 +101,10 @@ class Walk:
         if here.tangent @ there.tangent < math.cos(self.turn):
             return None
         return there, iterations, crossed is not None
+
+    def _within(self, y: Floats) -> bool:
+        own = y[-len(self.low) :]
+        return bool(((self.low <= own) & (own <= self.high)).all())
 
     def _crossing(self, start: Floats, end: Floats) -> tuple[int, float, float] | None:
         """Return the parameter that leaves its range first on the way, its bound, and the share of the way until it."""

@@ -2,17 +2,12 @@
 
 from __future__ import annotations
 
-import math
-from typing import Any
-
 import numpy as np
 import numpy.typing as npt
 
-from vines.dynamics.kernels import constants
 from vines.orbits._assemble import assemble
-from vines.orbits._equations import closing_kernel
+from vines.orbits._closing import Closing, difference, stays_symmetric
 from vines.orbits._orbit import Orbit
-from vines.orbits._values import frequency_of, marks_of
 
 __all__ = ["ChainProblem"]
 
@@ -25,7 +20,7 @@ _DIFFERENCE = 1e-6
 class ChainProblem:
     """Orbits of any word of any system as the zero set of n equations in (n phases, parameter); see `Problem`.
 
-    n is N, or N/2 for a symmetric orbit, as for `GeneralProblem`.
+    n is N, or N/2 for a symmetric orbit that remains one, as for `GeneralProblem`.
 
     Parameters
     ----------
@@ -38,32 +33,24 @@ class ChainProblem:
     def __init__(self, orbit: Orbit, parameter: str) -> None:
         self.word = orbit.word
         self.parameter = parameter
-        self._fixed = orbit.params
-        self._side = marks_of(orbit.word)
-        n = len(orbit.word) // 2 if orbit.symmetric else len(orbit.word)
-        value = orbit.params.as_dict()[parameter]
-        self.start = np.append(orbit.t[:n] * frequency_of(orbit.params), value)
-
-    def _at(self, phases: Floats, value: float) -> tuple[Any, Floats, Floats, Floats, Floats]:
-        """Return parameters, times, defects, their slope in the times, and states."""
-        p = self._fixed.replace(**{self.parameter: value})
-        sets = len(self._side) // len(phases)
-        shifts = math.pi * self.word.p * np.repeat(np.arange(sets), len(phases))
-        t = (np.tile(phases, sets) + shifts) / frequency_of(p)
-        regular, defect, slope, states = closing_kernel(constants(p), self.word.p * p.period, self._side, t)
-        return p, t, defect if regular else np.full(len(t), np.nan), slope, states
+        self._closing = Closing(orbit, (parameter,), stays_symmetric(orbit, parameter))
+        self.start = self._closing.start
 
     def equations(self, y: Floats) -> tuple[Floats, Floats]:
-        """Return the defects in velocities of the balls, shape (n,), and their derivatives, shape (n, n + 1)."""
-        phases, value = y[:-1], float(y[-1])
-        n = len(phases)
-        p, _, defect, slope, _ = self._at(phases, value)
-        folded = slope[:n].reshape(n, -1, n).sum(axis=1) / frequency_of(p)
-        step = _DIFFERENCE * max(abs(value), 0.01)
-        above, below = self._at(phases, value + step)[2], self._at(phases, value - step)[2]
-        return defect[:n], np.column_stack([folded, (above - below)[:n] / (2 * step)])
+        """Return the defects in velocities of the balls, shape (n,), and their derivatives, shape (n, n + 1).
+
+        They are nan where the system does not exist.
+        """
+        phases, n = y[:-1], len(y) - 1
+        closed = self._closing.at(phases, y[-1:])
+        if closed is None:
+            return np.full(n, np.nan), np.full((n, n + 1), np.nan)
+        step = _DIFFERENCE * max(abs(float(y[-1])), 0.01)
+        across = difference(lambda value: self._closing.defect(phases, value), y[-1:], 0, step)
+        return closed.defect, np.column_stack([closed.slope, across])
 
     def orbit(self, y: Floats) -> Orbit:
         """Return the orbit of a solution."""
-        p, t, _, _, states = self._at(y[:-1], float(y[-1]))
-        return assemble(self.word, p, t, states)
+        closed = self._closing.at(y[:-1], y[-1:])
+        assert closed is not None
+        return assemble(self.word, closed.params, closed.t, closed.states)

@@ -9,14 +9,16 @@ from __future__ import annotations
 
 import cmath
 import math
+from collections.abc import Mapping
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from vines.dynamics.kernels import impact_law, reversing
 from vines.errors import ParameterError
+from vines.model import VI_NES
 
-__all__ = ["SymmetricFamily", "family_of", "fold_amplitude", "fold_speed", "impact_states", "speeds"]
+__all__ = ["SymmetricFamily", "family_of", "family_where", "fold_amplitude", "fold_speed", "impact_states", "speeds"]
 
 
 class SymmetricFamily(NamedTuple):
@@ -106,6 +108,23 @@ def family_of(mu: float, Omega: float, r: float, lam: float, period: int) -> Sym
         kappa=kappa,
         response=complex(lam * Omega, -1) / complex(1 - Omega**2, lam * Omega),
     )
+
+
+def family_where(values: Mapping[str, float], period: int) -> SymmetricFamily | None:
+    """Return the same at parameter values by name, None where the model or its steady response does not exist.
+
+    Examples
+    --------
+    >>> values = {"mu": 0.01, "A": 0.02, "Omega": 1.0, "r": 0.65}
+    >>> family_where(values | {"lam": -0.1}, 1) is None, family_where(values | {"lam": 0.0}, 1) is None
+    (True, True)
+    """
+    if not all(VI_NES.parameter(name).allowed.holds(value) for name, value in values.items()):
+        return None
+    try:
+        return family_of(values["mu"], values["Omega"], values["r"], values["lam"], period)
+    except (ParameterError, ArithmeticError):
+        return None
 
 
 def speeds(family: SymmetricFamily, A: float) -> tuple[float, ...]:

@@ -9,10 +9,11 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from vines.errors import OrbitNotFound, ParameterError
-from vines.model import VI_NES, Params
+from vines.model import Params
 from vines.orbits._arclength import Chord, Walk
 from vines.orbits._branch import Bifurcation, Branch
 from vines.orbits._chain_family import ChainProblem
+from vines.orbits._closing import stays_symmetric
 from vines.orbits._conditions import (
     GRAZING,
     REMARKS,
@@ -95,13 +96,14 @@ def continue_orbit(
     >>> [(b.type, round(b.value, 4)) for b in branch.bifurcations]
     [('symmetry_breaking', 0.018)]
     """
-    system = VI_NES if isinstance(orbit.params, Params) else orbit.params.system
-    system.parameter(parameter)
+    orbit.params.system.parameter(parameter)
     start = orbit.params.as_dict()[parameter]
     stop = orbit.params.replace(**{parameter: stop}).as_dict()[parameter]
     if start == stop:
         raise ParameterError(f"stop is {stop:g}, which is where {parameter} is already; give another value")
     low, high = sorted((start, stop) if within is None else within)
+    for bound in (low, high):
+        orbit.params.replace(**{parameter: bound})
     if not (low <= min(start, stop) and max(start, stop) <= high):
         raise ParameterError(
             f"within is {low:g} … {high:g}; it has to hold {parameter} = {start:g} and stop = {stop:g}"
@@ -140,7 +142,8 @@ class _Branch:
     def run(self) -> Branch:
         start = float(self.problem.start[-1])
         self.curve = ZeroSet(self.problem, self.high - self.low)
-        self.conditions = conditions(self.orbit.symmetric)
+        self.symmetric = stays_symmetric(self.orbit, self.problem.parameter)
+        self.conditions = conditions(self.symmetric)
         towards = np.zeros(len(self.problem.start))
         towards[-1] = np.sign(self.stop - start)
         here = Point(self.problem.start, self.curve.tangent(self.problem.start, towards), self.orbit)
@@ -171,9 +174,9 @@ class _Branch:
         )
         before = here
         for _, found, point in met:
-            joined = origin(point.orbit) if found == "fold" and not self.orbit.symmetric else None
+            joined = origin(point.orbit) if found == "fold" and not self.symmetric else None
             kind = joined or found
-            critical = critical_multiplier(found, point, self.orbit.symmetric)
+            critical = critical_multiplier(found, point, self.symmetric)
             if critical is None:
                 continue
             half, whole = critical

@@ -2,25 +2,51 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
-from vines.model import PARAMETER_NAMES
+from vines.model import PARAMETER_NAMES, Params
+from vines.orbits._closing import Closing
 from vines.orbits._family import closing_at
 from vines.orbits._orbit import Orbit
-from vines.orbits._values import values_of
+from vines.orbits._values import frequency_of, values_of
 
 __all__ = ["branching_curvature"]
 
 Floats = npt.NDArray[np.float64]
+Equations = Callable[..., tuple[Floats, Floats]]
 
 _STEP = 1e-3
 """Step of the differences in the phases [rad]; they are central, with an error of the order of its square."""
 
 _CHANGE = 1e-5
 """The same in the parameters, relative to the direction given."""
+
+
+def _equations(orbit: Orbit, names: tuple[str, str], direction: Floats) -> Equations:
+    """Return the closing equations and their slope in the phases, by these and by how far the parameters moved."""
+    if not isinstance(orbit.params, Params):
+        closing = Closing(orbit, names, symmetric=False)
+        begin = closing.start[-len(names) :]
+
+        def at(z: Floats, shift: float = 0.0) -> tuple[Floats, Floats]:
+            closed = closing.at(z, begin + shift * direction)
+            return (closed.defect, closed.slope) if closed else (z * np.nan, np.outer(z, z) * np.nan)
+
+        return at
+    values = values_of(orbit.params)
+    where = [PARAMETER_NAMES.index(name) for name in names]
+    side = np.array(orbit.word.sides, dtype=np.int64)
+
+    def of_bare_values(z: Floats, shift: float = 0.0) -> tuple[Floats, Floats]:
+        moved = values.copy()
+        moved[where] += shift * direction
+        return closing_at(moved, orbit.word.p, side, z)[:2]
+
+    return of_bare_values
 
 
 def branching_curvature(orbit: Orbit, names: tuple[str, str], direction: Floats) -> float:
@@ -40,16 +66,8 @@ def branching_curvature(orbit: Orbit, names: tuple[str, str], direction: Floats)
     float
         Zero where the branching is degenerate, changing from supercritical to subcritical.
     """
-    values = values_of(orbit.params)
-    where = [PARAMETER_NAMES.index(name) for name in names]
-    side = np.array(orbit.word.sides, dtype=np.int64)
-    phases = orbit.t * orbit.params.Omega
-
-    def at(z: Floats, shift: float = 0.0) -> tuple[Floats, Floats]:
-        moved = values.copy()
-        moved[where] += shift * direction
-        return closing_at(moved, orbit.word.p, side, z)[:2]
-
+    at = _equations(orbit, names, direction)
+    phases = orbit.t * frequency_of(orbit.params)
     slope = at(phases)[1]
     u, _, v = np.linalg.svd(slope)
     left, null = u[:, -1], v[-1]

@@ -62,7 +62,9 @@ class Curve:
     ends : tuple of str, str
         Why it ends at either end: ``box``, ``grazing`` (of a curve of another type: its orbits cease to be
         admissible), ``double_grazing``, ``degenerate_grazing``, ``resonance_1_1`` or ``resonance_1_2`` (of a
-        Neimark-Sacker curve, whose pair turns real), ``closed``, ``points`` (as many as were allowed), ``lost``.
+        Neimark-Sacker curve, whose pair turns real), ``closed``, ``points`` (as many as were allowed), ``domain``
+        (next to where the system, or its steady response, does not exist), ``rounding`` (the equations are left with
+        fewer than six digits), ``lost``.
     """
 
     type: str
@@ -77,7 +79,8 @@ class Curve:
     @property
     def values(self) -> npt.NDArray[np.float64]:
         """The two parameters at the points, shape (n, 2)."""
-        return np.array([[getattr(orbit.params, name) for name in self.parameters] for orbit in self.orbits])
+        points = [orbit.params.as_dict() for orbit in self.orbits]
+        return np.array([[point[name] for name in self.parameters] for point in points])
 
     @cached_property
     def curve_id(self) -> str:

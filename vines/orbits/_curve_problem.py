@@ -1,4 +1,4 @@
-"""Bifurcations as zero sets in two parameters: closing equations with the defining equation appended."""
+"""Bifurcations of the VI-NES as zero sets in two parameters: closing equations with the defining equation appended."""
 
 from __future__ import annotations
 
@@ -7,9 +7,10 @@ import numpy.typing as npt
 
 from vines.dynamics.kernels import constants
 from vines.kernels import entry_njit, linked_njit, new_vector
-from vines.model import PARAMETER_NAMES, V2, Params
+from vines.model import AMPLITUDE, FREQUENCY, PARAMETER_NAMES, V2, VI_NES, Params
 from vines.orbits._assemble import assemble
-from vines.orbits._closed_form import family_of, impact_states
+from vines.orbits._closed_form import SymmetricFamily, family_where, impact_states
+from vines.orbits._curve_equations import CurveEquations
 from vines.orbits._defining import FLIP, FOLD, GRAZE, STOP, TORUS, condition_kernel, gap_kernel, turnings_kernel
 from vines.orbits._family import closing_at
 from vines.orbits._orbit import Orbit
@@ -18,9 +19,6 @@ from vines.orbits._values import values_of
 __all__ = ["CurveProblem"]
 
 Floats = npt.NDArray[np.float64]
-
-_STEP = 1e-6
-"""Step of the differences, relative to unknowns of size one: they steer Newton's method and do not move its goal."""
 
 _CODES = {
     "fold": FOLD,
@@ -52,11 +50,8 @@ def _general(kind, values, first, second, p, side, n, half, place, wall, y):
     return out
 
 
-class CurveProblem:
-    """A bifurcation in two parameters: n + 1 equations in (n unknowns, two parameters), one more of each for grazing.
-
-    The unknowns are phases of impacts, or the speed V of a symmetric 1:1/pT orbit, then for grazing the time of the
-    turning point since the start of its flight, then the parameters.
+class CurveProblem(CurveEquations):
+    """A bifurcation of the VI-NES; the unknowns are phases of impacts, or the speed V of a symmetric 1:1/pT orbit.
 
     Parameters
     ----------
@@ -70,19 +65,14 @@ class CurveProblem:
     """
 
     def __init__(self, kind: str, orbit: Orbit, parameters: tuple[str, str], spans: tuple[float, float]) -> None:
-        self.word = orbit.word
-        self.symmetric = orbit.symmetric
-        self.spans = np.array(spans)
-        self.parameter = parameters[1]
-        self.names = parameters
-        self.kind = kind
+        super().__init__(kind, orbit, parameters, spans)
         self._code = _CODES[kind]
         self._fixed = orbit.params
         self._values = values_of(orbit.params)
         self._index = (PARAMETER_NAMES.index(parameters[0]), PARAMETER_NAMES.index(parameters[1]))
         self._side = np.array(orbit.word.sides, dtype=np.int64)
         self._explicit = orbit.symmetric and len(orbit.word) == 2
-        self.place, self._wall = 0, 0
+        self._wall = 0
         if self._explicit:
             unknowns = np.array([-orbit.states[0, V2]])
         else:
@@ -92,19 +82,17 @@ class CurveProblem:
         if self._code == GRAZE:
             speeds = orbit.side * orbit.w_dot
             if orbit.min_clearance < speeds.min():
-                c = constants(orbit.params)
-                turnings = turnings_kernel(c, orbit.period, orbit.t, orbit.states)
-                touch = turnings[np.argmin(turnings[:, 3])]
-                self.place, self._wall = int(touch[0]), int(touch[2])
+                touch = self.touching(orbit)
+                self._wall = int(touch[2])
                 unknowns = np.append(unknowns, touch[1])
             else:
                 self._code, self.place = STOP, int(np.argmin(speeds))
         self.start = np.append(unknowns, self._values[list(self._index)])
 
-    @property
-    def touches(self) -> bool:
-        """Whether the last unknown before the parameters is the time at which a turning point touches a wall."""
-        return self._code == GRAZE
+    def turnings(self, orbit: Orbit) -> Floats:
+        """Return all turning points of an orbit, rows of flight, time since its start, wall, clearance, w'', 0."""
+        rows = turnings_kernel(constants(orbit.params), orbit.period, orbit.t, orbit.states)
+        return np.column_stack([rows, np.zeros(len(rows))])
 
     def bend(self, y: Floats) -> float:
         """Return w'' at the turning point that touches the wall, negative where it touches L."""
@@ -114,48 +102,48 @@ class CurveProblem:
     def _params(self, y: Floats) -> Params:
         return self._fixed.replace(**dict(zip(self.names, (float(y[-2]), float(y[-1])), strict=True)))
 
-    def _impacts(self, values: Floats, V: float) -> tuple[float, Floats, Floats]:
-        mu, A, Omega, r, lam = values.tolist()
-        family = family_of(mu, Omega, r, lam, self.word.p)
-        return family.defect(V, A), *impact_states(family, V, A, Omega)
-
     def residual(self, y: Floats) -> Floats:
-        """Return the equations at y, shape (y.size - 1,)."""
+        """Return the equations at y, shape (y.size - 1,), nan where the model does not exist."""
+        if not all(VI_NES.parameter(name).allowed.holds(y[k]) for name, k in zip(self.names, (-2, -1), strict=True)):
+            return np.full(len(y) - 1, np.nan)
         if not self._explicit:
             return _general(
                 self._code, self._values, *self._index, self.word.p, self._side, self._n, self.symmetric, self.place,
                 self._wall, y,
             )  # fmt: skip
-        values = self._values.copy()
-        values[list(self._index)] = y[-2:]
-        V = float(y[0])
-        out = np.empty(len(y) - 1)
-        out[0], t, states = self._impacts(values, V)
+        values, V = self._at(y), float(y[0])
+        family = self._family(values)
+        out = np.full(len(y) - 1, np.nan)
+        # Without forcing no phase is that of an impact.
+        if family is None or values[AMPLITUDE] == 0:
+            return out
+        out[0] = family.defect(V, float(values[AMPLITUDE]))
         if self._code == FOLD:
-            mu, _, Omega, r, lam = values.tolist()
-            out[1] = family_of(mu, Omega, r, lam, self.word.p).slope(V)
+            out[1] = family.slope(V)
         else:
+            t, states = impact_states(family, V, float(values[AMPLITUDE]), float(values[FREQUENCY]))
             _append(out, 1, self._code, values, self.word.p, self._side, t, states, True, self.place, self._wall, y[1])
         return out
-
-    def equations(self, y: Floats) -> tuple[Floats, Floats]:
-        """Return the equations at y, and their derivatives by differences."""
-        matrix = np.empty((len(y) - 1, len(y)))
-        for k in range(len(y)):
-            step = np.zeros(len(y))
-            step[k] = _STEP * (max(abs(y[k]), 0.01) if k >= len(y) - 2 else 1.0)
-            matrix[:, k] = (self.residual(y + step) - self.residual(y - step)) / (2 * step[k])
-        return self.residual(y), matrix
 
     def orbit(self, y: Floats) -> Orbit:
         """Return the orbit of a solution."""
         _, t, states = self._closed(y)
         return assemble(self.word, self._params(y), t, states)
 
-    def _closed(self, y: Floats) -> tuple[Floats, Floats, Floats]:
-        """Return parameter values, impact times and states of a solution."""
+    def _at(self, y: Floats) -> Floats:
         values = self._values.copy()
         values[list(self._index)] = y[-2:]
+        return values
+
+    def _family(self, values: Floats) -> SymmetricFamily | None:
+        return family_where(dict(zip(PARAMETER_NAMES, values.tolist(), strict=True)), self.word.p)
+
+    def _closed(self, y: Floats) -> tuple[Floats, Floats, Floats]:
+        """Return parameter values, impact times and states of a solution."""
+        values = self._at(y)
         if self._explicit:
-            return values, *self._impacts(values, float(y[0]))[1:]
+            family = self._family(values)
+            assert family is not None
+            A, Omega = float(values[AMPLITUDE]), float(values[FREQUENCY])
+            return values, *impact_states(family, float(y[0]), A, Omega)
         return values, *closing_at(values, self.word.p, self._side, y[: self._n])[2:]

@@ -112,11 +112,11 @@ def follow_families(
 def _lies_on(orbit: Orbit, branch: Branch) -> bool:
     if branch.word != orbit.word or branch.symmetric != orbit.symmetric:
         return False
-    value = getattr(orbit.params, branch.parameter)
+    value = orbit.params.as_dict()[branch.parameter]
     images = [orbit]
     if not orbit.symmetric and orbit.word.mirror == orbit.word:
         images.append(mirror_image(orbit))
-    near = [other for other in branch.orbits if getattr(other.params, branch.parameter) == value]
+    near = [other for other in branch.orbits if other.params.as_dict()[branch.parameter] == value]
     return any(same(other, image.t, image.states) for other in near for image in images)
 
 
@@ -124,7 +124,7 @@ def _both_ways(
     orbit: Orbit, parameter: str, within: tuple[float, float], at: Sequence[float], step: float
 ) -> Branch | None:
     """Return the branch through an orbit from its lower end to its upper one, None if it is lost."""
-    value = getattr(orbit.params, parameter)
+    value = orbit.params.as_dict()[parameter]
     for finer in _FINER:
         try:
             down, up = (

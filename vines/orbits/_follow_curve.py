@@ -10,10 +10,12 @@ import numpy as np
 import numpy.typing as npt
 
 from vines.errors import OrbitNotFound, ParameterError
-from vines.model import VI_NES
+from vines.model import Params
 from vines.orbits._arclength import Chord, Walk
 from vines.orbits._branch import Bifurcation
+from vines.orbits._chain_curve import ChainCurve
 from vines.orbits._curve import Curve, SpecialPoint
+from vines.orbits._curve_equations import CurveEquations
 from vines.orbits._curve_problem import CurveProblem
 from vines.orbits._joined import is_joint, left_family
 from vines.orbits._problem import Point, ZeroSet
@@ -30,6 +32,15 @@ _TOLERANCE = 1e-13
 """Of a special point, as a fraction of the step in which it lies."""
 _ENDS = (END, "resonance_1_1", "resonance_1_2", "double_grazing", "degenerate_grazing")
 """Special points beyond which the equations describe something else."""
+_RANK = 1e-10
+"""Least singular value of the equations relative to the largest: below it they do not depend on the parameters."""
+
+_ROUNDING = 1e-6
+"""Residual beyond which the equations have lost their digits: next to a resonance they are small differences."""
+
+_SOUND = 1e-11
+"""Residual up to which a point is taken next to one at which the equations fail."""
+
 _FIRST = 4
 """Points before which a curve is not looked at for having closed."""
 
@@ -49,7 +60,7 @@ def follow_curve(
     bifurcation : Bifurcation
         A fold, symmetry breaking, period doubling, Neimark-Sacker point or grazing.
     parameters : tuple of str, str
-        Two of mu, A, Omega, r, lam.
+        Two of mu, A, Omega, r, lam; of another system two of its own.
     box : mapping of str to (float, float)
         Range of each of the two; the curve ends at its border.
     step : float
@@ -64,9 +75,9 @@ def follow_curve(
     Raises
     ------
     ParameterError
-        If the parameters or the box do not fit.
+        If the parameters or the box do not fit, or a parameter breaks the symmetry whose breaking is to be followed.
     OrbitNotFound
-        If the bifurcation is not found again by the equations of the curve.
+        If the bifurcation is not found again by the equations of the curve, or is one whatever the two parameters are.
 
     Notes
     -----
@@ -81,22 +92,18 @@ def follow_curve(
     >>> curve.type, curve.ends
     ('symmetry_breaking', ('box', 'box'))
     """
-    for name in parameters:
-        VI_NES.parameter(name)
-    if len(set(parameters)) != 2:
-        raise ParameterError(f"parameters are {parameters}, allowed are two different ones")
-    if set(box) != set(parameters):
-        raise ParameterError(f"box names {sorted(box)}, it has to give the ranges of {' and '.join(parameters)}")
-    low, high = (np.array([sorted(box[name])[k] for name in parameters]) for k in (0, 1))
-    start = np.array([getattr(bifurcation.params, name) for name in parameters])
-    if not np.all((low <= start) & (start <= high) & (low < high)):
-        raise ParameterError(f"box is {dict(box)}; it has to hold the bifurcation at {tuple(start.tolist())}")
+    low, high = _bounds(bifurcation, parameters, box)
     if not 0 < step <= 1:
         raise ParameterError(f"step is {step!r}, allowed is 0 < step <= 1")
-    orbit = left_family(bifurcation) if is_joint(bifurcation) else bifurcation.orbit
-    problem = CurveProblem(bifurcation.type, orbit, parameters, tuple((high - low).tolist()))
+    problem = _problem(bifurcation, parameters, high - low)
     zero = ZeroSet(problem, *problem.spans)
-    normal = np.linalg.svd(zero.problem.equations(problem.start)[1] * zero.scale)[2][-1]
+    _, sizes, directions = np.linalg.svd(zero.problem.equations(problem.start)[1] * zero.scale)
+    if sizes[-1] < _RANK * sizes[0]:
+        raise OrbitNotFound(
+            f"{bifurcation} is one at all values of {' and '.join(parameters)} around, so that there is no curve to "
+            "follow; give another parameter"
+        )
+    normal = directions[-1]
     found = zero.correct(problem.start, normal)
     if found is None or np.abs((found[0] - problem.start) / zero.scale).max() > 0.05:
         raise OrbitNotFound(f"{bifurcation} does not satisfy the equations of a curve; locate it afresh")
@@ -123,11 +130,50 @@ def follow_curve(
     )
 
 
+def _bounds(
+    bifurcation: Bifurcation, parameters: tuple[str, str], box: Mapping[str, tuple[float, float]]
+) -> tuple[Floats, Floats]:
+    """Return the lower and upper ends of the box.
+
+    Raises
+    ------
+    ParameterError
+        If it is none around the bifurcation.
+    """
+    p = bifurcation.params
+    for name in parameters:
+        p.system.parameter(name)
+    if len(set(parameters)) != 2:
+        raise ParameterError(f"parameters are {parameters}, allowed are two different ones")
+    if set(box) != set(parameters):
+        raise ParameterError(f"box names {sorted(box)}, it has to give the ranges of {' and '.join(parameters)}")
+    low, high = (np.array([sorted(box[name])[k] for name in parameters]) for k in (0, 1))
+    start = np.array([p.as_dict()[name] for name in parameters])
+    if not np.all((low <= start) & (start <= high) & (low < high)):
+        raise ParameterError(f"box is {dict(box)}; it has to hold the bifurcation at {tuple(start.tolist())}")
+    for end in (low, high):
+        p.replace(**dict(zip(parameters, end.tolist(), strict=True)))
+    return low, high
+
+
+def _problem(bifurcation: Bifurcation, parameters: tuple[str, str], spans: Floats) -> CurveEquations:
+    orbit = left_family(bifurcation) if is_joint(bifurcation) else bifurcation.orbit
+    breaks = set(parameters) & set(orbit.params.system.mirror.broken_by)
+    if bifurcation.type == "symmetry_breaking" and breaks:
+        name = breaks.pop()
+        raise ParameterError(
+            f"parameters are {parameters}; there is no symmetry to break unless {name} = 0, and folds of {orbit.word} "
+            "have a cusp there; give two others, or follow a fold"
+        )
+    form = CurveProblem if isinstance(orbit.params, Params) else ChainCurve
+    return form(bifurcation.type, orbit, parameters, tuple(spans.tolist()))
+
+
 @dataclass
 class _Way:
     """The curve one way from its start."""
 
-    problem: CurveProblem
+    problem: CurveEquations
     zero: ZeroSet
     low: Floats
     high: Floats
@@ -151,9 +197,15 @@ class _Way:
             reach=_REACH,
         )
         self.end = walk.follow(begin, self._record, self.max_points)
+        if self.end == "lost":
+            here = self.points[-1] if self.points else begin
+            ahead = here.y + self.step * self.zero.scale * here.tangent
+            self.end = "lost" if np.isfinite(self.problem.residual(ahead)).all() else "domain"
 
     def _record(self, here: Point, there: Point, last: bool) -> str | None:
         """Add what lies between two points, and the second one; return why the curve ends there, if it does."""
+        if not np.abs(self.problem.residual(there.y)).max() < _ROUNDING:
+            return "rounding"
         after = [special.function(there) for special in self.functions]
         hits = [self._cusp(here, there)] + [
             self._locate(special, here, there, a, b)
@@ -188,7 +240,27 @@ class _Way:
         if not (math.isfinite(first) and math.isfinite(second)) or (first > 0) == (second > 0):
             return None
         found = self._root(special.function, here, there)
+        if found is None and special.type == END:
+            found = self._before(special.function, here, there)
         return (found[0], special.type, found[1]) if found is not None and special.holds(found[1]) else None
+
+    def _before(self, function: Callable[[Point], float], here: Point, there: Point) -> tuple[float, Point]:
+        """Return the last point found on the side of the first one, where the equations fail at the zero itself.
+
+        That is so where an impact loses its speed: M is infinite there.
+        """
+        chord = Chord(self.zero, here, there)
+        low, high = 0.0, 1.0
+        while high - low > _TOLERANCE:
+            middle = 0.5 * (low + high)
+            try:
+                point = chord.point(middle)
+            except OrbitNotFound:
+                break
+            if not np.abs(self.problem.residual(point.y)).max() < _SOUND:
+                break
+            low, high = (middle, high) if (function(point) > 0) == (function(here) > 0) else (low, middle)
+        return low, chord.point(low)
 
     def _cusp(self, here: Point, there: Point) -> tuple[float, str, Point] | None:
         """Return the cusp between two points: the parameters turn back though the curve goes on."""

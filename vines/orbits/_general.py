@@ -115,7 +115,8 @@ def origin(orbit: Orbit) -> str | None:
     A family that broke the symmetry meets its mirror image there, a doubled one its own repetition; both look like
     folds from within.
     """
-    if orbit.word.symmetric and asymmetry(orbit.word, orbit.period, orbit.t, orbit.states) < _NEAR:
+    mirrored = orbit.params.mirrored and orbit.word.symmetric
+    if mirrored and asymmetry(orbit.word, orbit.period, orbit.t, orbit.states) < _NEAR:
         return "symmetry_breaking"
     if _repetition(orbit.word, orbit.period, orbit.t, orbit.states) < _NEAR:
         return "period_doubling"

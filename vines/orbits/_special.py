@@ -9,11 +9,9 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from vines.dynamics.kernels import constants
 from vines.orbits._conditions import grazing_margin
 from vines.orbits._criticality import branching_curvature
-from vines.orbits._curve_problem import CurveProblem
-from vines.orbits._defining import turnings_kernel
+from vines.orbits._curve_equations import CurveEquations
 from vines.orbits._joined import unfolded
 from vines.orbits._problem import Point
 
@@ -29,9 +27,6 @@ RESONANCES = {"resonance_1_1": 1.0, "resonance_1_2": -1.0, "resonance_1_3": -0.5
 
 _LARGEST = 1e7
 """Modulus of a multiplier beyond which the others are too much rounding to tell what they do."""
-
-_TOUCHING = 1e-5
-"""Time between the turning point that touches and one that the survey finds, below which they are one."""
 
 
 class Special(NamedTuple):
@@ -55,7 +50,7 @@ def _always(point: Point) -> bool:
     return True
 
 
-def special_functions(problem: CurveProblem) -> tuple[Special, ...]:
+def special_functions(problem: CurveEquations) -> tuple[Special, ...]:
     """Return what is looked for on a curve of this kind (docs/orbits.md, "Curves")."""
     kind, flip = problem.kind, "symmetry_breaking" if problem.symmetric else "flip"
 
@@ -65,7 +60,7 @@ def special_functions(problem: CurveProblem) -> tuple[Special, ...]:
             # Next to a loss of symmetry rounding may hide that an orbit of the family is symmetric.
             half = point.orbit.half_multipliers
             m = np.sqrt(m) if half is None else half
-        return m if np.isfinite(m).all() and np.abs(m).max() < _LARGEST else np.full(4, complex(np.nan))
+        return m if np.isfinite(m).all() and np.abs(m).max() < _LARGEST else np.full(len(m), complex(np.nan))
 
     def critical(point: Point) -> tuple[Multipliers, Multipliers]:
         """Return the multipliers that make the bifurcation, and the others."""
@@ -73,10 +68,10 @@ def special_functions(problem: CurveProblem) -> tuple[Special, ...]:
         if kind == "grazing":
             mine: tuple[int, ...] = ()
         elif kind == "neimark_sacker":
-            mine = min(combinations(range(4), 2), key=lambda pair: abs(1 - m[pair[0]] * m[pair[1]]))
+            mine = min(combinations(range(len(m)), 2), key=lambda pair: abs(1 - m[pair[0]] * m[pair[1]]))
         else:
             mine = (int(np.argmin(abs(m - (1 if kind == "fold" else -1)))),)
-        return m[list(mine)], m[[k for k in range(4) if k not in mine]]
+        return m[list(mine)], m[[k for k in range(len(m)) if k not in mine]]
 
     def one(point: Point) -> float:
         return float(np.prod(1 - critical(point)[1]).real)
@@ -98,15 +93,14 @@ def special_functions(problem: CurveProblem) -> tuple[Special, ...]:
     def curvature(point: Point) -> float:
         along = point.tangent[-2:]
         direction = np.array([-along[1], along[0]]) / np.linalg.norm(along) * problem.spans
-        return branching_curvature(unfolded(kind, point.orbit), problem.names, direction)
+        try:
+            return branching_curvature(unfolded(kind, point.orbit), problem.names, direction)
+        except np.linalg.LinAlgError:  # at the border of where the system exists
+            return np.nan
 
     def other_margin(point: Point) -> float:
         orbit = point.orbit
-        rows = turnings_kernel(constants(orbit.params), orbit.period, orbit.t, orbit.states)
-        # The mirror image of a symmetric orbit touches the other wall at the same time of its own flight.
-        around = len(orbit.word) // (2 if problem.symmetric else 1)
-        mine = (rows[:, 0] % around == problem.place % around) & (np.abs(rows[:, 1] - point.y[-3]) < _TOUCHING)
-        return min(float(rows[~mine, 3].min(initial=2.0)), float((orbit.side * orbit.w_dot).min()))
+        return min(problem.elsewhere(orbit, point.y), float((orbit.side * orbit.w_dot).min()))
 
     def bend(point: Point) -> float:
         return problem.bend(point.y)

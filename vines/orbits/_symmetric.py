@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 import numpy.typing as npt
 
@@ -11,11 +13,13 @@ from vines.orbits._assemble import assemble
 from vines.orbits._closed_form import (
     SymmetricFamily,
     family_of,
+    family_where,
     fold_amplitude,
     fold_speed,
     impact_states,
     speeds,
 )
+from vines.orbits._closing import difference
 from vines.orbits._orbit import Orbit
 
 __all__ = ["SymmetricProblem", "no_symmetric_orbit", "symmetric_fold", "symmetric_orbits"]
@@ -106,22 +110,23 @@ class SymmetricProblem:
         self._fixed = orbit.params.as_dict()
         self.start = np.array([-orbit.states[0, V2], self._fixed[parameter]])
 
-    def _at(self, value: float) -> tuple[SymmetricFamily, float]:
-        now = {**self._fixed, self.parameter: value}
-        return family_of(now["mu"], now["Omega"], now["r"], now["lam"], self.word.p), now["A"]
+    def _defect(self, V: float, values: Floats) -> Floats:
+        """Return the defect of the quadratic for V at a value of the parameter, nan where the model does not exist."""
+        now = {**self._fixed, self.parameter: float(values[0])}
+        family = family_where(now, self.word.p)
+        return np.array([math.nan if family is None else family.defect(V, now["A"])])
 
     def equations(self, y: Floats) -> tuple[Floats, Floats]:
         """Return the defect of the quadratic for V, shape (1,), and its derivatives, shape (1, 2)."""
         V, value = float(y[0]), float(y[1])
+        family = family_where({**self._fixed, self.parameter: value}, self.word.p)
+        if family is None:
+            return np.full(1, np.nan), np.full((1, 2), np.nan)
         step = _DIFFERENCE * max(abs(value), 0.01)
-        above, below = self._at(value + step), self._at(value - step)
-        across = (above[0].defect(V, above[1]) - below[0].defect(V, below[1])) / (2 * step)
-        family, A = self._at(value)
-        return np.array([family.defect(V, A)]), np.array([[family.slope(V), across]])
+        across = difference(lambda values: self._defect(V, values), y[1:], 0, step)
+        return self._defect(V, y[1:]), np.array([[family.slope(V), across[0]]])
 
     def orbit(self, y: Floats) -> Orbit:
         """Return the orbit of a solution."""
-        V, value = float(y[0]), float(y[1])
-        family, A = self._at(value)
-        p = Params(**{**self._fixed, self.parameter: value})
-        return assemble(self.word, p, *impact_states(family, V, A, p.Omega))
+        p = Params(**{**self._fixed, self.parameter: float(y[1])})
+        return assemble(self.word, p, *impact_states(_family(p, self.word.p), float(y[0]), p.A, p.Omega))

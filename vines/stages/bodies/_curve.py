@@ -2,20 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from vines.errors import DeclarationError, OrbitNotFound
-from vines.model import Params, Word
-from vines.orbits import Bifurcation, Curve, curve_rows, follow_curve, follow_families
+from vines.model import Params
+from vines.orbits import Bifurcation, Curve, curve_rows, follow_curve, follow_families, own_word
 from vines.pipeline import Batch, WholeJob
 
 if TYPE_CHECKING:
     from vines.stages.kinds.curve import CurveOptions
 
-__all__ = ["compute"]
+__all__ = ["compute", "followed", "rows_of"]
 
 _NEAR = 0.01
 """Largest distance, relative to the range, of a bifurcation from a curve between whose points it lies, to be on it."""
@@ -26,6 +26,27 @@ _SLOW = 0.01
 
 def compute(job: WholeJob[CurveOptions]) -> Batch:
     """Find the bifurcations on lines through the box and follow each that lies on no curve yet, both ways."""
+    curves = followed(job, lambda values: Params(**values), depth=1)
+    return Batch(tables={"curves": [row for curve in curves for row in rows_of(curve)]})
+
+
+def followed(job: WholeJob[Any], form: Callable[[dict[str, float]], Any], depth: int) -> list[Curve]:
+    """Return the curves.
+
+    Parameters
+    ----------
+    job : WholeJob
+        With the options of the kind, whatever the system.
+    form : callable
+        Makes the parameters of the system from their flat names.
+    depth : int
+        Generations of families that come out of those of the word.
+
+    Raises
+    ------
+    OrbitNotFound
+        If there is none.
+    """
     options = job.options
     if len(job.ranges) != 2:
         raise DeclarationError(f"a curve is followed in two parameters, this one varies {len(job.ranges)}")
@@ -33,8 +54,8 @@ def compute(job: WholeJob[CurveOptions]) -> Batch:
     box = {name: (min(span.start, span.stop), max(span.start, span.stop)) for name, span in job.ranges.items()}
     curves: list[Curve] = []
     for value in _between(*box[second], options.lines):
-        p = Params(**{**job.params, first: box[first][0], second: value})
-        for bifurcation in _bifurcations(options, p, first, box[first]):
+        p = form({**job.params, first: box[first][0], second: value})
+        for bifurcation in _bifurcations(options, p, first, box[first], depth):
             if not any(_lies_on(bifurcation, curve, box) for curve in curves):
                 curves.append(follow_curve(bifurcation, (first, second), box=box, step=options.step))
     if not curves:
@@ -42,7 +63,7 @@ def compute(job: WholeJob[CurveOptions]) -> Batch:
             f"no {options.type} of {options.word} on {options.lines} lines along {first} through the box; "
             "give another box, or more lines or seeds"
         )
-    return Batch(tables={"curves": [row for curve in curves for row in _rows(curve)]})
+    return curves
 
 
 def _between(low: float, high: float, count: int) -> list[float]:
@@ -54,12 +75,12 @@ def _between(low: float, high: float, count: int) -> list[float]:
 
 
 def _bifurcations(
-    options: CurveOptions, p: Params, parameter: str, within: tuple[float, float]
+    options: CurveOptions, p: Any, parameter: str, within: tuple[float, float], depth: int
 ) -> Iterator[Bifurcation]:
-    word = Word(options.word)
+    word = own_word(options.word, p)
     # Inside the range, since a curve does not begin at its border.
     seeds = np.linspace(*within, options.seeds + 2)[1:-1].tolist()
-    for branch in follow_families(options.word, p, parameter, within, seeds=seeds, depth=1):
+    for branch in follow_families(options.word, p, parameter, within, seeds=seeds, depth=depth):
         if branch.word == word:
             yield from (found for found in branch.bifurcations if found.type == options.type)
 
@@ -67,10 +88,11 @@ def _bifurcations(
 def _lies_on(bifurcation: Bifurcation, curve: Curve, box: dict[str, tuple[float, float]]) -> bool:
     """Say whether a curve passes through a bifurcation, as far as the polygon through its points tells."""
     orbit = bifurcation.orbit
-    if curve.symmetric != orbit.symmetric:
+    # Where a parameter of the plane breaks the symmetry the curve goes on to orbits without it.
+    if curve.symmetric != (orbit.symmetric and not set(box) & set(orbit.params.system.mirror.broken_by)):
         return False
     spans = np.array([high - low for low, high in box.values()])
-    place = np.array([getattr(bifurcation.params, name) for name in box]) / spans
+    place = np.array([bifurcation.params.as_dict()[name] for name in box]) / spans
     points = curve.values / spans
     steps = np.diff(points, axis=0)
     squares = np.maximum((steps**2).sum(axis=1), 1e-300)
@@ -81,11 +103,12 @@ def _lies_on(bifurcation: Bifurcation, curve: Curve, box: dict[str, tuple[float,
         return False
     # Two sheets may cross in the plane of parameters; their orbits differ.
     near = curve.orbits[k].w_dot + share[k] * (curve.orbits[k + 1].w_dot - curve.orbits[k].w_dot)
-    images = [orbit.w_dot, *([-np.roll(orbit.w_dot, 1)] if len(orbit.word) == 2 else [])]
+    images = [orbit.w_dot, *([-np.roll(orbit.w_dot, 1)] if len(orbit.word) == 2 and orbit.params.mirrored else [])]
     return any(np.abs(near - image).max() < 0.05 * max(np.abs(image).max(), _SLOW) for image in images)
 
 
-def _rows(curve: Curve) -> list[dict[str, Any]]:
+def rows_of(curve: Curve) -> list[dict[str, Any]]:
+    """Return the rows of a curve, with residuals and ends."""
     rows = curve_rows(curve)
     for row, residual in zip(rows, curve.residuals.tolist(), strict=False):
         row["residual"] = residual

@@ -7,12 +7,14 @@ from typing import Annotated, Literal
 import msgspec
 from msgspec import Meta
 
-from vines.model import VI_NES, Params, word_for
+from vines.errors import DeclarationError
+from vines.model import VI_NES, Params, most_balls, read_system, word_for
 from vines.pipeline import Kind, Pipeline, Stage
 from vines.stages.kinds._checks import check_axes
+from vines.stages.kinds._family import of_systems
 from vines.stages.kinds._parameters import PARAMETERS
 
-__all__ = ["KIND", "CurveOptions"]
+__all__ = ["KIND", "CurveOptions", "FamilyCurveOptions"]
 
 
 class CurveOptions(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -32,6 +34,16 @@ class CurveOptions(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     step: Annotated[float, Meta(gt=0, le=1, description="Largest step, relative to the box")] = 0.02
 
 
+class FamilyCurveOptions(CurveOptions, frozen=True, forbid_unknown_fields=True, kw_only=True):
+    """Every curve of one type of bifurcation of a word in the plane of the two varied parameters.
+
+    The bifurcations are found on the families of the word along the first parameter, at `lines` values of the second
+    and from `seeds` values of the first.
+    """
+
+    system: str
+
+
 def _check(params: dict[str, float], options: CurveOptions) -> None:
     Params(**params)
     word_for(options.word, VI_NES)
@@ -40,9 +52,14 @@ def _check(params: dict[str, float], options: CurveOptions) -> None:
 def _fits(stage: Stage, pipeline: Pipeline) -> None:
     del pipeline
     check_axes(stage, 2, "a curve is followed in two parameters", "give vary.X and vary.Y")
+    system = stage.kind.system
+    varied = [axis.name for axis in stage.axes]
+    for name in read_system(system, min(most_balls(system), 1)).mirror.broken_by:
+        if stage.options.type == "symmetry_breaking" and (name in varied or stage.params.get(name, 0) != 0):
+            raise DeclarationError(f"there is no symmetry to break unless {name} = 0; give that and vary others")
 
 
-KIND = Kind(
+_VI_NES = Kind(
     name="curve",
     summary="a bifurcation followed in two parameters, with its special points",
     shape="whole",
@@ -54,4 +71,8 @@ KIND = Kind(
     check=_check,
     kernels=("orbits", "curves"),
     fits=_fits,
+)
+
+KIND = of_systems(
+    _VI_NES, ("impact_pair", "parallel"), FamilyCurveOptions, "vines.stages.bodies._family_curve:compute", ("curves",)
 )

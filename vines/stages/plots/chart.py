@@ -6,12 +6,14 @@ from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING
 
 from vines.errors import DeclarationError
+from vines.stages.plots._checks import called, one_system
+from vines.stages.plots._lines import lines
 from vines.stages.plots._plot import Plot, PlotOptions
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from vines.figures import CurveLine, Region, SpecialMark
+    from vines.figures import Region, SpecialMark
     from vines.pipeline import Input, Pipeline, Stage
 
 __all__ = ["PLOT", "ChartOptions"]
@@ -23,10 +25,12 @@ class ChartOptions(PlotOptions, frozen=True, tag="chart"):
 
 def _check(stage: Stage, pipeline: Pipeline) -> None:
     needed = [pipeline.stages[name] for name in stage.needs]
-    wrong = [one.name for one in needed if not {"curves", "reduced"} & set(one.kind.tables)]
-    if wrong or not any("curves" in one.kind.tables for one in needed):
+    curves = [one.name for one in needed if called(one.kind.tables, "curves")]
+    wrong = [one.name for one in needed if one.name not in curves and "reduced" not in one.kind.tables]
+    if wrong or not curves:
         told = f"; {', '.join(wrong)} is of another" if wrong else ""
         raise DeclarationError(f"a chart draws stages of kind 'curve', and shades one of kind 'reduced'{told}")
+    one_system(needed, "a chart")
     if len({frozenset(axis.name for axis in one.axes) for one in needed}) != 1:
         raise DeclarationError("the stages of a chart have to vary the same two parameters")
 
@@ -35,32 +39,20 @@ def _draw(inputs: Mapping[str, Input], options: ChartOptions) -> Figure:
     from vines.figures import chart_figure
     from vines.stages.plots._caption import listed
 
-    curves = [stage for stage in inputs.values() if "curves" in stage.tables]
+    curves = [stage for stage in inputs.values() if called(stage.tables, "curves")]
     # Along x is A where it varies, as in the diagrams.
     first, second = sorted(curves[0].axes, key=lambda axis: axis != "A")
-    lines = [line for stage in curves for line in _lines(stage, first, second)]
+    shown = [line for stage in curves for line in lines(stage, first, second)]
     special = [mark for stage in curves for mark in _special(stage, first, second)]
     regions = [_stable(stage, first, second) for stage in inputs.values() if "reduced" in stage.tables]
     return chart_figure(
         (first, second),
-        lines,
+        shown,
         special,
         regions,
         caption=options.title or listed(curves[0].params),
         width=options.width,
     )
-
-
-def _lines(stage: Input, first: str, second: str) -> Iterable[CurveLine]:
-    from vines.figures import CurveLine
-    from vines.packages import need
-    from vines.stages.plots._diagram import family_label
-
-    need("pandas")
-    frame = stage.table().to_pandas()
-    for _, points in frame[frame["special"].isna()].groupby("curve_id", sort=False):
-        row = points.iloc[0]
-        yield CurveLine(row["type"], family_label(row), points[first].to_numpy(), points[second].to_numpy())
 
 
 def _special(stage: Input, first: str, second: str) -> Iterable[SpecialMark]:
