@@ -249,7 +249,7 @@ def threads_allowed() -> int:
 def each_thread(work: Callable[[slice], object], blocks: Iterable[slice], cores: int) -> None:
     """Do the work of every block on so many threads; kernels release the interpreter's lock."""
     blocks = list(blocks)
-    if cores == 1 or len(blocks) == 1:
+    if cores == 1 or len(blocks) <= 1:
         for block in blocks:
             work(block)
         return

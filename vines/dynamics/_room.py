@@ -87,6 +87,10 @@ class Room:
         """Return the mass of the ball in the unit of energies."""
         return p.mu
 
+    def conserves(self, p: Any) -> bool:
+        """Say whether nothing is lost, by damping or in impacts: volumes of states are kept, and nothing attracts."""
+        return getattr(p, "lam", 0.0) == 0.0 and bool(np.all(np.asarray(p.r) == 1.0))
+
     def base(self, p: Any, phase: Any) -> Any:
         """Return the displacement that is prescribed."""
         return p.A * np.sin(phase)
