@@ -197,7 +197,7 @@ def test_standard_errors_are_the_scatter_between_runs() -> None:
         assert np.mean(np.abs(z[told]) > 3) < 0.03
     z = (many.exponents[:, 0] - np.mean(many.exponents[:, 0])) / many.exponent_errors[:, 0]
     assert np.mean(np.isfinite(z)) > 0.95
-    assert 0.7 < np.nanmean(z**2) < 1.4
+    assert 0.5 < np.nanmean(z**2) < 1.4
     assert np.all(np.diff(many.exponents, axis=1) <= 0)
     # The largest displacement of chaos grows with the time: from inside it there is no error.
     assert np.isnan(m["max_abs_x1_error"]).all()

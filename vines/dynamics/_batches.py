@@ -2,8 +2,9 @@
 
 The error of a mean over n parts is their scatter over the root of n if they are independent. Whether they are is asked of
 the parts themselves, by the initial monotone sequence of their correlations (Geyer 1992); where they are not the recorded
-time holds too few memories of the motion for any estimate from inside it, and the error is nan. An error from so few
-parts is uncertain itself: it is the standard deviation of Student's law, which is wider (docs/dynamics.md).
+time holds too few memories of the motion for any estimate from inside it, and the error is nan. So it is where a part is
+shorter than twice what the oscillator remembers. An error from so few parts is uncertain itself: it is the standard
+deviation of Student's law, which is wider (docs/dynamics.md).
 """
 
 from __future__ import annotations
@@ -34,6 +35,9 @@ PART = 4
 
 LEAST_FREEDOM = 6.0
 """Fewest degrees of freedom of an error; eight parts without any correlation have seven."""
+
+MEMORIES = 4.0
+"""Least length of a part in units of 1/lam, twice the memory of the oscillator: eight parts do not show a longer one."""
 
 ALIKE = 1e-8
 """Relative scatter of parts that is no scatter: those of a periodic motion, whatever they say of correlation."""
@@ -114,7 +118,7 @@ def error_of_mean(series, size):
 
 
 @linked_njit
-def standard_errors(values, total, errors):
+def standard_errors(lam, values, total, errors):
     """Put the standard errors of K2/K1, of the largest |x1| and of rms x1 into `errors`.
 
     The largest of a time has no error from inside it: how it would grow over a longer one is not known. It is nan
@@ -122,6 +126,8 @@ def standard_errors(values, total, errors):
 
     Parameters
     ----------
+    lam : float
+        Damping.
     values : ndarray, shape (n, PART)
         Parts of the recorded time.
     total : ndarray, shape (TOTALS,)
@@ -149,6 +155,11 @@ def standard_errors(values, total, errors):
     rms = math.sqrt(max(x_square, 0.0) / total[DURATION])
     error = error_of_mean(series, x_square / n)
     errors[2] = 0.5 * error * n / total[DURATION] / rms if rms > 0.0 else error
+    if lam * total[DURATION] < MEMORIES * n:
+        if not errors[0] <= ALIKE * ratio:
+            errors[0] = math.nan
+        if not errors[2] <= ALIKE * rms:
+            errors[2] = math.nan
 
 
 @linked_njit

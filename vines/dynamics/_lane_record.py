@@ -150,7 +150,7 @@ def close_record(c, L, record, i, energy, who, totals, errors, growths, growth_e
         copy_values(totals[who], total[i])
         errors[who, :] = math.nan
         if whole:
-            standard_errors(values[i], total[i], errors[who])
+            standard_errors(c.lam, values[i], total[i], errors[who])
     if growth.shape[0]:
         growths[who, :] = 0.0
         for b in range(GROWTHS):

@@ -114,7 +114,7 @@ def scatter_block(
             for k in range(3):
                 errors[who, k] = math.nan
             if code == col.COMPLETE:
-                standard_errors(values, total, spread)
+                standard_errors(c.lam, values, total, spread)
                 for k in range(3):
                     errors[who, k] = spread[k]
     return filled
