@@ -235,6 +235,22 @@ def test_a_stable_orbit_in_lanes_keeps_its_impact_velocity_to_1e_12() -> None:
     assert np.ptp(speed) < 1e-12
 
 
+def test_a_ball_nearly_at_rest_for_thousands_of_periods_is_the_same_in_lanes() -> None:
+    # A flight of 664 periods and more, after which nothing is left of the oscillator's free motion.
+    p = Params(mu=0.3223336297, A=0.0598649267, Omega=0.7890678871, r=0.5555934577, lam=0.2778472002)
+    start = {"x1": -0.0429024104, "v1": 0.1055075145, "x2": 0.5297496496, "v2": -6.4191e-5}
+    alone = simulate(p, **start, periods=4000)
+    many = ensemble(p, {name: [value] for name, value in start.items()}, periods=4000, record="measures", lyapunov=True)
+    assert np.diff(alone.impacts["t"], prepend=0.0).max() > 1000 * p.period
+    assert np.isfinite(many.final["x1"]).all()
+    assert many.measures is not None
+    assert many.measures["duration"][0] == pytest.approx(4000 * p.period)
+    # No closer: chaos follows the long flight.
+    assert many.measures["rms_x1"][0] == pytest.approx(alone.measures().rms_x1, rel=0.05)
+    rest = ensemble(p, {name: [value] for name, value in start.items()}, periods=1000)
+    assert rest.final["x1"][0] == pytest.approx(alone.sample(times=[1000 * p.period])["x1"][0], abs=1e-9)
+
+
 def test_caps_are_statuses() -> None:
     many = ensemble(Params(mu=0.0084, A=0.015), {"v2": [0.1, 0.1]}, periods=20, max_impacts_per_period=8)
     assert many.status.tolist() == ["impact_cap", "impact_cap"]

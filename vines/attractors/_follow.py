@@ -30,6 +30,12 @@ SURE = 3.0
 FAR = 0.1
 """Runs that repeat to within this may circle a periodic orbit, slowly coming to it or leaving it."""
 
+LARGEST = 512
+"""Largest number of forcing periods over which a repetition is noticed that nobody looked for."""
+
+REPEATS = 1e-6
+"""How well it must repeat: a torus comes back to about 1/p after p periods."""
+
 GROWS = 1.05
 """Factor by which the distance from an orbit must grow over the last stage for a run to be still on its way."""
 
@@ -105,6 +111,7 @@ def follow(c, state, elapsed, watch, cap, tolerance, longest, rows, verdict):
         if rate < -SURE * error:
             verdict[v.REMAINING] = math.log(1.0 / tolerance) / -rate / period
             verdict[v.REASON], verdict[v.VALUE] = v.DECAYS, longest
+            _note_longer(c, rows, count + 1, length, longest, verdict)
             return rows
     event = count - 1
     while event > 0 and rows[event, col.KIND] not in (col.IMPACT, col.STICK):
@@ -114,6 +121,8 @@ def follow(c, state, elapsed, watch, cap, tolerance, longest, rows, verdict):
         note_drift(verdict, period, abs(rows[count, col.A_V2]))
         verdict[v.REMAINING] += passed
         verdict[v.REASON], verdict[v.VALUE] = v.RESTS, quiet / period
+    elif _note_longer(c, rows, count + 1, length, longest, verdict):
+        verdict[v.REMAINING] = math.nan
     elif error < FLAT:
         verdict[v.REGIME], verdict[v.SETTLED], verdict[v.REMAINING] = v.QUASIPERIODIC, 1.0, 0.0
     else:
@@ -141,6 +150,20 @@ def _spectrum(grown, n, verdict):
     verdict[v.LYAPUNOV_ERROR] = max(error, _error_told(grown, n, verdict[v.EXPONENTS]))
     verdict[v.KNOWN] = 1.0
     return verdict[v.EXPONENTS], error
+
+
+@cold_njit
+def _note_longer(c, rows, n, length, longest, verdict):
+    """Say whether a run repeats after more forcing periods than were looked for, and note after how many."""
+    period = 2.0 * math.pi / c.Omega
+    most = min(LARGEST, int(0.4 * length / period))
+    late = contacts(rows, n, length - 2.5 * most * period)
+    for p in range(longest + 1, most + 1):
+        lag, passes = repetition(rows, late, p * period)
+        if passes > 0 and difference(rows, late, lag, p * period, verdict[v.SCALE], 0) < REPEATS:
+            verdict[v.REASON], verdict[v.VALUE], verdict[v.OTHER] = v.LONGER, p, longest
+            return True
+    return False
 
 
 @cold_njit

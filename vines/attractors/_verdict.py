@@ -71,7 +71,8 @@ RECURS = 0.9
     CAPPED_LATER,
     CONSERVES,
     REMEMBERS,
-) = range(15)
+    LONGER,
+) = range(16)
 
 _TEXTS = {
     NOTHING: "",
@@ -88,6 +89,7 @@ _TEXTS = {
     CAPPED: "more events in a forcing period than the cap allows",
     CAPPED_LATER: "more events in a forcing period than allowed while running on",
     CONSERVES: "nothing is lost, by damping or in impacts: there is no attractor",
+    LONGER: "repeats after p = {value:.0f} forcing periods, p <= {other:.0f} was looked for; largest_p = {value:.0f} names it",
     REMEMBERS: "no standard errors: the motion remembers longer than {value:.4g} forcing periods can tell",
 }
 

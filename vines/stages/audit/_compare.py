@@ -95,7 +95,8 @@ def compare_rows(
 def compare_within_errors(comparison: Comparison, stored: Mapping[str, Any], again: Mapping[str, Any]) -> None:
     """Compare rows of points that are not periodic: regime and parameters, and the measures within their errors.
 
-    Both rows are samples of the motion, so four standard errors are those of their difference.
+    Both rows are samples of the motion, so four standard errors are those of their difference; where one of them tells no
+    error nothing can be said of the measure.
     """
     for name in (*PARAMETER_NAMES, *START_NAMES):
         comparison.number(name, stored[name], again[name], TOLERANCE * (1 + abs(stored[name] or 0.0)))
@@ -103,8 +104,10 @@ def compare_within_errors(comparison: Comparison, stored: Mapping[str, Any], aga
         comparison.same(name, stored[name], again[name])
     for name in ("kinetic_ratio", "max_abs_x1", "rms_x1", "lyapunov"):
         errors = [math.nan if row[f"{name}_error"] is None else row[f"{name}_error"] for row in (stored, again)]
-        allowed = _ERRORS * math.hypot(*errors) if all(map(math.isfinite, errors)) else 0.0
-        comparison.number(name, stored[name], again[name], max(allowed, TOLERANCE * (1 + abs(stored[name] or 0.0))))
+        if not all(map(math.isfinite, errors)):
+            continue
+        allowed = max(_ERRORS * math.hypot(*errors), TOLERANCE * (1 + abs(stored[name] or 0.0)))
+        comparison.number(name, stored[name], again[name], allowed)
 
 
 def params_of(row: Mapping[str, Any]) -> Params:
