@@ -12,7 +12,7 @@ from typing import Any
 
 from vines.errors import StateError, VinesError
 
-__all__ = ["MOST_EVENTS", "MOST_PERIODS", "check_count", "check_number", "check_periods"]
+__all__ = ["MOST_EVENTS", "MOST_PERIODS", "check_count", "check_number", "check_periods", "shown"]
 
 MOST_PERIODS = 10_000_000
 """Forcing periods of one point: they take a minute, and a sweep has hundreds of points."""
@@ -70,7 +70,7 @@ def check_number(
             if math.isfinite(limit)
         ]
         said = " and ".join(limits)
-        raise error(f"{name} is {_shown(value)}{unit}; give a finite number{' ' if said else ''}{said}")
+        raise error(f"{name} is {shown(value)}{unit}; give a finite number{' ' if said else ''}{said}")
     return number
 
 
@@ -97,7 +97,7 @@ def check_count(
         number = None
     if number is None or number < least or (most is not None and number > most):
         upper = f" and <= {most}" if most is not None else ""
-        raise error(f"{name} is {_shown(value)}; give an integer >= {least}{upper}")
+        raise error(f"{name} is {shown(value)}; give an integer >= {least}{upper}")
     return number
 
 
@@ -113,13 +113,13 @@ def _number(value: Any) -> float:
         return math.nan
 
 
-def _shown(value: Any) -> str:
+def shown(value: Any) -> str:
     """Return a value as a message quotes it: in one line, and not pages of it."""
     text = " ".join(repr(value).split())
     return text if len(text) <= 60 else f"{text[:57]}..."
 
 
-def check_periods(name: str, periods: float) -> None:
+def check_periods(name: str, periods: float, period: float = 2.0 * math.pi) -> None:
     """Refuse a point of years.
 
     Parameters
@@ -128,6 +128,8 @@ def check_periods(name: str, periods: float) -> None:
         What the periods are for.
     periods : float
         Forcing periods of one point.
+    period : float
+        The forcing period; one longer than that of the oscillator counts for as many as it holds.
 
     Raises
     ------
@@ -142,9 +144,19 @@ def check_periods(name: str, periods: float) -> None:
         ...
     vines.errors.StateError: settle is 1e+14, allowed is settle <= 10000000 periods a point; \
 VINES_LONG_POINTS=1 in the environment allows more
+    >>> check_periods("periods", 200, 2 * math.pi / 1e-6)
+    Traceback (most recent call last):
+        ...
+    vines.errors.StateError: periods is 200, of 1e+06 periods of the oscillator each; allowed are 10000000 of these a \
+point; VINES_LONG_POINTS=1 in the environment allows more
     """
-    if periods > MOST_PERIODS and not os.environ.get(_ALLOWED_BY):
-        raise StateError(
-            f"{name} is {periods}, allowed is {name} <= {MOST_PERIODS} periods a point; "
-            f"{_ALLOWED_BY}=1 in the environment allows more"
-        )
+    each = max(period / (2.0 * math.pi), 1.0)
+    if periods * each <= MOST_PERIODS or os.environ.get(_ALLOWED_BY):
+        return
+    more = f"{_ALLOWED_BY}=1 in the environment allows more"
+    if periods > MOST_PERIODS:
+        raise StateError(f"{name} is {periods}, allowed is {name} <= {MOST_PERIODS} periods a point; {more}")
+    raise StateError(
+        f"{name} is {periods:g}, of {each:.3g} periods of the oscillator each; allowed are {MOST_PERIODS} of these a "
+        f"point; {more}"
+    )

@@ -17,6 +17,7 @@ from vines.attractors._patience import Patience
 from vines.attractors._settle import NUDGE, ROUNDS
 from vines.attractors._staying import note_conserving, watch_on
 from vines.attractors._waiting import next_wait
+from vines.domains import Whole, stated
 from vines.dynamics import ensemble
 from vines.dynamics.kernels import ParameterTable, constants_kernel, set_state, state_now
 from vines.dynamics.kernels import rows as col
@@ -190,6 +191,7 @@ class Classified:
         return np.array([v.reason_text(verdict) for verdict in self.verdicts], dtype=object)
 
 
+@stated(threads=Whole(optional=True))
 def classify_many(
     params: Params | Sequence[Params] | Mapping[str, npt.ArrayLike],
     starts: Mapping[str, npt.ArrayLike] | None = None,
@@ -237,6 +239,7 @@ def classify_many(
     """
     how = Patience(settle, record, patience, watch, tolerance, max_impacts_per_period, largest_p)
     table, given = parameter_table(params), start_table(starts)
+    how.check_length(2.0 * np.pi / float(np.min(table[:, FREQUENCY])))
     n = np.broadcast_shapes(table.shape[:1], given.shape[:1])[0]
     parameters, begin = (np.ascontiguousarray(np.broadcast_to(each, (n, 5))) for each in (table, given))
     work = _Many(parameters, begin.copy(), how, impacts, threads)

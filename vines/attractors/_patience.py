@@ -50,6 +50,11 @@ class Patience:
         if self.largest_p is not None:
             check_count("largest_p", self.largest_p, most=MOST_P)
 
+    def check_length(self, period: float) -> None:
+        """Raise `StateError` if runs of a forcing period would take years."""
+        for name in ("settle", "record", "patience", "watch"):
+            check_periods(name, getattr(self, name), period)
+
     @property
     def longest(self) -> int:
         """Largest number of forcing periods over which a repetition is looked for."""

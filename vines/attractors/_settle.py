@@ -15,9 +15,11 @@ from vines.attractors._naming import attractor_from, word_of
 from vines.attractors._patience import Patience
 from vines.attractors._staying import note_conserving, watch_on
 from vines.attractors._waiting import next_wait
+from vines.domains import Named, Number, Parameters, stated
 from vines.dynamics.kernels import constants, pass_over, room_of, shift_time, table_of
 from vines.dynamics.kernels import rows as col
 from vines.dynamics.runs import EVENTS_PER_PERIOD, impacts_of, measures_from, start_of
+from vines.errors import StateError
 
 __all__ = ["APART", "NUDGE", "ROUNDS", "settle", "settle_from"]
 
@@ -32,6 +34,7 @@ APART = 1e-9
 """Difference in velocity with which equal balls start."""
 
 
+@stated(p=Parameters(), t=Number(least=-1e12, most=1e12), phi=Number(least=-1e12, most=1e12), apart=Number(least=0, most=1e-3))
 def settle(
     p: Any,
     *,
@@ -113,6 +116,7 @@ def settle(
     return _settled(p, begin, t, Patience(settle, record, patience, watch, tolerance, max_impacts_per_period, largest_p), lyapunov, errors)
 
 
+@stated(p=Parameters(), start=Named(Number()))
 def settle_from(
     p: Any,
     start: Mapping[str, float],
@@ -155,6 +159,8 @@ def settle_from(
     >>> settle_from(Params(mu=0.01, A=0.0201), first.final, settle=100).name
     '1:1'
     """
+    if "phase" not in start:
+        raise StateError(f"start has {', '.join(map(str, start)) or 'nothing'}; give all coordinates and the phase")
     t = float(start.get("t", 0.0))
     at = {name: value for name, value in start.items() if name not in ("t", "phase")}
     begin = start_of(p, at, 0.0, start["phase"])
@@ -164,6 +170,7 @@ def settle_from(
 def _settled(
     p: Any, begin: tuple[float, float, float, float, float], t: float, how: Patience, lyapunov: bool, errors: bool
 ) -> Attractor:
+    how.check_length(p.period)
     c, room = constants(p), room_of(p)
     layout = room.layout(p)
     states = np.zeros((1, layout.state))

@@ -17,7 +17,7 @@ import numpy.typing as npt
 from vines.dynamics._advance import ROW, STATE, set_state
 from vines.dynamics._constants import ParameterTable, constants_kernel
 from vines.dynamics._impact_law import ImpactLaw, impact_law
-from vines.dynamics._start import check_gap, check_numbers
+from vines.dynamics._start import check_coordinate, check_gap, check_numbers
 from vines.dynamics._totals import TOTALS
 from vines.errors import StateError, nearest
 from vines.model import Params
@@ -144,7 +144,7 @@ def start_of(p: Any, start: Mapping[str, Any], t: float, phi: float) -> tuple[An
     for name, value in _each(start, given):
         if name not in given:
             raise StateError(f"unknown coordinate {name!r} of a start: {nearest(name, given)}")
-        check_numbers(**{name: value})
+        check_coordinate(name, value)
         given[name] = float(value)
     check_numbers(t=t, phi=phi)
     phase = math.fmod(constants(p).Omega * t, 2 * math.pi) + phi

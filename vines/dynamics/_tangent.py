@@ -12,6 +12,7 @@ import math
 import numpy as np
 import numpy.typing as npt
 
+from vines.domains import Number, Of, stated
 from vines.dynamics._advance import A_V1, A_V2, IMPACT, KIND, MODE, PHASE, SIDE, STICK, TAU, TIME, V1, V2, X1, X2
 from vines.dynamics._batches import GROWTHS, errors_of_rates
 from vines.dynamics._constants import Constants
@@ -207,6 +208,7 @@ def log_growth(factors, growth):
         factors[k] = 1.0
 
 
+@stated(run=Of("Trajectory|ParallelRun", how="as vines.simulate returns it"))
 def tangent_map(run: Trajectory) -> npt.NDArray[np.float64]:
     """Return the tangent map of a whole run: disturbances of (x1, v1, x2, v2) at its end by those at its start.
 
@@ -236,6 +238,7 @@ def tangent_map(run: Trajectory) -> npt.NDArray[np.float64]:
     return tangent_product(constants(run.params), run.rows, 0, len(run.rows) - 1)
 
 
+@stated(run=Of("Trajectory|ParallelRun", how="as vines.simulate returns it"), skip=Number(least=0))
 def lyapunov_spectrum(run: Trajectory, *, skip: float = 0.0) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:
     """Return the Lyapunov exponents of a run and their standard errors, per unit of dimensionless time.
 
