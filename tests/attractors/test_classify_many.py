@@ -39,7 +39,8 @@ def test_on_its_attractor_a_run_is_judged_as_settle_judges_it() -> None:
     # From the ends of other runs and without a transient both follow the same kernels.
     parameters, starts = _random(150, 5)
     first = classify_many(parameters, starts, settle=300, watch=64)
-    options = {"settle": 0, "patience": 0, "watch": 64}
+    # Where one is watched on for longer, chaos makes two of a difference in rounding.
+    options = {"settle": 0, "patience": 0, "watch": 64, "errors": False}
     many = classify_many(
         dict(zip(PARAMETER_NAMES, first.parameters.T, strict=True)),
         dict(zip(NAMES, first.final.T, strict=True)),

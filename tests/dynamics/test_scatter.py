@@ -92,9 +92,10 @@ def test_standard_errors_with_scatter_are_those_between_runs() -> None:
     m = ensemble(chaos, {"v2": np.linspace(0.05, 0.2, 64)}, settle=150, periods=480, record="measures", scatter=scatter)
     assert m.measures is not None
     for name in ("kinetic_ratio", "rms_x1"):
-        typical = np.sqrt(np.mean(m.measures[f"{name}_error"] ** 2))
-        assert 0.6 < np.std(m.measures[name], ddof=1) / typical < 1.6
-    assert np.isfinite(m.measures["max_abs_x1_error"]).all()
+        z = (m.measures[name] - np.mean(m.measures[name])) / m.measures[f"{name}_error"]
+        told = np.isfinite(z)
+        assert np.mean(told) > 0.4
+        assert 0.6 < np.mean(z[told] ** 2) < 1.6
     cut = ensemble(chaos, periods=20, record="measures", scatter=scatter, max_impacts_per_period=1)
     assert cut.measures is not None
     assert cut.status[0] == "impact_cap"
@@ -114,8 +115,7 @@ def test_impacts_alone_are_those_of_a_run_with_measures_which_can_be_had_later()
         assert np.array_equal(many.final, both.final)
         assert many.measures is not None
         assert many.measures is many.measures
-        assert np.array_equal(many.measures, alone.measures)
-        assert np.array_equal(many.measures, both.measures)
+        assert many.measures.tobytes() == alone.measures.tobytes() == both.measures.tobytes()
         assert ensemble(P, {"v2": V2[:4]}, **asked).measures is None
         hits = many.measures["impacts_left"] + many.measures["impacts_right"]
         assert np.array_equal(np.bincount(many.impacts["run"], minlength=4), hits)

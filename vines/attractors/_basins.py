@@ -13,7 +13,10 @@ import numpy.typing as npt
 from vines.attractors._attractor import Attractor
 from vines.attractors._search import Lifetime, Search
 from vines.attractors._shares import share_error
+from vines.bounds import check_periods, shown
+from vines.domains import Named, Number, Numbers, Parameters, Whole, stated
 from vines.dynamics import ensemble
+from vines.dynamics.runs import LARGEST
 from vines.errors import StateError, nearest
 from vines.model import START_NAMES, STATE_NAMES, Params
 
@@ -69,6 +72,7 @@ class Basins:
         return share, share_error(share, 1.0 / float(np.sum(self.weight**2)))
 
 
+@stated(p=Parameters(any_system=False), others=Named(Number(), optional=True), refine=Whole(least=0, most=12), settle=Number(least=0), patience=Number(least=0), watch=Number(least=16))
 def basins(
     p: Params,
     x: tuple[str, Sequence[float] | Floats],
@@ -115,6 +119,12 @@ def basins(
     >>> [a.name for a in found.attractors], found.fraction(0)[0]
     (['2:1'], 1.0)
     """
+    for label_of, axis in (("x", x), ("y", y)):
+        if not (isinstance(axis, tuple | list) and len(axis) == 2 and isinstance(axis[0], str)):
+            raise StateError(f"{label_of} is {shown(axis)}; give a name with its values, such as ('x2', [0.0, 0.1])")
+        Numbers(Number(least=-LARGEST, most=LARGEST), least=1).check(label_of, axis[1], StateError)
+    for name, value in (("settle", settle), ("patience", patience), ("watch", watch)):
+        check_periods(name, value, p.period)
     names = (x[0], y[0])
     for name in (*names, *(others or {})):
         if name not in START_NAMES:

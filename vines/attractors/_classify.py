@@ -13,10 +13,13 @@ from vines.attractors import _verdict as v
 from vines.attractors._attractor import Attractor
 from vines.attractors._look import look_at_block
 from vines.attractors._naming import attractor_from, word_of
-from vines.attractors._settle import NUDGE, ROUNDS, Patience
+from vines.attractors._patience import Patience
+from vines.attractors._settle import NUDGE, ROUNDS
+from vines.attractors._staying import note_conserving, watch_on
 from vines.attractors._waiting import next_wait
+from vines.domains import Whole, stated
 from vines.dynamics import ensemble
-from vines.dynamics.kernels import ParameterTable, set_state
+from vines.dynamics.kernels import ParameterTable, constants_kernel, set_state, state_now
 from vines.dynamics.kernels import rows as col
 from vines.dynamics.kernels import totals as entry
 from vines.dynamics.runs import (
@@ -29,7 +32,7 @@ from vines.dynamics.runs import (
     start_table,
     threads_allowed,
 )
-from vines.model import FREQUENCY, MASS, PARAMETER_NAMES, START_NAMES, Params
+from vines.model import DAMPING, FREQUENCY, MASS, PARAMETER_NAMES, RESTITUTION, START_NAMES, Params
 
 __all__ = ["Classified", "classify_many"]
 
@@ -125,6 +128,11 @@ class Classified:
         return measures_of(self.parameters[:, MASS], self.totals)
 
     @property
+    def errors(self) -> Floats:
+        """Standard errors of K2/K1, of the largest |x1| and of rms x1, shape (n, 3), as those of an `Attractor`."""
+        return self.verdicts[:, [v.KINETIC_RATIO_ERROR, v.MAX_ABS_X1_ERROR, v.RMS_X1_ERROR]]
+
+    @property
     def sticks(self) -> Floats:
         """Spells of sticking per forcing period."""
         sticks = self.totals[:, entry.STICKS_LEFT] + self.totals[:, entry.STICKS_RIGHT]
@@ -162,6 +170,11 @@ class Classified:
         return self.verdicts[:, v.PERIODS]
 
     @property
+    def watched(self) -> Floats:
+        """Forcing periods over which a motion that never repeated was seen to last, 0 where it was not watched."""
+        return self.verdicts[:, v.WATCHED]
+
+    @property
     def final(self) -> Floats:
         """State at the end, shape (n, 5): x1, v1, x2, v2 and phase [rad]."""
         return self.verdicts[:, v.FINAL : v.FINAL + 5]
@@ -178,6 +191,7 @@ class Classified:
         return np.array([v.reason_text(verdict) for verdict in self.verdicts], dtype=object)
 
 
+@stated(threads=Whole(optional=True))
 def classify_many(
     params: Params | Sequence[Params] | Mapping[str, npt.ArrayLike],
     starts: Mapping[str, npt.ArrayLike] | None = None,
@@ -187,7 +201,9 @@ def classify_many(
     patience: float = 4000,
     watch: float = 512,
     tolerance: float = 1e-10,
+    largest_p: int | None = None,
     impacts: bool = False,
+    errors: bool = True,
     max_impacts_per_period: int = EVENTS_PER_PERIOD,
     threads: int | None = None,
 ) -> Classified:
@@ -197,10 +213,12 @@ def classify_many(
     ----------
     params, starts
         As for `vines.ensemble`.
-    settle, record, patience, watch, tolerance, max_impacts_per_period
+    settle, record, patience, watch, tolerance, largest_p, max_impacts_per_period
         As for `settle`, but a recording ends as soon as the run is seen to repeat.
     impacts : bool
         Whether to keep the recorded impacts.
+    errors : bool
+        Whether runs that never repeat are watched on until what they measured has standard errors, as by `settle`.
     threads : int, optional
         Cores to use; all of this process's if left out. Results do not depend on it, nor on what else is in the call.
 
@@ -219,15 +237,16 @@ def classify_many(
     >>> many.name.tolist(), many.regime[-1].item()
     (['1:1', '1:1', '2:2/2T', '2:1', None], 'chaotic')
     """
-    how = Patience(settle, record, patience, watch, tolerance, max_impacts_per_period)
+    how = Patience(settle, record, patience, watch, tolerance, max_impacts_per_period, largest_p)
     table, given = parameter_table(params), start_table(starts)
+    how.check_length(2.0 * np.pi / float(np.min(table[:, FREQUENCY])))
     n = np.broadcast_shapes(table.shape[:1], given.shape[:1])[0]
     parameters, begin = (np.ascontiguousarray(np.broadcast_to(each, (n, 5))) for each in (table, given))
     work = _Many(parameters, begin.copy(), how, impacts, threads)
     everyone = np.arange(n)
     if settle > 0:
         work.wait(everyone, settle)
-    work.decide(everyone)
+    work.arrive(everyone, errors)
     return Classified(parameters, begin, work.words, work.verdicts, work.totals, work.hits)
 
 
@@ -243,7 +262,8 @@ class _Many:
         self.totals = np.zeros((n, entry.TOTALS))
         self.words = np.full(n, None, dtype=object)
         self.hits = [_NO_IMPACTS] * n if impacts else None
-        self.stages = np.array([*(stage for stage in STAGES if stage < how.record), float(how.record)])
+        self.stages = np.array([*(stage for stage in STAGES if stage < how.window), how.window])
+        self.conserves = (parameters[:, DAMPING] == 0.0) & (parameters[:, RESTITUTION] == 1.0)
 
     def place(self, runs: npt.NDArray[np.int64], final: npt.NDArray[np.void], codes: npt.NDArray[np.int64]) -> None:
         """Put runs where an ensemble left them."""
@@ -252,11 +272,31 @@ class _Many:
         # The kernels of lanes and of a single run number their ends differently.
         self.waited[runs] = np.array([col.COMPLETE, col.EVENT_CAP, col.STEP_LIMIT])[codes]
 
-    def decide(self, runs: npt.NDArray[np.int64]) -> None:
-        """Look at every run, and wait for those that are seen to come to their attractor."""
-        n = len(runs)
+    def arrive(self, runs: npt.NDArray[np.int64], errors: bool) -> None:
+        """Decide what runs have settled to, anew where chaos that was watched on has ended."""
+        ran = np.full(len(self.states), float(self.how.settle))
+        for turn in range(ROUNDS + 1):
+            self.decide(runs, ran)
+            found = self.verdicts[runs]
+            note_conserving(found, self.conserves[runs])
+            self.verdicts[runs] = found
+            if not errors or turn == ROUNDS:
+                return
+            before = self.verdicts[runs, v.RECORDED] + self.verdicts[runs, v.PERIODS]
+            ended = self.watch_on(runs)
+            ran[runs] = before + self.verdicts[runs, v.WATCHED] - self.verdicts[runs, v.RECORDED]
+            runs = runs[ended]
+            if not len(runs):
+                return
+
+    def decide(self, runs: npt.NDArray[np.int64], begun: Floats) -> None:
+        """Look at every run, and wait for those that are seen to come to their attractor.
+
+        `begun` has for each the forcing periods that it was run before.
+        """
+        n = len(self.states)
         spare = np.full(n, float(self.how.patience))
-        ran = np.full(n, float(self.how.settle))
+        ran = begun.copy()
         nudged = np.full(n, np.nan)
         for turn in range(ROUNDS + 1):
             free = np.isnan(nudged[runs])
@@ -295,11 +335,41 @@ class _Many:
         blocks = [slice(k, min(k + size, len(runs))) for k in range(0, len(runs), size)]
         each_thread(lambda block: self._look_at(runs[block], spare[block]), blocks, self.cores)
 
-    def _look_at(self, runs: npt.NDArray[np.int64], spare: Floats) -> None:
-        verdicts, totals = np.empty((len(runs), v.VERDICT)), np.zeros((len(runs), entry.TOTALS))
+    def watch_on(self, runs: npt.NDArray[np.int64]) -> npt.NDArray[np.bool_]:
+        """Watch runs on whose motion never repeated; return which of them have come to another motion."""
+        ended = np.zeros(len(runs), dtype=bool)
+        wild = np.flatnonzero(np.isin(self.verdicts[runs, v.REGIME], (v.CHAOTIC, v.QUASIPERIODIC, v.UNSETTLED)))
+        size = min(BLOCK, max(16, -(-len(wild) // (4 * self.cores))))
+        blocks = [slice(k, min(k + size, len(wild))) for k in range(0, len(wild), size)]
+
+        def block(part: slice) -> None:
+            some = runs[wild[part]]
+            states, found = self._states_of(some), self.verdicts[some]
+            period = 2.0 * np.pi / self.parameters[some, FREQUENCY]
+            m = measures_of(self.parameters[some, MASS], self.totals[some])
+            measured = np.stack([m["kinetic_ratio"], m["max_abs_x1"], m["rms_x1"]], axis=1)
+            seen = watch_on(
+                lambda few: ParameterTable(self.parameters[some[few]]), states, period, measured, found, self.how
+            )
+            self.verdicts[some] = found
+            ended[wild[part]] = seen
+            for k in np.flatnonzero(seen).tolist():
+                now = state_now(constants_kernel(*self.parameters[some[k]]), states[k], 0.0)
+                self.states[some[k]] = now[: len(START_NAMES)]
+
+        each_thread(block, blocks, self.cores)
+        return ended
+
+    def _states_of(self, runs: npt.NDArray[np.int64]) -> Floats:
+        """Return the runs at time 0 as kernels hold them."""
         states = np.zeros((len(runs), col.STATE))
         for state, (x1, v1, x2, v2, phase) in zip(states, self.states[runs].tolist(), strict=True):
             set_state(state, x1, v1, x2, v2, phase, 0.0)
+        return states
+
+    def _look_at(self, runs: npt.NDArray[np.int64], spare: Floats) -> None:
+        verdicts, totals = np.empty((len(runs), v.VERDICT)), np.zeros((len(runs), entry.TOTALS))
+        states = self._states_of(runs)
         sides, rows = look_at_block(
             ParameterTable(self.parameters[runs]),
             states,
@@ -309,6 +379,7 @@ class _Many:
             float(self.how.watch),
             self.how.cap,
             self.how.tolerance,
+            self.how.longest,
             self.hits is not None,
             verdicts,
             totals,

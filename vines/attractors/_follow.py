@@ -8,8 +8,8 @@ from vines.attractors import _verdict as v
 from vines.attractors._approach import LARGEST_P, STABLE, comes_to_orbit, nearest_orbit, note_coming
 from vines.attractors._coming import note_decay
 from vines.attractors._contacts import contacts, difference, repetition
-from vines.attractors._judge import MAX_P, NEAR, note_drift
-from vines.dynamics.kernels import directions, lyapunov_blocks, open_window, run_window, shift_time
+from vines.attractors._judge import NEAR, note_drift
+from vines.dynamics.kernels import directions, lyapunov_blocks, open_window, run_window, shift_time, spread_of_mean
 from vines.dynamics.kernels import rows as col
 from vines.kernels import cold_njit, identity, new_matrix, new_vector, njit
 
@@ -30,12 +30,18 @@ SURE = 3.0
 FAR = 0.1
 """Runs that repeat to within this may circle a periodic orbit, slowly coming to it or leaving it."""
 
+LARGEST = 512
+"""Largest number of forcing periods over which a repetition is noticed that nobody looked for."""
+
+REPEATS = 1e-6
+"""How well it must repeat: a torus comes back to about 1/p after p periods."""
+
 GROWS = 1.05
 """Factor by which the distance from an orbit must grow over the last stage for a run to be still on its way."""
 
 
 @cold_njit
-def follow(c, state, elapsed, watch, cap, tolerance, rows, verdict):
+def follow(c, state, elapsed, watch, cap, tolerance, longest, rows, verdict):
     """Decide what a window left open; `verdict` is that of the window and is filled on.
 
     Parameters
@@ -49,7 +55,7 @@ def follow(c, state, elapsed, watch, cap, tolerance, rows, verdict):
         Forcing periods of the first stage.
     cap : int
         Most events in one forcing period.
-    tolerance : float
+    tolerance, longest
         As for `judge_window`.
     rows : ndarray, shape (m, ROW)
         Room to work in; where it is not enough, more is taken.
@@ -82,6 +88,7 @@ def follow(c, state, elapsed, watch, cap, tolerance, rows, verdict):
         if code != col.COMPLETE:
             verdict[v.REASON] = v.CAPPED_LATER
             return rows
+        verdict[v.WATCHED] = verdict[v.RECORDED] + passed
         # The first quarter of the first stage is left to the directions to align.
         skip = 0.25 * length if stage == 0 else 0.0
         blocks = LONGER[stage] * BLOCKS if stage else BLOCKS * 3 // 4
@@ -94,7 +101,7 @@ def follow(c, state, elapsed, watch, cap, tolerance, rows, verdict):
                 filled += 1
         rate, error = _spectrum(grown, filled, verdict)
         chaotic = rate > SURE * error
-        if _beside_orbit(c, rows, count + 1, length, chaotic, stage == len(LONGER) - 1, tolerance, verdict):
+        if _beside_orbit(c, rows, count + 1, length, chaotic, stage == len(LONGER) - 1, tolerance, longest, verdict):
             # Counted from the end of the window, not from here.
             verdict[v.REMAINING] += passed
             return rows
@@ -103,7 +110,8 @@ def follow(c, state, elapsed, watch, cap, tolerance, rows, verdict):
             return rows
         if rate < -SURE * error:
             verdict[v.REMAINING] = math.log(1.0 / tolerance) / -rate / period
-            verdict[v.REASON] = v.DECAYS
+            verdict[v.REASON], verdict[v.VALUE] = v.DECAYS, longest
+            _note_longer(c, rows, count + 1, length, longest, verdict)
             return rows
     event = count - 1
     while event > 0 and rows[event, col.KIND] not in (col.IMPACT, col.STICK):
@@ -113,6 +121,8 @@ def follow(c, state, elapsed, watch, cap, tolerance, rows, verdict):
         note_drift(verdict, period, abs(rows[count, col.A_V2]))
         verdict[v.REMAINING] += passed
         verdict[v.REASON], verdict[v.VALUE] = v.RESTS, quiet / period
+    elif _note_longer(c, rows, count + 1, length, longest, verdict):
+        verdict[v.REMAINING] = math.nan
     elif error < FLAT:
         verdict[v.REGIME], verdict[v.SETTLED], verdict[v.REMAINING] = v.QUASIPERIODIC, 1.0, 0.0
     else:
@@ -137,13 +147,47 @@ def _spectrum(grown, n, verdict):
         square += (grown[b, 0] / grown[b, d] - verdict[v.EXPONENTS]) ** 2
     # A finite run cannot tell rates apart that differ by less than about one over its length.
     error = math.hypot(math.sqrt(square / (n - 1) / n), 1.0 / time) if n > 1 else math.inf
-    verdict[v.LYAPUNOV_ERROR] = error
+    verdict[v.LYAPUNOV_ERROR] = max(error, _error_told(grown, n, verdict[v.EXPONENTS]))
     verdict[v.KNOWN] = 1.0
     return verdict[v.EXPONENTS], error
 
 
 @cold_njit
-def _beside_orbit(c, rows, n, length, chaotic, last, tolerance, verdict):
+def _note_longer(c, rows, n, length, longest, verdict):
+    """Say whether a run repeats after more forcing periods than were looked for, and note after how many."""
+    period = 2.0 * math.pi / c.Omega
+    most = min(LARGEST, int(0.4 * length / period))
+    late = contacts(rows, n, length - 2.5 * most * period)
+    for p in range(longest + 1, most + 1):
+        lag, passes = repetition(rows, late, p * period)
+        if passes > 0 and difference(rows, late, lag, p * period, verdict[v.SCALE], 0) < REPEATS:
+            verdict[v.REASON], verdict[v.VALUE], verdict[v.OTHER] = v.LONGER, p, longest
+            return True
+    return False
+
+
+@cold_njit
+def _error_told(grown, n, rate):
+    """Return the standard error of the largest exponent with the correlation of its blocks.
+
+    What few correlated blocks say is uncertain itself: it is the standard deviation of Student's law, of three degrees
+    of freedom at least.
+    """
+    if n < 4:
+        return math.inf
+    d = grown.shape[1] - 1
+    series = new_vector(n)
+    time = 0.0
+    for b in range(n):
+        series[b] = grown[b, 0] - rate * grown[b, d]
+        time += grown[b, d] / n
+    _, together, freedom = spread_of_mean(series)
+    freedom = max(freedom, 3.0)
+    return together / time * math.sqrt(freedom / (freedom - 2.0))
+
+
+@cold_njit
+def _beside_orbit(c, rows, n, length, chaotic, last, tolerance, longest, verdict):
     """Say whether the run comes to a periodic orbit, or is too near one to be on anything else, and note which.
 
     Its difference to its own repetition is compared between the first and the last quarter; REMAINING counts from the
@@ -162,7 +206,7 @@ def _beside_orbit(c, rows, n, length, chaotic, last, tolerance, verdict):
     early, late = contacts(rows, opening, 0.0), contacts(rows, n, length - quarter)
     least = FAR
     undecided = False
-    for p in range(1, MAX_P + 1):
+    for p in range(1, longest + 1):
         lag, passes = repetition(rows, late, p * period)
         # Multiples of the period of an orbit that was seen tell no more, unless they repeat much better.
         if passes == 0 or not difference(rows, late, lag, p * period, scale, 0) < least:

@@ -13,10 +13,7 @@ from vines.dynamics.kernels import directions, ringing, tangent_product
 from vines.dynamics.kernels import rows as col
 from vines.kernels import byte_vector, cold_njit, complex_vector, new_vector, njit, zero_integers
 
-__all__ = ["MAX_P", "NEAR", "clear", "judge_window", "note_drift"]
-
-MAX_P = 32
-"""Largest number of forcing periods over which a repetition is looked for."""
+__all__ = ["NEAR", "clear", "judge_window", "note_drift"]
 
 UNSTABLE = 1e-5
 """How far the largest multiplier must lie outside the unit circle for a repeating orbit to be called unstable."""
@@ -48,7 +45,7 @@ def clear(verdict):
 
 
 @cold_njit
-def judge_window(c, rows, n, periods, tolerance, verdict):
+def judge_window(c, rows, n, periods, tolerance, longest, verdict):
     """Fill a verdict with what a window shows; its regime is OPEN where nothing repeats within the tolerance.
 
     Parameters
@@ -61,6 +58,8 @@ def judge_window(c, rows, n, periods, tolerance, verdict):
         Length of the window in forcing periods; repetitions of at most half of it are looked for.
     tolerance : float
         Largest distance from the periodic orbit (velocities relative to the largest speed, times absolute).
+    longest : int
+        Largest number of forcing periods over which a repetition is looked for.
     verdict : ndarray, shape (VERDICT,)
         Overwritten.
 
@@ -77,10 +76,10 @@ def judge_window(c, rows, n, periods, tolerance, verdict):
     period = 2.0 * math.pi / c.Omega
     scale = _largest_speed(rows, n)
     verdict[v.SCALE] = scale
-    lasts = new_vector(MAX_P + 1)
-    lags = zero_integers(MAX_P + 1)
+    lasts = new_vector(longest + 1)
+    lags = zero_integers(longest + 1)
     best, best_filled = 0, 0
-    for p in range(1, min(MAX_P, int(periods / 2.0 + 1e-9)) + 1):
+    for p in range(1, min(longest, int(periods / 2.0 + 1e-9)) + 1):
         lasts[p] = math.inf
         lag, filled = repetition(rows, kept, p * period)
         if filled == 0:

@@ -8,11 +8,11 @@ from vines.attractors import _verdict as v
 from vines.attractors._follow import follow
 from vines.attractors._judge import clear, judge_window
 from vines.attractors._window import measure_window
-from vines.dynamics.kernels import constants_at, open_window, run_window, width_of, with_room
+from vines.dynamics.kernels import constants_at, directions, open_window, run_window, width_of, with_room
 from vines.dynamics.kernels import rows as col
-from vines.kernels import byte_vector, cold_njit, entry_njit, new_matrix, njit
+from vines.kernels import byte_vector, cold_njit, entry_njit, new_matrix, new_vector, njit
 
-__all__ = ["look_at_block"]
+__all__ = ["is_regular_block", "look_at_block"]
 
 STRETCH = 1.5
 """Factor on the patience left up to which a run is taken on: far from its orbit it may be quicker than estimated."""
@@ -23,7 +23,7 @@ ROOM = 512
 
 
 @cold_njit
-def _look(c, state, waited, stages, watch, cap, tolerance, rows, room, verdict):
+def _look(c, state, waited, stages, watch, cap, tolerance, longest, rows, room, verdict):
     """Record a run from time 0 on, until it repeats or the last stage ends, and decide what it shows.
 
     Returns
@@ -45,13 +45,13 @@ def _look(c, state, waited, stages, watch, cap, tolerance, rows, room, verdict):
             verdict[v.STATUS], verdict[v.RECORDED] = code, stages[stage]
             sides = byte_vector(0)
             break
-        sides = judge_window(c, rows, count + 1, stages[stage], tolerance, verdict)
+        sides = judge_window(c, rows, count + 1, stages[stage], tolerance, longest, verdict)
         verdict[v.RECORDED] = stages[stage]
         # A window without impacts may only be too short.
         if verdict[v.REGIME] != v.OPEN and verdict[v.SCALE] > 0.0:
             break
     if verdict[v.REGIME] == v.OPEN:
-        room = follow(c, state, verdict[v.RECORDED] * period, watch, cap, tolerance, room, verdict)
+        room = follow(c, state, verdict[v.RECORDED] * period, watch, cap, tolerance, longest, room, verdict)
     verdict[v.FINAL], verdict[v.FINAL + 1] = rows[count, col.X1], rows[count, col.A_V1]
     verdict[v.FINAL + 2], verdict[v.FINAL + 3] = rows[count, col.X2], rows[count, col.A_V2]
     verdict[v.FINAL + 4] = rows[count, col.PHASE]
@@ -73,7 +73,7 @@ def _what_next(verdict, spare, may_free):
 
 
 @entry_njit
-def look_at_block(table, states, waited, spare, stages, watch, cap, tolerance, impacts, verdicts, totals):
+def look_at_block(table, states, waited, spare, stages, watch, cap, tolerance, longest, impacts, verdicts, totals):
     """Record runs from time 0 on, each until it repeats or the last stage ends, and decide what they show.
 
     Parameters
@@ -92,7 +92,7 @@ def look_at_block(table, states, waited, spare, stages, watch, cap, tolerance, i
         As for `follow`.
     cap : int
         Most events in one forcing period.
-    tolerance : float
+    tolerance, longest
         As for `judge_window`.
     impacts : bool
         Whether the recorded impacts are wanted.
@@ -116,7 +116,9 @@ def look_at_block(table, states, waited, spare, stages, watch, cap, tolerance, i
     for k in range(n):
         c = constants_at(table, k)
         verdict = verdicts[k]
-        rows, count, room, sides = _look(c, states[k], waited[k], stages, watch, cap, tolerance, rows, room, verdict)
+        rows, count, room, sides = _look(
+            c, states[k], waited[k], stages, watch, cap, tolerance, longest, rows, room, verdict
+        )
         if written + sides.shape[0] > letters.shape[0]:
             letters = _longer(letters, written, 2 * (written + sides.shape[0]))
         for i in range(sides.shape[0]):
@@ -146,3 +148,27 @@ def _longer(letters, count, room):
     for i in range(count):
         longer[i] = letters[i]
     return longer
+
+
+@entry_njit
+def is_regular_block(table, states, periods, cap, tolerance, longest, regular):
+    """Say of each run, from time 0 on, whether it repeats, comes to an orbit or has no impact over so many periods.
+
+    Parameters
+    ----------
+    table, states, cap, tolerance, longest
+        As for `look_at_block`.
+    periods : float
+        Forcing periods.
+    regular : ndarray of bool, shape (n,)
+        Filled.
+    """
+    rows = new_matrix(ROOM, width_of(table))
+    for k in range(states.shape[0]):
+        c = constants_at(table, k)
+        verdict = new_vector(v.EXPONENTS + 3 * len(directions(c)))
+        rows, count, code = run_window(
+            c, states[k], periods * 2.0 * math.pi / c.Omega, cap, rows, open_window(c, states[k], rows)
+        )
+        judge_window(c, rows, count + 1, periods, tolerance, longest, verdict)
+        regular[k] = code == col.COMPLETE and verdict[v.REGIME] != v.OPEN

@@ -98,6 +98,7 @@ def attractor_from(
         remaining=value[v.REMAINING],
         transient=value[v.PERIODS],
         recorded=value[v.RECORDED],
+        watched=value[v.WATCHED],
         status=STATUS[int(value[v.STATUS])],
         reason=v.reason_text(verdict),
     )

@@ -136,7 +136,7 @@ class Search:
 
     def _classify(self, states: Floats, patience: float) -> Classified:
         starts = dict(zip(STATE_NAMES, states.T, strict=True)) | {"phase": self.phase}
-        return classify_many(self.p, starts, settle=0, record=WINDOW, patience=patience, watch=self.watch)
+        return classify_many(self.p, starts, settle=0, record=WINDOW, patience=patience, watch=self.watch, errors=False)
 
     def _learn(self, runs: _Runs, still: Numbers) -> None:
         """Follow a sample of the open runs to the end, to know the attractors before all others are asked."""

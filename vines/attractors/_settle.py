@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -13,14 +12,16 @@ from vines.attractors import _verdict as v
 from vines.attractors._attractor import Attractor
 from vines.attractors._look import look_at_block
 from vines.attractors._naming import attractor_from, word_of
+from vines.attractors._patience import Patience
+from vines.attractors._staying import note_conserving, watch_on
 from vines.attractors._waiting import next_wait
-from vines.bounds import check_periods
+from vines.domains import Named, Number, Parameters, stated
 from vines.dynamics.kernels import constants, pass_over, room_of, shift_time, table_of
 from vines.dynamics.kernels import rows as col
-from vines.dynamics.runs import EVENTS_PER_PERIOD, impacts_of, start_of
+from vines.dynamics.runs import EVENTS_PER_PERIOD, impacts_of, measures_from, start_of
 from vines.errors import StateError
 
-__all__ = ["APART", "NUDGE", "ROUNDS", "Patience", "settle", "settle_from"]
+__all__ = ["APART", "NUDGE", "ROUNDS", "settle", "settle_from"]
 
 ROUNDS = 8
 """How often a run may be taken on because it had not arrived."""
@@ -33,39 +34,7 @@ APART = 1e-9
 """Difference in velocity with which equal balls start."""
 
 
-@dataclass(frozen=True, slots=True)
-class Patience:
-    """How long to run, and how exactly a run must repeat; see `settle`.
-
-    Raises
-    ------
-    StateError
-        If an option is out of range.
-    """
-
-    settle: float = 400
-    record: float = 64
-    patience: float = 4000
-    watch: float = 512
-    tolerance: float = 1e-10
-    cap: int = EVENTS_PER_PERIOD
-
-    def __post_init__(self) -> None:
-        for name, value, least in (
-            ("settle", self.settle, 0),
-            ("record", self.record, 2),
-            ("patience", self.patience, 0),
-            ("watch", self.watch, 16),
-        ):
-            if not (isinstance(value, int | float) and math.isfinite(value) and value >= least):
-                raise StateError(f"{name} is {value!r} periods; give a finite number >= {least}")
-            check_periods(name, value)
-        if not self.tolerance > 0:
-            raise StateError(f"tolerance is {self.tolerance!r}; give a number > 0")
-        if self.cap < 1:
-            raise StateError(f"max_impacts_per_period is {self.cap!r}; give an integer >= 1")
-
-
+@stated(p=Parameters(), t=Number(least=-1e12, most=1e12), phi=Number(least=-1e12, most=1e12), apart=Number(least=0, most=1e-3))
 def settle(
     p: Any,
     *,
@@ -76,7 +45,9 @@ def settle(
     patience: float = 4000,
     watch: float = 512,
     tolerance: float = 1e-10,
+    largest_p: int | None = None,
     lyapunov: bool = True,
+    errors: bool = True,
     max_impacts_per_period: int = EVENTS_PER_PERIOD,
     apart: float = APART,
     **start: Any,
@@ -100,9 +71,15 @@ def settle(
         Forcing periods, >= 16, to run on where nothing repeats, before an exponent is believed; up to 16 times as many
         where it does not differ from 0.
     tolerance : float
-        Largest distance from a periodic orbit at which the run counts as settled on it.
+        Largest distance from a periodic orbit at which the run counts as settled on it, at most 1e-4.
+    largest_p : int, optional
+        Largest number of forcing periods over which a repetition is looked for, at most 4096; at least twice as many
+        are recorded. As if 32 where it is left out, or half of `record` if that is less.
     lyapunov : bool
         Whether to give exponents; they are worked out anyhow where the regime depends on them.
+    errors : bool
+        Whether a run that never repeats is watched on, for 13 times `record` and up to `patience` periods, until what
+        it measured has standard errors; where its chaos ends on the way it is looked at again from there.
     max_impacts_per_period : int
         Cap on events in one forcing period; when it is passed the regime is ``unsettled``, status ``impact_cap``.
     apart : float
@@ -136,9 +113,10 @@ def settle(
     for group in getattr(p, "together", ()):
         v2[np.array(group) - 1] += apart * np.arange(len(group))
     begin = (x1, v1, x2, v2, phase)
-    return _settled(p, begin, t, Patience(settle, record, patience, watch, tolerance, max_impacts_per_period), lyapunov)
+    return _settled(p, begin, t, Patience(settle, record, patience, watch, tolerance, max_impacts_per_period, largest_p), lyapunov, errors)
 
 
+@stated(p=Parameters(), start=Named(Number()))
 def settle_from(
     p: Any,
     start: Mapping[str, float],
@@ -148,7 +126,9 @@ def settle_from(
     patience: float = 4000,
     watch: float = 512,
     tolerance: float = 1e-10,
+    largest_p: int | None = None,
     lyapunov: bool = True,
+    errors: bool = True,
     max_impacts_per_period: int = EVENTS_PER_PERIOD,
 ) -> Attractor:
     """Do as `settle`, from a state with its forcing phase: that of another point's `Attractor.final`, for instance.
@@ -160,7 +140,7 @@ def settle_from(
     start : mapping
         The coordinates of the system (x1, v1, x2, v2) and phase [rad]; t, if given, is only the origin of
         `Attractor.final["t"]`.
-    settle, record, patience, watch, tolerance, lyapunov, max_impacts_per_period
+    settle, record, patience, watch, tolerance, largest_p, lyapunov, errors, max_impacts_per_period
         As for `settle`.
 
     Returns
@@ -179,15 +159,18 @@ def settle_from(
     >>> settle_from(Params(mu=0.01, A=0.0201), first.final, settle=100).name
     '1:1'
     """
+    if "phase" not in start:
+        raise StateError(f"start has {', '.join(map(str, start)) or 'nothing'}; give all coordinates and the phase")
     t = float(start.get("t", 0.0))
     at = {name: value for name, value in start.items() if name not in ("t", "phase")}
     begin = start_of(p, at, 0.0, start["phase"])
-    return _settled(p, begin, t, Patience(settle, record, patience, watch, tolerance, max_impacts_per_period), lyapunov)
+    return _settled(p, begin, t, Patience(settle, record, patience, watch, tolerance, max_impacts_per_period, largest_p), lyapunov, errors)
 
 
 def _settled(
-    p: Any, begin: tuple[float, float, float, float, float], t: float, how: Patience, lyapunov: bool
+    p: Any, begin: tuple[float, float, float, float, float], t: float, how: Patience, lyapunov: bool, errors: bool
 ) -> Attractor:
+    how.check_length(p.period)
     c, room = constants(p), room_of(p)
     layout = room.layout(p)
     states = np.zeros((1, layout.state))
@@ -198,7 +181,7 @@ def _settled(
     length = v.EXPONENTS + 3 * layout.directions + layout.width - col.ROW
     verdicts, totals = np.empty((1, length)), np.zeros((1, layout.totals))
     verdict = verdicts[0]
-    stages = np.array([float(how.record)])
+    stages, period = np.array([how.window]), np.array([p.period])
     sides, hits = np.empty(0, dtype=np.int8), np.empty((0, layout.width + 1))
     wait, spare, ran, nudged = float(how.settle), float(how.patience), 0.0, math.nan
     for turn in range(ROUNDS + 1):
@@ -206,13 +189,31 @@ def _settled(
         shift_time(state, wait * p.period)
         left = np.array([[spare, math.isnan(nudged)]]) if turn < ROUNDS else np.zeros((1, 2))
         sides, hits = look_at_block(
-            table, states, waited, left, stages, float(how.watch), how.cap, how.tolerance, True, verdicts, totals
+            table,
+            states,
+            waited,
+            left,
+            stages,
+            float(how.watch),
+            how.cap,
+            how.tolerance,
+            how.longest,
+            True,
+            verdicts,
+            totals,
         )
-        shift_time(state, how.record * p.period)
-        ran += wait + how.record
+        shift_time(state, how.window * p.period)
+        ran += wait + how.window
         if verdict[v.NEXT] == v.STAYS:
-            break
-        if verdict[v.NEXT] == v.IS_FREED:
+            note_conserving(verdicts, np.array([room.conserves(p)]))
+            if not errors or turn == ROUNDS:
+                break
+            m = measures_from(p, totals[0])
+            measured = np.array([[m.kinetic_ratio, m.max_abs_x1, m.rms_x1]])
+            if not watch_on(lambda _: table, states, period, measured, verdicts, how)[0]:
+                break
+            wait, ran = 0.0, ran + float(verdict[v.WATCHED] - verdict[v.RECORDED])
+        elif verdict[v.NEXT] == v.IS_FREED:
             wait, nudged = float(how.settle), float(verdict[v.VALUE])
             *at, phase = verdict[v.FINAL : v.FINAL + 5].tolist()
             there = room.leave(p, at, phase, verdict[length - layout.width + col.ROW :].tolist())
@@ -221,6 +222,6 @@ def _settled(
         else:
             wait = float(next_wait(verdict[v.REMAINING], spare, few_lengths=False))
             spare -= wait
-    verdict[v.NUDGED], verdict[v.PERIODS] = nudged, ran - how.record
+    verdict[v.NUDGED], verdict[v.PERIODS] = nudged, ran - how.window
     word = word_of(sides, int(verdict[v.P]), p) if len(sides) else None
     return attractor_from(p, verdict, totals[0], word, impacts_of(hits, layout.width > col.ROW), t, lyapunov)

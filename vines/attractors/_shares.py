@@ -4,9 +4,12 @@ from __future__ import annotations
 
 import math
 
+from vines.domains import Number, stated
+
 __all__ = ["share_error"]
 
 
+@stated(share=Number(least=0, most=1), number=Number(least=0))
 def share_error(share: float, number: float) -> float:
     """Return the standard error of a share of `number` independent starts.
 

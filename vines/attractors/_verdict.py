@@ -35,13 +35,14 @@ __all__ = ["REGIMES", "VERDICT", "reason_text"]
     NUDGED,
     STICKING,
     NEXT,
-) = range(24)
-FINAL = 24
-EXPONENTS = 29
+    WATCHED,
+) = range(25)
+FINAL = 25
+EXPONENTS = 30
 """First of d exponents, after which come d real and d imaginary parts of multipliers, and what else of the final state
 there is: d numbers are in a disturbance."""
 
-VERDICT = 41
+VERDICT = 42
 """Length for the four numbers of a disturbance of the VI-NES."""
 
 UNSETTLED, PERIODIC, QUASIPERIODIC, CHAOTIC, NO_IMPACT, OPEN = range(6)
@@ -68,7 +69,10 @@ RECURS = 0.9
     UNDECIDED,
     CAPPED,
     CAPPED_LATER,
-) = range(13)
+    CONSERVES,
+    REMEMBERS,
+    LONGER,
+) = range(16)
 
 _TEXTS = {
     NOTHING: "",
@@ -77,13 +81,16 @@ _TEXTS = {
     DRIFTS: "no impact while recorded, but the ball drifts towards a wall",
     RESTS: "the ball is nearly at rest: no impact for the last {value:.4g} forcing periods",
     RINGS: "the oscillator is still {value:.2g} from its steady motion",
-    DECAYS: "disturbances decay, but no repetition shows yet",
+    DECAYS: "disturbances decay, but no repetition shows yet, of p <= {value:.0f} forcing periods; largest_p is for longer ones",
     COMES: "still comes to a periodic orbit: {value:.6g} of the distance is left each period",
     STAYS_NEAR: "near a periodic orbit, neither settled on it nor clearly leaving it",
     LEAVES: "leaves an unstable periodic orbit",
     UNDECIDED: "its exponent {value:.2g} +- {other:.2g} is not told from 0",
     CAPPED: "more events in a forcing period than the cap allows",
     CAPPED_LATER: "more events in a forcing period than allowed while running on",
+    CONSERVES: "nothing is lost, by damping or in impacts: there is no attractor",
+    LONGER: "repeats after p = {value:.0f} forcing periods, p <= {other:.0f} was looked for; largest_p = {value:.0f} names it",
+    REMEMBERS: "no standard errors: the motion remembers longer than {value:.4g} forcing periods can tell",
 }
 
 

@@ -5,50 +5,38 @@ from __future__ import annotations
 import math
 
 from vines.attractors import _verdict as v
-from vines.dynamics.kernels import BATCHES, ball_mass, close_batch, standard_errors, window_totals
 from vines.dynamics.kernels import rows as col
-from vines.dynamics.kernels import totals as entry
-from vines.kernels import cold_njit, new_matrix, new_vector
+from vines.dynamics.kernels import window_totals
+from vines.kernels import cold_njit
 
 __all__ = ["measure_window"]
 
 
 @cold_njit
 def measure_window(c, rows, n, verdict, total):
-    """Take the totals of a window: over one repetition if it is periodic, else over all of it with its errors.
+    """Take the totals of a window: over one repetition if it is periodic, else over all of it.
 
-    The share of its forcing periods in which the ball sticks goes to STICKING.
+    The share of its forcing periods in which the ball sticks goes to STICKING. Errors are nan where the motion was not
+    seen to be regular.
     """
     stop = rows[n - 1, col.TIME]
+    start = 0.0
     period = 2.0 * math.pi / c.Omega
     if verdict[v.REGIME] == v.PERIODIC:
         span = verdict[v.P] * period
         stop = _quiet_time(rows, n, span)
-        verdict[v.STICKING] = _sticking_share(rows, n, stop - span, stop, period)
-        part = window_totals(c, rows, n, stop - span, stop)
-        for j in range(total.shape[0]):
-            total[j] = part[j]
-        return
-    verdict[v.STICKING] = _sticking_share(rows, n, 0.0, stop, period)
-    width = stop / BATCHES
+        start = stop - span
+    verdict[v.STICKING] = _sticking_share(rows, n, start, stop, period)
+    if verdict[v.SETTLED] == 0.0 or verdict[v.REGIME] not in (v.PERIODIC, v.NO_IMPACT):
+        verdict[v.KINETIC_RATIO_ERROR] = verdict[v.MAX_ABS_X1_ERROR] = verdict[v.RMS_X1_ERROR] = math.nan
     for j in range(total.shape[0]):
         total[j] = 0.0
-    if not width > 0.0:
+    if not stop > start:
         # A run that had to stop before its window began.
-        verdict[v.KINETIC_RATIO_ERROR] = verdict[v.MAX_ABS_X1_ERROR] = verdict[v.RMS_X1_ERROR] = math.nan
         return
-    values, errors = new_matrix(BATCHES, 3), new_vector(3)
-    for k in range(BATCHES):
-        part = window_totals(c, rows, n, k * width, stop if k == BATCHES - 1 else (k + 1) * width)
-        close_batch(ball_mass(c), part, total, values[k])
-        for j in range(entry.TOTALS, total.shape[0]):
-            total[j] += part[j]
-    standard_errors(values, errors)
-    verdict[v.KINETIC_RATIO_ERROR], verdict[v.MAX_ABS_X1_ERROR], verdict[v.RMS_X1_ERROR] = (
-        errors[0],
-        errors[1],
-        errors[2],
-    )
+    part = window_totals(c, rows, n, start, stop)
+    for j in range(total.shape[0]):
+        total[j] = part[j]
 
 
 @cold_njit

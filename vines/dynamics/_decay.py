@@ -6,6 +6,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from vines.domains import Number, Numbers, Of, stated
 from vines.dynamics._trajectory import Trajectory
 from vines.errors import StateError
 
@@ -43,6 +44,7 @@ class Decay:
     last_impact: float
 
 
+@stated(run=Of("Trajectory|ParallelRun", how="as vines.simulate returns it"), shares=Numbers(Number(above=0, below=1)))
 def decay(run: Trajectory, shares: Sequence[float] = (0.1, 0.01)) -> Decay:
     """Return where the energy of a run without forcing went.
 

@@ -13,8 +13,9 @@ from typing import Literal
 import numpy as np
 import numpy.typing as npt
 
-from vines.bounds import check_periods
+from vines.bounds import MOST_EVENTS, check_periods, shown
 from vines.cores import cores
+from vines.domains import Choice, Number, Of, Whole, stated
 from vines.dynamics import _advance as col
 from vines.dynamics import _lane_run as lanes
 from vines.dynamics import _totals as entry
@@ -23,10 +24,10 @@ from vines.dynamics._scatter import Scatter
 from vines.dynamics._scatter_constants import ROOM
 from vines.dynamics._scatter_run import scatter_block
 from vines.dynamics._simulate import EVENTS_PER_PERIOD
-from vines.dynamics._start import SLACK
+from vines.dynamics._start import LARGEST, SLACK
 from vines.dynamics._trajectory import IMPACT
 from vines.errors import ParameterError, StateError, nearest
-from vines.model import FREQUENCY, MASS, PARAMETER_NAMES, START_NAMES, VI_NES, X1, X2, Params
+from vines.model import FREQUENCY, MASS, PARAMETER_NAMES, START_NAMES, STATE_NAMES, VI_NES, X1, X2, Params
 
 __all__ = [
     "FINAL",
@@ -42,6 +43,9 @@ __all__ = [
 ]
 
 Floats = npt.NDArray[np.float64]
+
+RECORDS = ("final", "measures", "impacts")
+"""What an ensemble may record, in the order of what it costs."""
 
 STATUS_NAMES = ("complete", "impact_cap", "step_limit")
 
@@ -166,6 +170,7 @@ class _Runs:
         return work.result()
 
 
+@stated(periods=Number(above=0), settle=Number(least=0), record=Choice(RECORDS), scatter=Of("Scatter", optional=True), threads=Whole(optional=True), max_impacts_per_period=Whole(most=MOST_EVENTS))
 def ensemble(
     params: Params | Sequence[Params] | Mapping[str, npt.ArrayLike],
     starts: Mapping[str, npt.ArrayLike] | None = None,
@@ -226,14 +231,9 @@ def ensemble(
     # Copies: a kernel would be compiled once more for arrays that are read-only, as those of broadcast_to are.
     table = np.array(np.broadcast_to(table, (n, len(PARAMETER_NAMES))), order="C")
     begin = np.array(np.broadcast_to(begin, (n, len(START_NAMES))), order="C")
-    for name, value, positive in (("periods", periods, True), ("settle", settle, False)):
-        if not (math.isfinite(value) and (value > 0 if positive else value >= 0)):
-            raise StateError(f"{name} is {value!r}; give a finite number {'> 0' if positive else '>= 0'}")
-        check_periods(name, value)
-    if max_impacts_per_period < 1:
-        raise StateError(f"max_impacts_per_period is {max_impacts_per_period!r}; give an integer >= 1")
-    if record not in ("final", "measures", "impacts"):
-        raise StateError(f"record is {record!r}: {nearest(str(record), ('final', 'measures', 'impacts'))}")
+    longest = 2.0 * math.pi / float(np.min(table[:, FREQUENCY]))
+    for name, value in (("periods", periods), ("settle", settle)):
+        check_periods(name, value, longest)
     if scatter is not None and lyapunov:
         raise StateError("lyapunov is not defined for runs with scatter; leave one of them out")
     what = {"final": lanes.FINAL, "measures": lanes.WITH_MEASURES, "impacts": lanes.WITH_IMPACTS}[record]
@@ -251,7 +251,7 @@ def threads_allowed() -> int:
 def each_thread(work: Callable[[slice], object], blocks: Iterable[slice], cores: int) -> None:
     """Do the work of every block on so many threads; kernels release the interpreter's lock."""
     blocks = list(blocks)
-    if cores == 1 or len(blocks) == 1:
+    if cores == 1 or len(blocks) <= 1:
         for block in blocks:
             work(block)
         return
@@ -381,10 +381,12 @@ def parameter_table(params: Params | Sequence[Params] | Mapping[str, npt.ArrayLi
         return np.array([[getattr(params, name) for name in PARAMETER_NAMES]])
     if isinstance(params, Mapping):
         return _check_parameters(_columns(params, _PARAMETER_DEFAULTS, ParameterError, "parameter"))
-    table = np.array([[getattr(p, name) for name in PARAMETER_NAMES] for p in params])
-    if not len(table):
-        raise ParameterError("params is empty; give at least one point")
-    return table
+    if not isinstance(params, Sequence) or isinstance(params, str | bytes) or not len(params):
+        raise ParameterError(f"params is {shown(params)}; give vines.Params, a list of them, or arrays by name")
+    for p in params:
+        if not isinstance(p, Params):
+            raise ParameterError(f"params holds {shown(p)}; give vines.Params, a list of them, or arrays by name")
+    return np.array([[getattr(p, name) for name in PARAMETER_NAMES] for p in params])
 
 
 def _columns(
@@ -402,9 +404,12 @@ def _columns(
         if value is None:
             raise error(f"{kind} {name!r} is missing; give a number or an array")
         try:
-            arrays.append(np.atleast_1d(np.asarray(value, dtype=np.float64)).ravel())
-        except (TypeError, ValueError):
-            raise error(f"{name} is {value!r}; give a number or an array of numbers") from None
+            numbers = None if isinstance(value, str | bytes | bool) else np.asarray(value, dtype=np.float64)
+        except (TypeError, ValueError, OverflowError):
+            numbers = None
+        if numbers is None or not numbers.size:
+            raise error(f"{name} is {shown(value)}; give a number or an array of numbers")
+        arrays.append(np.atleast_1d(numbers).ravel())
     try:
         return np.stack(np.broadcast_arrays(*arrays), axis=1)
     except ValueError:
@@ -425,10 +430,16 @@ def _check_parameters(table: Floats) -> Floats:
 
 def start_table(starts: Mapping[str, npt.ArrayLike] | None) -> Floats:
     """Return the starts of many runs, shape (n, 5), or raise `StateError`."""
+    if not (starts is None or isinstance(starts, Mapping)):
+        raise StateError(f"starts is {shown(starts)}; give arrays by name, such as {{'v2': [0.1, 0.2]}}")
     table = _columns(starts or {}, _START_DEFAULTS, StateError, "start")
     bad = ~np.isfinite(table).all(axis=1)
     if bad.any():
         raise StateError(f"start {int(np.flatnonzero(bad)[0])} is not finite; give finite numbers")
+    far = np.abs(table[:, : len(STATE_NAMES)]).max(axis=1) > LARGEST
+    if far.any():
+        k = int(np.flatnonzero(far)[0])
+        raise StateError(f"start {k} is {table[k].tolist()}, allowed are coordinates of at most {LARGEST:g}")
     w = table[:, X1] - table[:, X2]
     outside = np.abs(w) > 1.0 + SLACK
     if outside.any():

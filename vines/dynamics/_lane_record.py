@@ -1,7 +1,7 @@
 """What is kept of a trajectory in a lane: its rows wait in a buffer and are then digested together.
 
-Measures and exponents are also formed over eight equal parts of the recorded time, whose scatter gives the standard
-errors (batch means).
+Totals and growth are also formed over equal parts of the recorded time, whose scatter gives the standard errors
+(`_batches`).
 """
 
 from __future__ import annotations
@@ -10,7 +10,7 @@ import math
 
 from vines.dynamics import _advance as col
 from vines.dynamics import _lane_fields as f
-from vines.dynamics._batches import BATCHES, standard_errors
+from vines.dynamics._batches import BATCHES, GROWTHS, PART, errors_of_rates, standard_errors
 from vines.dynamics._lane_measures import open_measures
 from vines.dynamics._lane_segments import begin_segment, close_part, part_of
 from vines.dynamics._tangent import DEAD, directions, flow_basis, jump_basis, log_growth, orthonormalise
@@ -20,7 +20,6 @@ from vines.kernels import (
     entry_njit,
     fused_njit,
     linked_njit,
-    new_matrix,
     new_vector,
     zero_cube,
     zero_integers,
@@ -37,7 +36,7 @@ DEPTH = 16
 def new_record(lanes, what_rows, what_totals, what_growth):
     """Return room for the records of all lanes, as a tuple of arrays.
 
-    Rows and how many wait; totals, measures by batch, number of the running batch, mode and ball of the running
+    Rows and how many wait; totals, what errors are taken of by batch, number of the running batch, mode and ball of the running
     segment; disturbances and their growth by batch.
     """
     k = lanes if what_rows else 0
@@ -47,11 +46,11 @@ def new_record(lanes, what_rows, what_totals, what_growth):
         zero_cube(k, DEPTH + 1, col.ROW),
         zero_integers(lanes),
         zero_matrix(n, TOTALS),
-        zero_cube(n, BATCHES, 3),
+        zero_cube(n, BATCHES, PART),
         zero_integers(lanes),
         zero_matrix(lanes, 2),
         zero_cube(m, 4, 4),
-        zero_cube(m, BATCHES, 5),
+        zero_cube(m, GROWTHS, 5),
     )
 
 
@@ -99,9 +98,9 @@ def _digest_growth(c, rows, n, Y, growth, width):
     gains = new_vector(4)
     product = new_vector(4)
     product[:] = 1.0
-    running = min(int(rows[1, col.TIME] / width), BATCHES - 1)
+    running = min(int(rows[1, col.TIME] / width), GROWTHS - 1)
     for j in range(1, n):
-        batch = min(int(rows[j, col.TIME] / width), BATCHES - 1)
+        batch = min(int(rows[j, col.TIME] / width), GROWTHS - 1)
         if batch != running:
             log_growth(product, growth[running])
             running = batch
@@ -123,7 +122,7 @@ def digest(c, record, i, length, what_growth, what_impacts, events, filled, who)
     n = count[i]
     if n > 1:
         if what_growth:
-            _digest_growth(c, rows[i], n, basis[i], growth[i], length / BATCHES)
+            _digest_growth(c, rows[i], n, basis[i], growth[i], length / GROWTHS)
         if what_impacts:
             for j in range(1, n):
                 if rows[i, j, col.KIND] != col.IMPACT:
@@ -151,19 +150,13 @@ def close_record(c, L, record, i, energy, who, totals, errors, growths, growth_e
         copy_values(totals[who], total[i])
         errors[who, :] = math.nan
         if whole:
-            standard_errors(values[i], errors[who])
+            standard_errors(c.lam, values[i], total[i], errors[who])
     if growth.shape[0]:
-        rates = new_matrix(BATCHES, 4)
         growths[who, :] = 0.0
-        for b in range(BATCHES):
+        for b in range(GROWTHS):
             for k in range(5):
                 growths[who, k] += growth[i, b, k]
-            for k in range(4):
-                rates[b, k] = growth[i, b, k] / growth[i, b, 4]
-        standard_errors(rates, growth_errors[who])
-        for k in range(4):
-            if growths[who, k] == -math.inf:
-                growth_errors[who, k] = 0.0
+        errors_of_rates(growth[i], growth_errors[who])
 
 
 @entry_njit

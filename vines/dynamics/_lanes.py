@@ -28,6 +28,10 @@ ONWARD = 0.25
 MOST_TRIES = 8.0
 """Moves of a flight that were not certified before the scalar kernel takes it."""
 
+FORGOTTEN = 300.0
+"""Decay of a flight's free part, as its logarithm, before the scalar kernel takes the flight: it goes back to its start,
+and from twice as far no double comes back."""
+
 LOOSER = 1.05
 """The lanes' test for a merge is looser than `merges`, which then decides: both kernels merge at the same impact."""
 
@@ -103,7 +107,8 @@ def choose(L, cap):
         # What the scalar kernel has to see: a chatter about to end, tiny steps, hard flights, the end of the run.
         slow = not (move >= SLOW)
         ending = not (left > move + 1e-9)
-        odd = merges | (L[f.WAITS + i] > 0.0) | (tries > MOST_TRIES) | (busy > cap)
+        long = (not hit) & (half * L[f.TAU + i] > FORGOTTEN)
+        odd = merges | (L[f.WAITS + i] > 0.0) | (tries > MOST_TRIES) | (busy > cap) | long
         waits = slow | ending | odd
         wall = kept(L[f.WALL + i], unit)
         chain = kept(L[f.CHAIN + i], unit)

@@ -14,6 +14,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from vines.domains import Number, Numbers, Parameters, Whole, stated
 from vines.dynamics._contact import CONTACT, next_contact
 from vines.dynamics._flight import phasors
 from vines.dynamics._impact_law import after_impact
@@ -43,6 +44,7 @@ class Mapped(NamedTuple):
     jacobian: npt.NDArray[np.float64]
 
 
+@stated(p=Parameters(any_system=False), side=Whole(least=-1, most=1), side_next=Whole(least=-1, most=1), state=Numbers(Number(least=-1e12, most=1e12), least=5, most=5), phi=Number(least=-1e12, most=1e12))
 def impact_map(
     p: Params, side: int, side_next: int, state: Sequence[float] | npt.NDArray[np.float64], phi: float = 0.0
 ) -> Mapped:

@@ -17,7 +17,7 @@ import numpy.typing as npt
 from vines.dynamics._advance import ROW, STATE, set_state
 from vines.dynamics._constants import ParameterTable, constants_kernel
 from vines.dynamics._impact_law import ImpactLaw, impact_law
-from vines.dynamics._start import check_gap, check_numbers
+from vines.dynamics._start import check_coordinate, check_gap, check_numbers
 from vines.dynamics._totals import TOTALS
 from vines.errors import StateError, nearest
 from vines.model import Params
@@ -87,6 +87,10 @@ class Room:
         """Return the mass of the ball in the unit of energies."""
         return p.mu
 
+    def conserves(self, p: Any) -> bool:
+        """Say whether nothing is lost, by damping or in impacts: volumes of states are kept, and nothing attracts."""
+        return getattr(p, "lam", 0.0) == 0.0 and bool(np.all(np.asarray(p.r) == 1.0))
+
     def base(self, p: Any, phase: Any) -> Any:
         """Return the displacement that is prescribed."""
         return p.A * np.sin(phase)
@@ -140,7 +144,7 @@ def start_of(p: Any, start: Mapping[str, Any], t: float, phi: float) -> tuple[An
     for name, value in _each(start, given):
         if name not in given:
             raise StateError(f"unknown coordinate {name!r} of a start: {nearest(name, given)}")
-        check_numbers(**{name: value})
+        check_coordinate(name, value)
         given[name] = float(value)
     check_numbers(t=t, phi=phi)
     phase = math.fmod(constants(p).Omega * t, 2 * math.pi) + phi

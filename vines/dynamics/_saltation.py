@@ -11,6 +11,7 @@ from collections.abc import Sequence
 import numpy as np
 import numpy.typing as npt
 
+from vines.domains import Number, Numbers, Parameters, Whole, stated
 from vines.dynamics._constants import oscillator
 from vines.dynamics._flight import decay, derivatives, phasors, turn
 from vines.dynamics._impact_law import after_impact_kernel, impact_law_kernel
@@ -71,6 +72,7 @@ def jacobian_kernel(mu, A, Omega, r, lam, x1, v1, v2, phase, tau):
     return J, x1n, v1n, v2p
 
 
+@stated(p=Parameters(any_system=False), side=Whole(least=-1, most=1), side_next=Whole(least=-1, most=1), before=Numbers(Number(least=-1e6, most=1e6), least=4, most=4), phase=Number(least=-1e12, most=1e12), tau=Number(above=0, most=1e6))
 def jacobian(
     p: Params,
     side: int,

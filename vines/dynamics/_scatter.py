@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
 
+from vines.bounds import check_count, check_number
 from vines.errors import ParameterError
 
 __all__ = ["Scatter"]
+
+_LARGEST = 1e6
+"""Largest number of a scatter; all are of order one."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,13 +58,10 @@ class Scatter:
 
     def __post_init__(self) -> None:
         for name in ("sigma_r", "r_speed", "noise", "second", "second_phase"):
-            value = getattr(self, name)
-            if not math.isfinite(value) or (value < 0 and name in ("sigma_r", "noise", "second")):
-                raise ParameterError(f"{name} is {value!r}; give a finite number, not negative")
-        if not 1 <= self.hold <= 4096:
-            raise ParameterError(f"hold is {self.hold!r}; allowed is 1 to 4096 draws in a forcing period")
-        if not 0 <= self.seed < 2**53:
-            raise ParameterError(f"seed is {self.seed!r}; allowed is 0 to 2**53 - 1")
+            least = 0.0 if name in ("sigma_r", "noise", "second") else -_LARGEST
+            check_number(name, getattr(self, name), least=least, most=_LARGEST, error=ParameterError)
+        check_count("hold", self.hold, most=4096, error=ParameterError)
+        check_count("seed", self.seed, least=0, most=2**53 - 1, error=ParameterError)
 
     def numbers(self) -> npt.NDArray[np.float64]:
         """Return the fields as an array, for the kernel."""

@@ -8,7 +8,7 @@ from vines.dynamics import _advance as col
 from vines.dynamics import _lane_run as lanes
 from vines.dynamics import _totals as entry
 from vines.dynamics._advance import pass_over, set_state, state_now
-from vines.dynamics._batches import BATCHES, close_batch, standard_errors
+from vines.dynamics._batches import BATCHES, PART, close_batch, standard_errors
 from vines.dynamics._scatter_constants import scatter_constants
 from vines.dynamics._scatter_energies import fill_forms
 from vines.dynamics._totals import window_totals
@@ -73,7 +73,7 @@ def scatter_block(
     """
     filled = 0
     rows, state = new_matrix(ROOM, col.ROW), zero_vector(col.STATE)
-    values, spread, total = zero_matrix(BATCHES, 3), zero_vector(3), zero_vector(entry.TOTALS)
+    values, spread, total = zero_matrix(BATCHES, PART), zero_vector(3), zero_vector(entry.TOTALS)
     for who in range(parameters.shape[0]):
         s, length = starts[who], lengths[who]
         c = scatter_constants(parameters[who], numbers, base + who, -first[who], address)
@@ -111,7 +111,10 @@ def scatter_block(
         if what & lanes.WITH_MEASURES:
             for k in range(entry.TOTALS):
                 totals[who, k] = total[k]
-            standard_errors(values, spread)
             for k in range(3):
-                errors[who, k] = spread[k] if code == col.COMPLETE else math.nan
+                errors[who, k] = math.nan
+            if code == col.COMPLETE:
+                standard_errors(c.lam, values, total, spread)
+                for k in range(3):
+                    errors[who, k] = spread[k]
     return filled

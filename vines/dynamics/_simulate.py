@@ -2,19 +2,18 @@
 
 from __future__ import annotations
 
-import math
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
-from vines.bounds import check_periods
+from vines.bounds import MOST_EVENTS, check_periods
+from vines.domains import Number, Parameters, Whole, stated
 from vines.dynamics import _advance as col
 from vines.dynamics._advance import begin
 from vines.dynamics._room import constants, room_of, start_of
 from vines.dynamics._trajectory import Trajectory
 from vines.dynamics._window import run_window
-from vines.errors import StateError
 
 __all__ = ["EVENTS_PER_PERIOD", "STATUS", "record", "simulate"]
 
@@ -40,6 +39,7 @@ def record(
     return rows[: count + 1].copy(), STATUS[code]
 
 
+@stated(p=Parameters(), t=Number(least=-1e12, most=1e12), phi=Number(least=-1e12, most=1e12), periods=Number(above=0), max_impacts_per_period=Whole(most=MOST_EVENTS))
 def simulate(
     p: Any,
     *,
@@ -87,11 +87,7 @@ def simulate(
     True
     """
     at = start_of(p, start, t, phi)
-    if not (isinstance(periods, int | float) and math.isfinite(periods) and periods > 0):
-        raise StateError(f"periods is {periods!r}; give a finite number > 0")
-    check_periods("periods", periods)
-    if max_impacts_per_period < 1:
-        raise StateError(f"max_impacts_per_period is {max_impacts_per_period!r}; give an integer >= 1")
+    check_periods("periods", periods, p.period)
     c = constants(p)
     room = room_of(p)
     layout = room.layout(p)

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-import math
-
+from vines.bounds import check_number
 from vines.errors import StateError
 
-__all__ = ["check_gap", "check_numbers", "check_start"]
+__all__ = ["LARGEST", "check_coordinate", "check_gap", "check_numbers", "check_start"]
+
+LARGEST = 1e6
+"""Largest coordinate of a start, in half lengths of the cavity: a gap is then known to 1e-10."""
 
 SLACK = 1e-12
 """A gap larger than 1 by no more than this is rounding of a start on the wall."""
@@ -38,8 +40,12 @@ def check_start(**values: float) -> None:
 def check_numbers(**values: float) -> None:
     """Raise `StateError` unless all values are finite numbers."""
     for name, value in values.items():
-        if isinstance(value, bool) or not hasattr(value, "__float__") or not math.isfinite(value):
-            raise StateError(f"{name} is {value!r} at the start; give a finite number")
+        check_number(name, value, unit=" at the start")
+
+
+def check_coordinate(name: str, value: float) -> None:
+    """Raise `StateError` unless a coordinate of a start is a number that leaves the cavity its digits."""
+    check_number(name, value, least=-LARGEST, most=LARGEST, unit=" at the start")
 
 
 def check_gap(w: float) -> None:

@@ -12,7 +12,9 @@ import math
 import numpy as np
 import numpy.typing as npt
 
+from vines.domains import Number, Of, stated
 from vines.dynamics._advance import A_V1, A_V2, IMPACT, KIND, MODE, PHASE, SIDE, STICK, TAU, TIME, V1, V2, X1, X2
+from vines.dynamics._batches import GROWTHS, errors_of_rates
 from vines.dynamics._constants import Constants
 from vines.dynamics._flight import decay, derivatives, phasors
 from vines.dynamics._impact_law import after_impact_kernel
@@ -206,6 +208,7 @@ def log_growth(factors, growth):
         factors[k] = 1.0
 
 
+@stated(run=Of("Trajectory|ParallelRun", how="as vines.simulate returns it"))
 def tangent_map(run: Trajectory) -> npt.NDArray[np.float64]:
     """Return the tangent map of a whole run: disturbances of (x1, v1, x2, v2) at its end by those at its start.
 
@@ -235,6 +238,7 @@ def tangent_map(run: Trajectory) -> npt.NDArray[np.float64]:
     return tangent_product(constants(run.params), run.rows, 0, len(run.rows) - 1)
 
 
+@stated(run=Of("Trajectory|ParallelRun", how="as vines.simulate returns it"), skip=Number(least=0))
 def lyapunov_spectrum(run: Trajectory, *, skip: float = 0.0) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:
     """Return the Lyapunov exponents of a run and their standard errors, per unit of dimensionless time.
 
@@ -249,7 +253,7 @@ def lyapunov_spectrum(run: Trajectory, *, skip: float = 0.0) -> tuple[npt.NDArra
     -------
     exponents, errors : ndarray, shape (d,)
         As many as a disturbance has numbers, in descending order; -inf for directions that sticking removes. Errors
-        are those of the mean of eight blocks.
+        come from the scatter of parts of the run, nan where the parts are not independent (docs/dynamics.md).
 
     Raises
     ------
@@ -264,20 +268,16 @@ def lyapunov_spectrum(run: Trajectory, *, skip: float = 0.0) -> tuple[npt.NDArra
     if not start < run.t_end:
         raise StateError(f"skip is {skip!r} periods; allowed is less than the length of the run")
     c = constants(run.params)
-    grown = lyapunov_blocks(c, run.rows, len(run.rows), start, run.t_end, 8, np.eye(len(directions(c))))
+    grown = lyapunov_blocks(c, run.rows, len(run.rows), start, run.t_end, GROWTHS, np.eye(len(directions(c))))
     return exponents_of(grown)
 
 
 def exponents_of(grown: npt.NDArray[np.float64]) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:
     """Return exponents and standard errors from growth by blocks, as `lyapunov_blocks` gives it."""
     d = grown.shape[1] - 1
-    filled = grown[grown[:, d] > 0]
-    length = filled[:, d].sum()
-    alive = np.all(np.isfinite(filled[:, :d]), axis=0)
-    exponents = np.full(d, -np.inf)
-    errors = np.zeros(d)
-    exponents[alive] = filled[:, :d][:, alive].sum(axis=0) / length
-    if len(filled) > 1:
-        rates = filled[:, :d][:, alive] / filled[:, d:]
-        errors[alive] = rates.std(axis=0, ddof=1) / math.sqrt(len(filled))
+    exponents, errors = np.full(d, -np.inf), np.zeros(d)
+    length = grown[:, d].sum()
+    alive = np.all(np.isfinite(grown[:, :d]), axis=0)
+    exponents[alive] = grown[:, :d][:, alive].sum(axis=0) / length
+    errors_of_rates(np.ascontiguousarray(grown), errors)
     return exponents, errors

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from vines.domains import Number, Numbers, Whole, stated
 from vines.dynamics import _advance as col
 from vines.dynamics._measures import Measures, measures_from
 from vines.dynamics._room import constants, room_of
@@ -36,6 +37,9 @@ STICK = np.dtype(
     + [(name, "f8") for name in ("t_start", "t_release", "phase_start", "phase_release")]
     + [("impacts", "i8")]
 )
+MOST_SAMPLES = 50_000_000
+"""Most samples of one call: they take gigabytes."""
+
 SAMPLE = np.dtype(
     [(name, "f8") for name in ("t", *STATE_NAMES, "w", "w_dot", "phase")]
     + [("stuck", "i1")]
@@ -178,6 +182,7 @@ class Trajectory:
             "phase": phase,
         }
 
+    @stated(last=Number(above=0, optional=True))
     def measures(self, last: float | None = None) -> Measures:
         """Return the energy measures of the whole run, or of its last forcing periods.
 
@@ -203,6 +208,7 @@ class Trajectory:
         totals = window_totals(constants(self.params), self.rows, len(self.rows), start, self.t_end)
         return measures_from(self.params, totals)
 
+    @stated(n=Whole(least=0, most=MOST_SAMPLES, optional=True), times=Numbers(most=MOST_SAMPLES, optional=True), per_period=Whole(most=MOST_SAMPLES, optional=True))
     def sample(
         self,
         n: int | None = None,

@@ -5,11 +5,13 @@ from __future__ import annotations
 import math
 from typing import Any
 
+from vines.domains import Parameters, stated
 from vines.dynamics._room import room_of
 
 __all__ = ["ball_locked", "no_ball"]
 
 
+@stated(p=Parameters())
 def no_ball(p: Any) -> float:
     """Return the steady amplitude of x1 when there is no ball.
 
@@ -25,6 +27,7 @@ def no_ball(p: Any) -> float:
     return _amplitude(p, 1.0)
 
 
+@stated(p=Parameters())
 def ball_locked(p: Any) -> float:
     """Return the steady amplitude of x1 when all balls are fixed to the oscillator, whose mass is then 1 + mu.
 

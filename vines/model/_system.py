@@ -15,6 +15,7 @@ from typing import Any
 
 import msgspec
 
+from vines.bounds import shown
 from vines.errors import ParameterError, StateError, nearest
 
 __all__ = ["Body", "Contact", "Coordinate", "Energies", "Parameter", "Range", "Symmetry", "System", "finite"]
@@ -305,9 +306,8 @@ def finite(name: str, value: object, unit: str = "") -> float:
     """Return a value as a float, or raise `ParameterError` if it is not a finite number."""
     try:
         number = math.nan if isinstance(value, bool | str) else float(value)  # pyright: ignore[reportArgumentType]
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         number = math.nan
     if not math.isfinite(number):
-        shown = " ".join(repr(value).split())
-        raise ParameterError(f"{name} is {shown}; give a finite number{unit and f' in {unit}'}")
+        raise ParameterError(f"{name} is {shown(value)}; give a finite number{unit and f' in {unit}'}")
     return number

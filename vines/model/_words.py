@@ -6,6 +6,7 @@ import re
 from collections.abc import Iterable
 from dataclasses import dataclass
 
+from vines.bounds import shown
 from vines.errors import ParameterError
 from vines.model._letters import impacts, renamed, roles, rotated
 from vines.model._system import System
@@ -16,6 +17,8 @@ __all__ = ["Word", "word_for"]
 _LEFT, _RIGHT = (contact.letter for contact in VI_NES.contacts)
 _SIGNS = {contact.letter: contact.sign for contact in VI_NES.contacts}
 _SHAPE = re.compile(rf"([{VI_NES.alphabet}]+|(?:[{VI_NES.alphabet}][1-9])+)(?:/([1-9][0-9]*)?T)?")
+_LONGEST = 200
+"""Most impacts of a word, and most forcing periods."""
 _SWAP = str.maketrans(dict(VI_NES.mirror.letters))
 _HOW = (
     f"write the impacts as letters {' and '.join(VI_NES.alphabet)}, each with the number of its ball where there are "
@@ -76,8 +79,10 @@ class Word:
                 hint = _HOW
                 if isinstance(text, str) and re.fullmatch(r"\d+:\d+(/\d*T)?", text):
                     hint = f"n:m/pT does not tell the order of the impacts; {_HOW}"
-                raise ParameterError(f"{text!r} is not a word: {hint}")
-            letters, p = match[1], int(match[2] or 1)
+                raise ParameterError(f"{shown(text)} is not a word: {hint}")
+            letters, p = match[1], int(match[2] or 1) if len(match[2] or "") < 6 else _LONGEST + 1
+            if len(impacts(letters)) > _LONGEST or p > _LONGEST:
+                raise ParameterError(f"{shown(text)} is too long a word; allowed are {_LONGEST} impacts over {_LONGEST}T")
         object.__setattr__(self, "letters", min(rotated(letters)))
         object.__setattr__(self, "p", p)
 

@@ -8,6 +8,8 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from vines.domains import Parameters, stated
+from vines.errors import ParameterError
 from vines.dynamics.kernels import constants
 from vines.model import Params, Word
 from vines.orbits._assemble import assemble
@@ -56,6 +58,7 @@ class Orbits(list[Orbit]):
         self.nearest = nearest
 
 
+@stated(ParameterError, p=Parameters())
 def all_orbits(word: str | Word, p: Any) -> Orbits:
     """Return the orbits of a word, admissible or not, each once.
 

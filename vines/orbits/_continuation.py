@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from vines.domains import Name, Number, Numbers, Of, Pair, Whole, stated
 from vines.errors import OrbitNotFound, ParameterError
 from vines.model import Params
 from vines.orbits._arclength import Chord, Walk
@@ -36,6 +37,7 @@ _TOLERANCE = 1e-14
 """Of the root of a defining equation, as a fraction of the step in which it lies."""
 
 
+@stated(ParameterError, orbit=Of("Orbit", how="as vines.find_orbit returns it"), parameter=Name(), stop=Number(), within=Pair(optional=True), at=Numbers(), step=Number(above=0, most=1), max_points=Whole(most=1_000_000))
 def continue_orbit(
     orbit: Orbit,
     parameter: str,

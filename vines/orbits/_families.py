@@ -6,7 +6,8 @@ import math
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
 
-from vines.errors import OrbitNotFound
+from vines.domains import Interval, Name, Number, Numbers, Parameters, Whole, stated
+from vines.errors import OrbitNotFound, ParameterError
 from vines.model import Params, Word
 from vines.orbits._all import all_orbits
 from vines.orbits._branch import Branch
@@ -43,6 +44,7 @@ class Families(list[Branch]):
         self.complete = complete
 
 
+@stated(ParameterError, p=Parameters(any_system=False), parameter=Name(), within=Interval(), seeds=Numbers(least=1), depth=Whole(least=0, most=24), at=Numbers(), step=Number(above=0, most=1))
 def follow_families(
     word: str | Word,
     p: Params,

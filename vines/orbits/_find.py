@@ -7,7 +7,8 @@ from typing import Any
 
 import numpy.typing as npt
 
-from vines.errors import OrbitNotFound
+from vines.domains import Parameters, stated
+from vines.errors import OrbitNotFound, ParameterError
 from vines.model import Params, Word
 from vines.orbits._all import Orbits, all_orbits
 from vines.orbits._general import refine, search
@@ -18,6 +19,7 @@ from vines.orbits._symmetric import no_symmetric_orbit
 __all__ = ["find_orbit"]
 
 
+@stated(ParameterError, p=Parameters())
 def find_orbit(word: str | Word, p: Any, guess: Orbit | npt.ArrayLike | None = None) -> Orbit:
     """Return the periodic orbit of a word.
 

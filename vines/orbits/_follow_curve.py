@@ -9,6 +9,7 @@ from dataclasses import dataclass, field
 import numpy as np
 import numpy.typing as npt
 
+from vines.domains import Interval, Named, Names, Number, Of, Whole, stated
 from vines.errors import OrbitNotFound, ParameterError
 from vines.model import Params
 from vines.orbits._arclength import Chord, Walk
@@ -45,6 +46,7 @@ _FIRST = 4
 """Points before which a curve is not looked at for having closed."""
 
 
+@stated(ParameterError, bifurcation=Of("Bifurcation", how="one of Branch.bifurcations"), parameters=Names(2), box=Named(Interval(), least=2), step=Number(above=0, most=1), max_points=Whole(most=1_000_000))
 def follow_curve(
     bifurcation: Bifurcation,
     parameters: tuple[str, str] = ("A", "mu"),

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from vines.domains import Numbers
 from vines.dynamics.kernels import constants
 from vines.errors import OrbitNotFound, ParameterError
 from vines.model import V1, V2, Word
@@ -46,6 +47,7 @@ def refine(word: Word, p: Any, guess: Orbit | npt.ArrayLike) -> Orbit:
             raise ParameterError(f"the guess is an orbit of {guess.word}, not of {word}; give one of the same word")
         times = guess.t * frequency_of(guess.params) / frequency_of(p)
     else:
+        Numbers(most=2 * len(word)).check("guess", guess, ParameterError)
         times = np.asarray(guess, dtype=np.float64)
     duration = word.p * p.period
     if times.shape != (len(word),) or not np.all(np.diff(times) > 0) or not times[-1] - times[0] < duration:

@@ -6,7 +6,8 @@ import math
 
 import numpy as np
 
-from vines.errors import OrbitNotFound
+from vines.domains import Of, stated
+from vines.errors import OrbitNotFound, ParameterError
 from vines.model import Word
 from vines.orbits._assemble import assemble
 from vines.orbits._branch import Bifurcation
@@ -21,6 +22,7 @@ BRANCHING = ("symmetry_breaking", "period_doubling")
 """Types at which another family comes out."""
 
 
+@stated(ParameterError, orbit=Of("Orbit", how="as vines.find_orbit returns it"))
 def mirror_image(orbit: Orbit) -> Orbit:
     """Return the mirror image (x1, x2, t) -> (-x1, -x2, t + T/2) of an orbit, with L and R swapped.
 

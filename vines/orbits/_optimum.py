@@ -6,6 +6,7 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+from vines.domains import Interval, Name, Named, Number, Parameters, stated
 from vines.errors import ParameterError, nearest
 from vines.model import Params, Word
 from vines.orbits._best import Search
@@ -60,6 +61,7 @@ class Optimum:
         return f"<Optimum {self.objective} = {self.value:.9g}, held by {held}: {self.orbit}>"
 
 
+@stated(ParameterError, p=Parameters(any_system=False), objective=Name(), over=Named(Interval(), least=1), largest_multiplier=Number(above=0, most=1))
 def optimise(
     word: str | Word,
     objective: str,

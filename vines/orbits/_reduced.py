@@ -14,6 +14,8 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from vines.domains import Number, Parameters, stated
+from vines.errors import ParameterError
 from vines.dynamics.kernels import impact_law, reversing
 from vines.model import Params
 
@@ -102,6 +104,7 @@ def _state(V: float, r: float) -> complex:
     return complex(1 - math.pi * V / 2, -restitution(r) * V)
 
 
+@stated(ParameterError, V=Number(least=-1e6, most=1e6), r=Number(least=0, most=1))
 def manifold_amplitude(V: float, r: float) -> float:
     """Return the amplitude Z of the oscillator under which the ball moves with speed V: the slow invariant manifold.
 
@@ -115,6 +118,7 @@ def manifold_amplitude(V: float, r: float) -> float:
     return abs(_state(V, r))
 
 
+@stated(ParameterError, r=Number(least=0, most=1))
 def manifold_range(r: float) -> tuple[float, float]:
     """Return the speeds V between which the ball's 1:1 motion is stable on the slow invariant manifold.
 
@@ -133,6 +137,7 @@ def _drive(V: float, p: Params) -> complex:
     return complex(2 * (p.Omega - 1), -p.lam) * _state(V, p.r) - 4 * p.mu * V / math.pi
 
 
+@stated(ParameterError, p=Parameters(any_system=False))
 def reduced_range(p: Params) -> tuple[float, float]:
     """Return the amplitudes A at which the ends of `manifold_range` are reached; the A of the argument does not matter.
 
@@ -148,6 +153,7 @@ def reduced_range(p: Params) -> tuple[float, float]:
     return low, high
 
 
+@stated(ParameterError, p=Parameters(any_system=False))
 def reduced_orbits(p: Params) -> list[Reduced]:
     """Return the symmetric 1:1 responses of the reduction, the one of highest impact speed first.
 

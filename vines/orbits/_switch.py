@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
+from vines.domains import Of, stated
 from vines.dynamics import no_ball
-from vines.errors import OrbitNotFound
+from vines.errors import OrbitNotFound, ParameterError
 from vines.model import X1
 from vines.orbits._branch import Bifurcation
 from vines.orbits._family import GeneralProblem
@@ -26,6 +27,7 @@ _RESIDUAL = 1e-13
 """Largest residual of an orbit that was reached, in a cavity that is larger than the motion."""
 
 
+@stated(ParameterError, bifurcation=Of("Bifurcation", how="one of Branch.bifurcations"))
 def switch_branch(bifurcation: Bifurcation) -> list[Orbit]:
     """Return orbits next to a branching point, of the family that comes out of it.
 

@@ -7,7 +7,8 @@ import math
 import numpy as np
 import numpy.typing as npt
 
-from vines.errors import OrbitNotFound
+from vines.domains import Parameters, Whole, stated
+from vines.errors import OrbitNotFound, ParameterError
 from vines.model import V2, Params, Word
 from vines.orbits._assemble import assemble
 from vines.orbits._closed_form import (
@@ -34,6 +35,7 @@ def _family(p: Params, period: int) -> SymmetricFamily:
     return family_of(p.mu, p.Omega, p.r, p.lam, period)
 
 
+@stated(ParameterError, p=Parameters(any_system=False), period=Whole(most=1001))
 def symmetric_orbits(p: Params, period: int = 1) -> list[Orbit]:
     """Return the symmetric 1:1/pT orbits, admissible or not, the one of highest impact speed first.
 
@@ -69,6 +71,7 @@ def symmetric_orbits(p: Params, period: int = 1) -> list[Orbit]:
     return [assemble(word, p, *impact_states(family, V, p.A, p.Omega)) for V in speeds(family, p.A)]
 
 
+@stated(ParameterError, p=Parameters(any_system=False), period=Whole(most=1001))
 def symmetric_fold(p: Params, period: int = 1) -> Params | None:
     """Return the parameters with A at the fold of the symmetric 1:1/pT orbits, or None where they have no fold.
 

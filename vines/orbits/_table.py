@@ -8,6 +8,8 @@ import math
 import numpy as np
 import numpy.typing as npt
 
+from vines.bounds import shown
+from vines.domains import Whole, stated
 from vines.dynamics.kernels import (
     after_impact_kernel,
     constants_kernel,
@@ -43,6 +45,7 @@ _ROW = np.dtype(
 )
 
 
+@stated(ParameterError, period=Whole(most=1001))
 def symmetric_table(
     mu: npt.ArrayLike,
     A: npt.ArrayLike,
@@ -87,7 +90,8 @@ def symmetric_table(
     """
     if isinstance(period, bool) or not isinstance(period, int) or period < 1 or period % 2 == 0:
         raise ParameterError(f"period is {period!r}, allowed is 1, 3, 5, …: a symmetric orbit has an odd period")
-    columns = np.broadcast_arrays(*(np.asarray(value, dtype=np.float64) for value in (mu, A, Omega, r, lam)))
+    given = {"mu": mu, "A": A, "Omega": Omega, "r": r, "lam": lam}
+    columns = np.broadcast_arrays(*(_numbers(name, value) for name, value in given.items()))
     shape = columns[0].shape
     points = np.stack([column.ravel() for column in columns], axis=-1)
     # The extremes of every column stand for the rest: the allowed ranges are intervals, resonance apart.
@@ -98,6 +102,16 @@ def symmetric_table(
     out = np.zeros((len(points), 2), dtype=_ROW)
     _table_kernel(points, period, out)
     return out.reshape(*shape, 2)
+
+
+def _numbers(name: str, value: npt.ArrayLike) -> npt.NDArray[np.float64]:
+    """Return a number or an array of numbers as an array, or raise `ParameterError`."""
+    try:
+        if not isinstance(value, str | bytes | bool):
+            return np.asarray(value, dtype=np.float64)
+    except (TypeError, ValueError, OverflowError):
+        pass
+    raise ParameterError(f"{name} is {shown(value)}; give a number or an array of numbers")
 
 
 @entry_njit

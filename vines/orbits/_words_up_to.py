@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 
+from vines.domains import Whole, stated
 from vines.errors import ParameterError
 from vines.model import VI_NES, Word
 
@@ -12,6 +13,7 @@ __all__ = ["words_up_to"]
 _LONGEST = 12
 
 
+@stated(ParameterError, length=Whole(least=2, most=_LONGEST), period=Whole(most=100))
 def words_up_to(length: int, period: int = 1) -> list[Word]:
     """Return the words that orbits can have, of two mirror images one.
 

@@ -7,7 +7,7 @@ energy totals.
 from vines.dynamics import _advance as rows
 from vines.dynamics import _totals as totals
 from vines.dynamics._advance import advance, begin, pass_over, set_state, shift_time, state_now
-from vines.dynamics._batches import BATCHES, close_batch, standard_errors
+from vines.dynamics._batches import spread_of_mean
 from vines.dynamics._constants import (
     Constants,
     ParameterTable,
@@ -42,7 +42,6 @@ from vines.dynamics._totals import ball_mass, segment_state, window_totals
 from vines.dynamics._window import open_window, run_window, width_of, with_room
 
 __all__ = [
-    "BATCHES",
     "Constants",
     "ParameterTable",
     "advance",
@@ -50,7 +49,6 @@ __all__ = [
     "after_impact_kernel",
     "ball_mass",
     "begin",
-    "close_batch",
     "constants",
     "constants_at",
     "constants_kernel",
@@ -83,7 +81,7 @@ __all__ = [
     "set_state",
     "shift_time",
     "speed_terms",
-    "standard_errors",
+    "spread_of_mean",
     "state_now",
     "table_of",
     "tangent_product",

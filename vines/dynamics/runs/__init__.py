@@ -11,12 +11,14 @@ from vines.dynamics._ensemble import (
 from vines.dynamics._measures import measures_from
 from vines.dynamics._room import start_of
 from vines.dynamics._simulate import EVENTS_PER_PERIOD, STATUS
+from vines.dynamics._start import LARGEST
 from vines.dynamics._trajectory import IMPACT, impacts_of
 from vines.dynamics._warm_up import timed
 
 __all__ = [
     "EVENTS_PER_PERIOD",
     "IMPACT",
+    "LARGEST",
     "STATUS",
     "STATUS_NAMES",
     "each_thread",

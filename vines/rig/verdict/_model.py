@@ -139,7 +139,7 @@ def predict(
     periodic = float("nan")
     if holding > 0:
         start = {name: np.full(1, value) for name, value in candidate.start.items()}
-        periodic = float(np.mean(classify_many(table, start, threads=1).regime == "periodic"))
+        periodic = float(np.mean(classify_many(table, start, errors=False, threads=1).regime == "periodic"))
     with_it = [one for one in shown if one.phases is not None and one.fraction > _SHOWS]
     phases = _phases(shown) if with_it else ()
     largest, ratio = (_spread(np.array([getattr(one, name) for one in shown])) for name in ("largest", "ratio"))

@@ -97,7 +97,8 @@ def compare_within_errors(
 ) -> None:
     """Compare rows of points that are not periodic: regime, the columns `names`, and the measures within their errors.
 
-    Both rows are samples of the motion, so four standard errors are those of their difference.
+    Both rows are samples of the motion, so four standard errors are those of their difference; where one of them tells no
+    error nothing can be said of the measure.
     """
     for name in names:
         comparison.number(name, stored[name], again[name], TOLERANCE * (1 + abs(stored[name] or 0.0)))
@@ -107,8 +108,10 @@ def compare_within_errors(
         if f"{name}_error" not in stored:
             continue  # what is shaken has no displacement of its own
         errors = [math.nan if row[f"{name}_error"] is None else row[f"{name}_error"] for row in (stored, again)]
-        allowed = _ERRORS * math.hypot(*errors) if all(map(math.isfinite, errors)) else 0.0
-        comparison.number(name, stored[name], again[name], max(allowed, TOLERANCE * (1 + abs(stored[name] or 0.0))))
+        if not all(map(math.isfinite, errors)):
+            continue
+        allowed = max(_ERRORS * math.hypot(*errors), TOLERANCE * (1 + abs(stored[name] or 0.0)))
+        comparison.number(name, stored[name], again[name], allowed)
 
 
 def params_of(row: Mapping[str, Any]) -> Params:

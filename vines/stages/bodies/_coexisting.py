@@ -23,6 +23,7 @@ def coexisting(
     settle: float,
     record: float,
     watch: float,
+    largest_p: int | None = None,
     impacts: bool = False,
 ) -> list[list[tuple[Attractor, int]]]:
     """Return for each point its attractors, no two alike, and how many of the random starts came to each.
@@ -38,6 +39,8 @@ def coexisting(
         Seed; the starts of a point follow from it and the parameters alone.
     settle, record, watch : float
         Forcing periods, as for the points themselves.
+    largest_p : int, optional
+        As for these.
     impacts : bool
         Whether the attractors of random starts keep their impacts.
     """
@@ -52,6 +55,7 @@ def coexisting(
         settle=settle,
         record=record,
         watch=watch,
+        largest_p=largest_p,
         impacts=impacts,
     )
     ratio, size = many.measures["kinetic_ratio"].tolist(), many.measures["max_abs_x1"].tolist()

@@ -25,7 +25,14 @@ def compute(job: Job[FamilySweepOptions]) -> Batch:
     for point in job.points:
         p = parameters_of(options.system, point.params)
         start = start_of(p, options.start, before if job.carry is not None else None)
-        found = settle_from(p, start, settle=options.settle, record=options.record, watch=options.watch)
+        found = settle_from(
+            p,
+            start,
+            settle=options.settle,
+            record=options.record,
+            watch=options.watch,
+            largest_p=options.largest_p or None,
+        )
         row = family_point(point.id, found, start, job.carry, options.harvest)
         rows.append(row)
         before = row

@@ -72,6 +72,8 @@ def measured_row(
         "record_periods": attractor.recorded,
         "settled": attractor.settled,
         "remaining": attractor.remaining,
+        "watched": attractor.watched,
+        "escape_rate": attractor.escape_rate if attractor.regime == "chaotic" else None,
         "kinetic_ratio_error": attractor.kinetic_ratio_error,
         "kinetic_1": m.kinetic_1,
         "kinetic_2": m.kinetic_2,

@@ -31,6 +31,7 @@ def compute(job: Job[SweepOptions]) -> Batch:
         settle=options.settle,
         record=options.record,
         watch=options.watch,
+        largest_p=options.largest_p or None,
         impacts=options.keep > 0,
     )
     rows: list[dict[str, Any]] = []
@@ -68,6 +69,7 @@ def _along_the_chain(job: Job[SweepOptions]) -> tuple[list[dict[str, float]], li
             settle=options.settle,
             record=options.record,
             watch=options.watch,
+            largest_p=options.largest_p or None,
         )
         starts.append(start)
         own.append(attractor)
@@ -85,6 +87,7 @@ def _each_for_itself(job: Job[SweepOptions]) -> tuple[list[dict[str, float]], li
         settle=options.settle,
         record=options.record,
         watch=options.watch,
+        largest_p=options.largest_p or None,
         impacts=options.keep > 0,
     )
     return starts, [many.attractor(k) for k in range(len(many))]

@@ -14,7 +14,7 @@ from vines.errors import ParameterError
 from vines.model import VI_NES, System, read_system, word_for
 from vines.pipeline import Kind
 from vines.schema import OF_EACH_SYSTEM, system_table
-from vines.stages.kinds._simulation import Bare, InLog, Keep, PerPeriod, Record, Settle, Watch, check_length
+from vines.stages.kinds._simulation import Bare, InLog, Keep, LargestP, PerPeriod, Record, Settle, Watch, check_length
 from vines.systems import Harvest, parameters
 
 __all__ = [
@@ -48,6 +48,7 @@ class FamilySweepOptions(msgspec.Struct, frozen=True, forbid_unknown_fields=True
     settle: Settle = 400
     record: Record = 64
     watch: Watch = 512
+    largest_p: LargestP = msgspec.UNSET
     keep: Keep = 64
     harvest: Annotated[HarvestLaw | None, Meta(description="What impacts yield, for the harvested power")] = None
 

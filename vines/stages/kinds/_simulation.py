@@ -16,6 +16,7 @@ __all__ = [
     "Bare",
     "InLog",
     "Keep",
+    "LargestP",
     "PerPeriod",
     "Record",
     "Settle",
@@ -30,6 +31,19 @@ Record = Annotated[int, Meta(ge=2, description="Forcing periods that are classif
 Watch = Annotated[
     int, Meta(ge=16, description="Where nothing repeats: forcing periods more before a Lyapunov exponent is believed")
 ]
+# Unset is absent from the key, so that studies from before there was this option keep theirs.
+LargestP = (
+    Annotated[
+        int,
+        Meta(
+            ge=1,
+            le=4096,
+            description="Largest number of forcing periods over which a repetition is looked for, as if 32 if left out; "
+            "at least twice as many are recorded",
+        ),
+    ]
+    | msgspec.UnsetType
+)
 Keep = Annotated[
     int,
     Meta(
