@@ -58,5 +58,21 @@ def test_what_does_not_decay_is_refused_in_one_line():
         decay(simulate(Params(mu=0.02, A=0.0), v2=0.0, periods=2))
     with pytest.raises(StateError, match="has no oscillator of its own"):
         decay(simulate(ImpactPair(B=0.5), periods=2))
-    with pytest.raises(StateError, match="give G = 0"):
-        decay(simulate(Parallel(mu=(0.02,), A=0.0, G=0.1), v1=1.0, periods=2))
+
+
+@pytest.mark.parametrize("G", [0.02, -0.02])
+def test_a_tilted_system_decays_to_balls_on_their_lower_ends(G):
+    mu, beta, V = (0.012, 0.008), (1.0, 1.4), 1.5
+    run = simulate(Parallel(mu=mu, beta=beta, A=0.0, G=G), v1=V, v2=[0.0, 0.0], periods=300)
+    found = decay(run)
+    # above rest: the balls in the middle by mu |G| beta, the oscillator by its way down under their weight
+    exact = 0.5 * V**2 + 0.5 * (G * sum(mu)) ** 2 + abs(G) * sum(m * b for m, b in zip(mu, beta, strict=True))
+    assert math.isclose(found.energy, exact, rel_tol=1e-12)
+    shares = (found.impact_share, found.damper_share, found.frame_share, found.ball_share)
+    assert math.isclose(sum(shares), 1.0, rel_tol=1e-12)
+    assert min(shares) >= -1e-15
+    assert found.frame_share + found.ball_share < 1e-9
+    assert found.times[0] < found.times[1]
+    side = math.copysign(1.0, G)
+    for number, length in enumerate(beta, start=1):
+        assert math.isclose(run.final["x1"] - run.final[f"x2_{number}"], side * length, abs_tol=1e-12)

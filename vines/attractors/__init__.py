@@ -5,11 +5,12 @@ from vines.attractors._attractor import Attractor
 from vines.attractors._basins import Basins, basins
 from vines.attractors._classify import Classified, classify_many
 from vines.attractors._search import Lifetime
-from vines.attractors._settle import settle, settle_from
+from vines.attractors._settle import APART, settle, settle_from
 from vines.attractors._shares import share_error
 from vines.attractors._warm_up import warm_up
 
 __all__ = [
+    "APART",
     "SAME",
     "Attractor",
     "Basins",

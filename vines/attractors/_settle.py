@@ -106,8 +106,8 @@ def settle(
     max_impacts_per_period : int
         Cap on events in one forcing period; when it is passed the regime is ``unsettled``, status ``impact_cap``.
     apart : float
-        By how much more than the one before it each of several equal balls starts in velocity: those that hit together
-        would do so for ever, which no run does that begins beside it. 0 to leave them.
+        By how much more than the one before it each of several balls of one length and restitution starts in velocity:
+        those that hit together would do so for ever, which no run does that begins beside it. 0 to leave them.
     **start : float
         Start state by the names of the system, as for `vines.dynamics.simulate`.
 
@@ -133,7 +133,7 @@ def settle(
     ('periodic', '2:1', 'LLR', False)
     """
     x1, v1, x2, v2, phase = start_of(p, start, t, phi)
-    for group in getattr(p, "alike", ()):
+    for group in getattr(p, "together", ()):
         v2[np.array(group) - 1] += apart * np.arange(len(group))
     begin = (x1, v1, x2, v2, phase)
     return _settled(p, begin, t, Patience(settle, record, patience, watch, tolerance, max_impacts_per_period), lyapunov)

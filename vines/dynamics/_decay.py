@@ -19,7 +19,8 @@ class Decay:
     Attributes
     ----------
     energy : float
-        Energy at the start, in units of M b² omega0².
+        Energy at the start, in units of M b² omega0², above that of rest: with tilt the balls rest on the lower ends, and
+        the oscillator below its place without them.
     impact_share, damper_share, frame_share, ball_share : float
         Shares of it that were lost in impacts and in the damper, and that oscillator and ball have at the end; their
         sum is 1 to rounding.
@@ -55,7 +56,7 @@ def decay(run: Trajectory, shares: Sequence[float] = (0.1, 0.01)) -> Decay:
     Raises
     ------
     StateError
-        If the run is driven or tilted, or has no energy at its start.
+        If the run is driven, or has no energy at its start.
 
     Examples
     --------
@@ -69,12 +70,8 @@ def decay(run: Trajectory, shares: Sequence[float] = (0.1, 0.01)) -> Decay:
         raise StateError(f"the system {run.params.system.name} has no oscillator of its own whose energy decays")
     if run.params.A != 0:
         raise StateError(f"A is {run.params.A:g}; energy decays where nothing drives: give A = 0")
-    if not run.params.mirrored:
-        raise StateError("energy of a tilted system has no zero; give G = 0")
-    whole, end = run.measures(), run.final
-    masses = {name: value for name, value in run.params.as_dict().items() if name.partition("_")[0] == "mu"}
-    ball = sum(0.5 * mass * end[name.replace("mu", "v2")] ** 2 for name, mass in masses.items())
-    frame = 0.5 * (end["v1"] ** 2 + end["x1"] ** 2)
+    whole = run.measures()
+    frame, ball = _above_rest(run.params.as_dict(), run.final)
     start = frame + ball - whole.energy_change
     if not start > 0:
         raise StateError("nothing moves at the start; give a velocity that is not 0")
@@ -90,6 +87,23 @@ def decay(run: Trajectory, shares: Sequence[float] = (0.1, 0.01)) -> Decay:
         first_impact=float(hits[0]) if len(hits) else math.nan,
         last_impact=float(hits[-1]) if len(hits) else math.nan,
     )
+
+
+def _above_rest(values: dict[str, float], state: dict[str, float]) -> tuple[float, float]:
+    """Return the energies of the oscillator and of the balls above those at rest.
+
+    With x2'' = -G a ball has the potential mu G x2. Less its least value, which is reached at x1 = -G sum(mu) with every
+    ball on its lower end, the sum of all potentials is (x1 + G sum(mu))²/2 and mu |G| for each ball times its way down
+    to that end: squares and heights, so that nothing large cancels when little is left.
+    """
+    pull = values.get("G", 0.0)
+    masses = {name.partition("mu")[2]: mass for name, mass in values.items() if name.partition("_")[0] == "mu"}
+    frame = 0.5 * (state["v1"] ** 2 + (state["x1"] + pull * sum(masses.values())) ** 2)
+    balls = 0.0
+    for ball, mass in masses.items():
+        way = values.get(f"beta{ball}", 1.0) + math.copysign(1.0, pull) * (state[f"x2{ball}"] - state["x1"])
+        balls += mass * (0.5 * state[f"v2{ball}"] ** 2 + abs(pull) * way)
+    return frame, balls
 
 
 def _reaches(run: Trajectory, left: float, level: float) -> float:

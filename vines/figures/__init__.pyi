@@ -5,6 +5,10 @@ from ._chart import CurveLine as CurveLine
 from ._chart import Region as Region
 from ._chart import SpecialMark as SpecialMark
 from ._chart import chart_figure as chart_figure
+from ._designs import BandCurve as BandCurve
+from ._designs import BandPanel as BandPanel
+from ._designs import DesignMap as DesignMap
+from ._designs import FactorPanel as FactorPanel
 from ._diagram import BranchLine as BranchLine
 from ._diagram import ImpactDots as ImpactDots
 from ._diagram import Marker as Marker
@@ -12,6 +16,8 @@ from ._diagram_panel import DiagramPanel as DiagramPanel
 from ._energy import FOUND as FOUND
 from ._energy import EnergyCurve as EnergyCurve
 from ._energy import EnergyPanel as EnergyPanel
+from ._measures import MeasureCurve as MeasureCurve
+from ._measures import MeasurePanel as MeasurePanel
 from ._multipliers import MultiplierLines as MultiplierLines
 from ._multipliers import MultiplierPanel as MultiplierPanel
 from ._multipliers import multiplier_figure as multiplier_figure
@@ -19,6 +25,7 @@ from ._names import ERRORS as ERRORS
 from ._names import MEASURES as MEASURES
 from ._names import NAMES as NAMES
 from ._names import PANELS as PANELS
+from ._names import QUANTITIES as QUANTITIES
 from ._names import RIG_PANELS as RIG_PANELS
 from ._names import RUN_PANELS as RUN_PANELS
 from ._names import SYMBOLS as SYMBOLS

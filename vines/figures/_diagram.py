@@ -31,6 +31,8 @@ class ImpactDots:
         For the legend.
     repeats : (n,) array, optional
         How often each dot came back while a point was observed; once if not given.
+    ball : (n,) array of int, optional
+        Number of the ball that hits, from 1, where balls have numbers: it gives the colour, the side the shape.
     """
 
     x: Floats
@@ -38,6 +40,7 @@ class ImpactDots:
     values: dict[str, Floats]
     label: str = "simulation"
     repeats: Floats | None = None
+    ball: npt.NDArray[np.integer[Any]] | None = None
 
 
 @dataclass(frozen=True)
@@ -60,6 +63,8 @@ class BranchLine:
         One of :data:`FAMILIES`, for the colours.
     image : bool
         Whether it is the mirror image of another line, whose flight times it shares.
+    ball : int
+        Number of the ball, which then gives the colour; 0 where balls have no numbers.
     """
 
     x: Floats
@@ -69,6 +74,7 @@ class BranchLine:
     label: str
     family: str = "symmetric"
     image: bool = False
+    ball: int = 0
 
 
 @dataclass(frozen=True)
@@ -90,7 +96,7 @@ def within(
         columns = {name: getattr(group, name)[keep] for name in ("x", *names) if getattr(group, name) is not None}
         return replace(group, **columns, values={q: v[keep] for q, v in group.values.items()})
 
-    shown = [cut(one, (low <= one.x) & (one.x <= high), "side", "repeats") for one in dots]
+    shown = [cut(one, (low <= one.x) & (one.x <= high), "side", "repeats", "ball") for one in dots]
     parts = [
         # One point more at either end, so that a line reaches the border.
         cut(line, np.arange(max(start - 1, 0), min(stop + 1, len(line.x))), "stable")

@@ -13,7 +13,7 @@ from vines.figures._diagram import BranchLine, ImpactDots, Marker, runs, within
 from vines.figures._legend import legend_entries
 from vines.figures._marks import DOTTED, mark_style
 from vines.figures._names import MEASURES, NAMES, PANELS, SYMBOLS
-from vines.figures._style import COLOURS, FAMILIES
+from vines.figures._style import BALLS, COLOURS, FAMILIES
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -109,6 +109,9 @@ class DiagramPanel:
         total = sum(len(group.x) for group in dots)
         for group in dots:
             many = total > _MANY
+            if group.ball is not None:
+                self._balls(ax, group, many=many)
+                continue
             for side, name in ((1, "L"), (-1, "R")):
                 mine = group.side == side
                 x, values = group.x[mine], group.values[self.quantity][mine]
@@ -132,6 +135,25 @@ class DiagramPanel:
                         zorder=1,
                     )
 
+    def _balls(self, ax: Axes, group: ImpactDots, *, many: bool) -> None:
+        """Draw the impacts of balls with numbers: a colour a ball, a triangle that points to the end that is hit."""
+        balls: Any = group.ball
+        for ball in np.unique(balls):
+            for side, marker in ((1, "<"), (-1, ">")):
+                mine = (balls == ball) & (group.side == side)
+                ax.plot(
+                    group.x[mine],
+                    group.values[self.quantity][mine],
+                    linestyle="none",
+                    marker=marker,
+                    markersize=1.8 if many else 2.6,
+                    markeredgewidth=0,
+                    alpha=0.6,
+                    color=BALLS[(int(ball) - 1) % len(BALLS)],
+                    rasterized=many,
+                    zorder=1,
+                )
+
     def _lines(self, ax: Axes, lines: Sequence[BranchLine]) -> None:
         for line in lines:
             if line.image and self.quantity == "dt":
@@ -143,6 +165,8 @@ class DiagramPanel:
             left, right = FAMILIES[line.family]
             plain = twin or (line.side == 0 and line.family == "symmetric")
             colour = COLOURS["ink"] if plain else right if line.side < 0 else left
+            if line.ball:
+                colour = BALLS[(line.ball - 1) % len(BALLS)]
             for start, stop, stable in runs(line.stable):
                 # One point is shared with the next run, so that the line has no gap where stability changes.
                 part = slice(start, min(stop + 1, len(line.x)))

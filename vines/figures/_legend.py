@@ -5,15 +5,17 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from vines.figures._marks import DOTTED, MARKS, mark_style
-from vines.figures._style import COLOURS, FAMILIES
+from vines.figures._style import BALLS, COLOURS, FAMILIES
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from vines.figures._diagram import BranchLine, ImpactDots, Marker
 
-__all__ = ["Entry", "add_legend", "legend_entries", "mark_entries"]
+__all__ = ["Entry", "add_legend", "ball_entries", "legend_entries", "mark_entries"]
 
 Entry = tuple[str, tuple[Any, ...]]
 """A label, and the lines that are drawn side by side before it."""
@@ -47,12 +49,16 @@ def legend_entries(
     from matplotlib.lines import Line2D
 
     entries: list[Entry] = []
-    for label in dict.fromkeys(group.label for group in dots):
+    numbered = sorted({int(ball) for group in dots if group.ball is not None for ball in np.unique(group.ball)})
+    entries += ball_entries(numbered or sorted({line.ball for line in lines if line.ball}), dots=bool(numbered))
+    for label in dict.fromkeys(group.label for group in dots if group.ball is None):
         point = {"linestyle": "none", "marker": ".", "markersize": 6, "markeredgewidth": 0}
         entries.append(
             (label, tuple(Line2D([], [], color=COLOURS[side if full else f"{side} light"], **point) for side in "LR"))
         )
-    for label, family in dict.fromkeys((line.label, line.family) for line in lines):
+    for label in dict.fromkeys(line.label for line in lines if line.ball):
+        entries.append((label, (Line2D([], [], color=COLOURS["ink"], linewidth=1.6),)))
+    for label, family in dict.fromkeys((line.label, line.family) for line in lines if not line.ball):
         entries.append((label, tuple(Line2D([], [], color=colour, linewidth=1.6) for colour in FAMILIES[family])))
     styles: tuple[tuple[str, Any, bool], ...] = (
         ("stable", "-", any(line.stable.any() for line in lines)),
@@ -62,6 +68,22 @@ def legend_entries(
         if there:
             entries.append((word, (Line2D([], [], color=COLOURS["ink"], linewidth=1.4, linestyle=style),)))
     return entries + mark_entries([(marker.type, marker.x) for marker in markers], names or {}, places=places)
+
+
+def ball_entries(balls: Sequence[int], *, dots: bool = True) -> list[Entry]:
+    """Return an entry for each ball with a number, and what the shapes of its impacts mean."""
+    from matplotlib.lines import Line2D
+
+    if not balls:
+        return []
+    swatch: Any = {"linestyle": "none", "marker": "s", "markersize": 5}
+    entries: list[Entry] = [
+        (f"ball {ball}", (Line2D([], [], color=BALLS[(ball - 1) % len(BALLS)], **swatch),)) for ball in balls
+    ]
+    ends = (("<", "simulated impact on L"), (">", "on R"))
+    for marker, text in ends if dots else ():
+        entries.append((text, (Line2D([], [], linestyle="none", marker=marker, markersize=4.5, color=COLOURS["ink"]),)))
+    return entries
 
 
 def mark_entries(marks: Sequence[tuple[str, float]], names: Mapping[str, str], *, places: bool = True) -> list[Entry]:

@@ -55,7 +55,7 @@ class MultiplierLines:
 
 @dataclass(frozen=True)
 class MultiplierPanel:
-    """The four moduli along a branch over the varied parameter, with the line 1 and the bifurcations on it.
+    """The moduli along a branch over the varied parameter, with the line 1 and the bifurcations on it.
 
     `names` is what is written beside the bifurcations of a type.
     """
@@ -71,7 +71,9 @@ class MultiplierPanel:
         """Draw it."""
         branch, inside = self.branch, self._inside()
         left, right = FAMILIES[branch.family]
-        for k, colour in enumerate((left, left, right, right)):
+        pairs = (left, right, COLOURS["ink"], COLOURS["mark"])
+        for k in range(branch.moduli.shape[1]):
+            colour = pairs[k // 2 % len(pairs)]
             values = np.where(inside, branch.moduli[:, k], np.nan)
             ax.plot(branch.x, values, color=colour, linewidth=1.3, linestyle="-" if k % 2 == 0 else (0, (4, 2)))
         ax.axhline(1.0, color=COLOURS["R"], linewidth=0.8)

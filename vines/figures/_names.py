@@ -2,7 +2,7 @@
 
 from vines.model import VI_NES, most_balls, read_system, system_names
 
-__all__ = ["ERRORS", "MEASURES", "NAMES", "PANELS", "RIG_PANELS", "RUN_PANELS", "SYMBOLS"]
+__all__ = ["ERRORS", "MEASURES", "NAMES", "PANELS", "QUANTITIES", "RIG_PANELS", "RUN_PANELS", "SYMBOLS"]
 
 PANELS = {
     "w_dot": r"relative impact velocity  $\dot w$",
@@ -17,6 +17,24 @@ MEASURES = {
 }
 """Quantities of a whole orbit or run."""
 
+QUANTITIES = {
+    **MEASURES,
+    "reduction": r"reduction of $\max|x_1|$",
+    "rms_x1": r"root mean square of $x_1$",
+    "impact_power": "power lost in impacts",
+    "impacts_per_period": "impacts in a forcing period",
+    "lyapunov": "largest Lyapunov exponent",
+    "impact_share": "share lost in impacts",
+    "damper_share": "share lost in the damper",
+    "left_share": "share left at the end",
+    "t_tenth": r"time until 10 % is left  $\omega_0 t$",
+    "t_hundredth": r"time until 1 % is left  $\omega_0 t$",
+    "impacts": "impacts",
+    "t_first": r"time of the first impact  $\omega_0 t$",
+    "t_last": r"time of the last impact  $\omega_0 t$",
+}
+"""What columns of points and transients are called beside an axis; others by their own names."""
+
 RIG_PANELS = ("max_abs_x1", "kinetic_ratio", "w_dot", "phase")
 """Quantities in which rig points are shown beside branches."""
 
@@ -27,8 +45,8 @@ _PARAMETERS = [
     *(each for name in system_names() for each in read_system(name, most_balls(name)).parameters),
     *VI_NES.parameters,  # a name that several systems have is called as there
 ]
-SYMBOLS = {each.name: each.symbol for each in _PARAMETERS}
-NAMES = {each.name: each.label for each in _PARAMETERS}
+SYMBOLS = {each.name: each.symbol for each in _PARAMETERS} | {"V": "V"}
+NAMES = {each.name: each.label for each in _PARAMETERS} | {"V": "velocity at the start"}
 
 ERRORS = {
     "max_abs_x1": r"error of $\max|x_1|$",

@@ -60,9 +60,11 @@ class RegimeMap:
     name : (ny, nx) array of object
         n:m/pT where periodic, else None.
     ratio : (ny, nx) array
-        K2/K1.
+        K2/K1, or what `measure` names.
     caption : str
         The fixed parameters.
+    measure : str
+        "kinetic_ratio", "kinetic_ratios" of several balls together, or "impact_power".
     """
 
     axes: tuple[str, str]
@@ -73,6 +75,15 @@ class RegimeMap:
     name: npt.NDArray[np.object_]
     ratio: npt.NDArray[np.float64]
     caption: str
+    measure: str = "kinetic_ratio"
+
+
+_MEASURES = {
+    "kinetic_ratio": ("kinetic energy of ball and mass", r"$K_2/K_1$"),
+    "kinetic_ratios": ("kinetic energy of balls and mass", r"$\sum K_2/K_1$"),
+    "impact_power": ("power lost in impacts", "power"),
+}
+"""What stands above the second map, and beside its bar."""
 
 
 def regimes_figure(data: RegimeMap, *, title: str = "", width: float = 7.0) -> Figure:
@@ -96,6 +107,7 @@ def regimes_figure(data: RegimeMap, *, title: str = "", width: float = 7.0) -> F
     shown = np.where(data.sticks[..., None], SHADE * shown, shown)
     with mpl.rc_context(RC):
         figure = new_figure(width, 0.56 * width)
+        above, beside = _MEASURES[data.measure]
         left, right = figure.subplots(1, 2, sharey=True)
         left.pcolormesh(data.x, data.y, shown, shading="nearest", rasterized=True)
         finite = data.ratio[np.isfinite(data.ratio) & (data.ratio > 0)]
@@ -110,8 +122,8 @@ def regimes_figure(data: RegimeMap, *, title: str = "", width: float = 7.0) -> F
             rasterized=True,
         )
         right.set_facecolor("#ffffff")
-        figure.colorbar(drawn, ax=right, label=r"$K_2/K_1$", extend="min", pad=0.015)
-        for ax, letter, what in ((left, "a", "what is reached"), (right, "b", r"kinetic energy of ball and mass")):
+        figure.colorbar(drawn, ax=right, label=beside, extend="min", pad=0.015)
+        for ax, letter, what in ((left, "a", "what is reached"), (right, "b", above)):
             ax.set_title(f"({letter})  {what}", fontsize=8.5, loc="left")
             _scale(ax, data)
         left.set_ylabel(_label(data.axes[1]))

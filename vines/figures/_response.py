@@ -12,9 +12,9 @@ import numpy as np
 import numpy.typing as npt
 
 from vines.figures._energy import LOCKED, NO_BALL, EnergyPanel, cross, diamond, draw_energy, draw_reduction, frame
-from vines.figures._legend import add_legend
+from vines.figures._legend import add_legend, ball_entries
 from vines.figures._names import NAMES, SYMBOLS
-from vines.figures._style import COLOURS, RC, new_figure
+from vines.figures._style import BALLS, COLOURS, RC, new_figure
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -44,6 +44,8 @@ class VelocityPanel:
         The fixed parameters.
     window : (float, float), optional
         The part of the varied parameter that is shown.
+    ball : (n,) array of int, optional
+        Number of the ball that hits, where balls have numbers: it gives the colour, the side the shape.
     """
 
     axis: str
@@ -53,6 +55,7 @@ class VelocityPanel:
     found: npt.NDArray[np.integer[Any]]
     caption: str = ""
     window: tuple[float, float] | None = None
+    ball: npt.NDArray[np.integer[Any]] | None = None
 
 
 def response_figure(
@@ -116,7 +119,12 @@ def _draw(axes: Sequence[Axes], panel: EnergyPanel | VelocityPanel, *, first: bo
 
 
 def _draw_velocities(ax: Axes, panel: VelocityPanel) -> None:
-    for light in (True, False):
+    for ball in () if panel.ball is None else np.unique(panel.ball):
+        for side, marker in ((1, "<"), (-1, ">")):
+            mine = (panel.side == side) & (panel.ball == ball)
+            look = {**_DOT, "marker": marker, "color": BALLS[(int(ball) - 1) % len(BALLS)]}
+            ax.plot(panel.x[mine], panel.w_dot[mine], rasterized=True, zorder=1, **look)
+    for light in (True, False) if panel.ball is None else ():
         for side, name in ((1, "L"), (-1, "R")):
             mine = (panel.side == side) & ((panel.found > 0) == light)
             ax.plot(
@@ -150,6 +158,9 @@ def _legend(panels: Sequence[EnergyPanel | VelocityPanel]) -> list[tuple[str, tu
         ]
         what = (r"$K_2/K_1$ and $\max|x_1|$: " if ratio else r"$\max|x_1|$: ") if k == 0 else ""
         entries.append((what + words[k], tuple(marks)))
+    numbered = sorted({int(k) for panel in velocity if panel.ball is not None for k in np.unique(panel.ball)})
+    entries += ball_entries(numbered)
+    velocity = [panel for panel in velocity if panel.ball is None]
     if velocity:
         dots = [Line2D([], [], color=COLOURS[side], **{**_DOT, "markersize": 6, "alpha": 1}) for side in "LR"]
         entries.append((r"$\dot w$ on L, R", tuple(dots)))

@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from vines.figures._marks import DOTTED
-from vines.figures._style import COLOURS, FAMILIES
+from vines.figures._style import BALLS, COLOURS, FAMILIES
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -46,6 +46,10 @@ class RunCurves:
         Place of the ball, and relative velocity just before.
     label : str
         What tells the run from others, such as ``"$A = 0.017$"``.
+    length : float
+        Half the length of the cavity.
+    ball : int
+        Number of the ball, which then gives the colour; 0 where balls have no numbers.
     """
 
     t: Floats
@@ -58,31 +62,47 @@ class RunCurves:
     hit_x2: Floats
     hit_w_dot: Floats
     label: str = ""
+    length: float = 1.0
+    ball: int = 0
+
+    @property
+    def colour(self) -> str:
+        """Colour of a ball with a number."""
+        return BALLS[(self.ball - 1) % len(BALLS)]
 
 
 @dataclass(frozen=True)
 class EndsPanel:
-    """The two ends of the cavity, x1 - 1 and x1 + 1, and the ball between them, over `periods` forcing periods."""
+    """The two ends of the cavity, x1 - 1 and x1 + 1, and the ball between them, over `periods` forcing periods.
+
+    `balls` are the further balls of the run, each in a cavity and a colour of its own.
+    """
 
     run: RunCurves
     periods: float
     title: str = ""
     y: tuple[float, float] | None = None
+    balls: Sequence[RunCurves] = ()
 
     def draw(self, ax: Axes) -> None:
         """Draw it."""
-        run = self.run
-        for shift in (-1, 1):
-            ax.plot(run.t, run.x1 + shift, color=COLOURS["R"], linestyle=DOTTED, linewidth=1.2)
-        ax.plot(run.t, run.x2, color=COLOURS["L"], linewidth=1.1)
-        ax.plot(run.hit_t, run.hit_x2, **_HIT)
-        _along_time(ax, self.periods, r"$x_1 \pm 1,\ x_2$")
+        for run in (self.run, *self.balls):
+            ends, ball = (run.colour, run.colour) if run.ball else (COLOURS["R"], COLOURS["L"])
+            for shift in (-run.length, run.length):
+                ax.plot(run.t, run.x1 + shift, color=ends, linestyle=DOTTED, linewidth=1.2)
+            ax.plot(run.t, run.x2, color=ball, linewidth=1.1)
+            ax.plot(run.hit_t, run.hit_x2, **_HIT)
+        _along_time(ax, self.periods, r"$x_1 \pm \beta_i,\ x_{2,i}$" if self.run.ball else r"$x_1 \pm 1,\ x_2$")
         _frame(ax, self.title, self.y)
 
     def entries(self) -> list[Entry]:
         """Return what the legend says of it."""
         from matplotlib.lines import Line2D
 
+        if self.run.ball:
+            ink = {"color": COLOURS["ink"], "linestyle": DOTTED, "linewidth": 1.4}
+            hit: Entry = ("impact", (Line2D([], [], **_HIT),))
+            return [*_ball_entries((self.run, *self.balls)), ("ends of its cavity", (Line2D([], [], **ink),)), hit]
         return [
             (r"cavity ends $x_1 \pm 1$", (Line2D([], [], color=COLOURS["R"], linestyle=DOTTED, linewidth=1.4),)),
             ("ball $x_2$", (Line2D([], [], color=COLOURS["L"], linewidth=1.3),)),
@@ -92,19 +112,22 @@ class EndsPanel:
 
 @dataclass(frozen=True)
 class GapPanel:
-    """Gap w and relative velocity over `periods` forcing periods."""
+    """Gap w and relative velocity over `periods` forcing periods; of several balls the velocities are dashed."""
 
     run: RunCurves
     periods: float
     title: str = ""
     y: tuple[float, float] | None = None
+    balls: Sequence[RunCurves] = ()
 
     def draw(self, ax: Axes) -> None:
         """Draw it."""
-        for wall in (-1, 1):
-            ax.axhline(wall, color=COLOURS["mark"], linewidth=0.5, alpha=0.6)
-        ax.plot(self.run.t, self.run.w, color=COLOURS["R"], linewidth=1.1)
-        ax.plot(self.run.t, self.run.w_dot, color=COLOURS["L"], linewidth=1.1)
+        for run in (self.run, *self.balls):
+            gap, speed = (run.colour, run.colour) if run.ball else (COLOURS["R"], COLOURS["L"])
+            for wall in (-run.length, run.length):
+                ax.axhline(wall, color=gap if run.ball else COLOURS["mark"], linewidth=0.5, alpha=0.6)
+            ax.plot(run.t, run.w, color=gap, linewidth=1.1)
+            ax.plot(run.t, run.w_dot, color=speed, linewidth=1.1, linestyle=_DASHED if run.ball else "-")
         _along_time(ax, self.periods, r"$w,\ \dot w$")
         _frame(ax, self.title, self.y)
 
@@ -112,6 +135,12 @@ class GapPanel:
         """Return what the legend says of it."""
         from matplotlib.lines import Line2D
 
+        if self.run.ball:
+            dashed = {"color": COLOURS["ink"], "linestyle": _DASHED}
+            return [
+                *_ball_entries((self.run, *self.balls)),
+                (r"its relative velocity $\dot w$", (Line2D([], [], **dashed),)),
+            ]
         return [
             (r"gap $w$", (Line2D([], [], color=COLOURS["R"], linewidth=1.3),)),
             (r"relative velocity $\dot w$", (Line2D([], [], color=COLOURS["L"], linewidth=1.3),)),
@@ -128,7 +157,8 @@ class PhasePlanePanel:
 
     def draw(self, ax: Axes) -> None:
         """Draw it."""
-        for wall in (-1, 1):
+        lengths = sorted({run.length for run in self.runs})
+        for wall in (side * length for length in lengths for side in (-1, 1)):
             ax.axvline(wall, color=COLOURS["mark"], linewidth=0.5, alpha=0.6)
         for run, colour in zip(self.runs, self._colours(), strict=True):
             many = len(run.hit_t) > _MANY
@@ -138,11 +168,11 @@ class PhasePlanePanel:
                 for side, name in ((1, "L"), (-1, "R")):
                     mine = run.hit_side == side
                     dot = {"marker": ".", "markersize": 2 * size, "markeredgewidth": 0, "linestyle": "none"}
-                    ax.plot(run.hit_side[mine], run.hit_w_dot[mine], color=COLOURS[name], zorder=3, **dot)
+                    ax.plot(run.length * run.hit_side[mine], run.hit_w_dot[mine], color=COLOURS[name], zorder=3, **dot)
         if len(self.runs) > 1:
             # In the panel, since others of the sheet may have the same colours for other runs.
             ax.legend(loc="best", handlelength=1.6, borderaxespad=2.4)
-        ax.set_xlim(-1.15, 1.15)
+        ax.set_xlim(-1.15 * lengths[-1], 1.15 * lengths[-1])
         ax.set_xlabel("gap  $w$")
         ax.set_ylabel(r"relative velocity  $\dot w$")
         _frame(ax, self.title, self.y)
@@ -159,7 +189,18 @@ class PhasePlanePanel:
         ]
 
     def _colours(self) -> Sequence[str]:
-        return [COLOURS["ink"]] if len(self.runs) == 1 else _LINES[: len(self.runs)]
+        if all(run.ball for run in self.runs) and len({run.ball for run in self.runs}) == len(self.runs):
+            return [run.colour for run in self.runs]
+        return [COLOURS["ink"]] if len(self.runs) == 1 else [_LINES[k % len(_LINES)] for k in range(len(self.runs))]
+
+
+_DASHED: Any = (0, (4, 1.5))
+
+
+def _ball_entries(runs: Sequence[RunCurves]) -> list[Entry]:
+    from matplotlib.lines import Line2D
+
+    return [(f"ball {run.ball}", (Line2D([], [], color=run.colour, linewidth=1.3),)) for run in runs]
 
 
 _HIT: dict[str, Any] = {

@@ -65,7 +65,8 @@ def sheet_figure(
         axes = grid.ravel()
         for panel, ax in zip(panels, axes, strict=False):
             panel.draw(ax)
-            ax.locator_params(axis="x", nbins=max(4, 11 - 2 * columns))
+            if ax.get_xscale() == "linear":
+                ax.locator_params(axis="x", nbins=max(4, 11 - 2 * columns))
         lettered = axes[: len(panels)] if letters == "panels" else grid[:, 0]
         lettered = lettered if len(lettered) > 1 else ()
         for letter, ax in zip(ascii_lowercase, lettered, strict=False):

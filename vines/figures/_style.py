@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-__all__ = ["COLOURS", "FAMILIES", "PALETTE", "RC", "new_figure", "save"]
+__all__ = ["BALLS", "COLOURS", "FAMILIES", "PALETTE", "RC", "new_figure", "save"]
 
 COLOURS = {
     "L": "#c8102e",
@@ -28,6 +28,9 @@ FAMILIES = {
     "unequal": ("#e87800", "#2c962c"),
 }
 """Colours of branches on L and R: symmetric, asymmetric and unequal (2:1) ones as in the paper's Figs 4 and 5."""
+
+BALLS = ("#e87800", "#2c962c", "#7a2bbf", "#0aa0bd", "#d0118f", "#8a6d3b", "#555555", "#a39a00")
+"""Colours of balls with numbers, unlike those of the ends; the end of an impact is then its shape."""
 
 PALETTE = {
     "red": "#c8102e",

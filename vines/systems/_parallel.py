@@ -126,10 +126,18 @@ class Parallel(Parameters):
         >>> Parallel(mu=(0.01, 0.02, 0.01), A=0.03).alike
         ((1, 3),)
         """
-        groups: dict[tuple[float, ...], list[int]] = {}
-        for number, ball in enumerate(zip(self.mu, self.beta, self.r, strict=True), start=1):
-            groups.setdefault(ball, []).append(number)
-        return tuple(tuple(group) for group in groups.values() if len(group) > 1)
+        return _groups(zip(self.mu, self.beta, self.r, strict=True))
+
+    @property
+    def together(self) -> tuple[tuple[int, ...], ...]:
+        """Numbers of the balls that move as one for ever once they have one state: of one length and restitution.
+
+        Examples
+        --------
+        >>> Parallel(mu=(0.01, 0.02, 0.01), beta=(1.0, 1.0, 1.2), A=0.03).together
+        ((1, 2),)
+        """
+        return _groups(zip(self.beta, self.r, strict=True))
 
     def __str__(self) -> str:
         shown = (
@@ -138,6 +146,14 @@ class Parallel(Parameters):
         )
         named = (f"{each.name} = {text}" for each, text in zip(fields(self), shown, strict=True))
         return ", ".join(named) + " (dimensionless)"
+
+
+def _groups(balls: Iterable[tuple[float, ...]]) -> tuple[tuple[int, ...], ...]:
+    """Return the numbers of those that are equal, of each kind of which there are several."""
+    groups: dict[tuple[float, ...], list[int]] = {}
+    for number, ball in enumerate(balls, start=1):
+        groups.setdefault(ball, []).append(number)
+    return tuple(tuple(group) for group in groups.values() if len(group) > 1)
 
 
 def _listed(name: str, value: object) -> tuple[Any, ...]:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from vines import schema
+from vines.attractors import APART
 from vines.dynamics import Measures, ball_locked, no_ball
 from vines.model import Parameters
 from vines.orbits import orbit_outline
@@ -29,9 +30,18 @@ def parameters_of(system: str, values: Mapping[str, float]) -> Parameters:
 
 
 def start_of(p: Parameters, declared: Mapping[str, Any], before: Mapping[str, Any] | None) -> dict[str, float]:
-    """Return the start of a point: as it is declared, or where the point of a row ended that goes before it."""
+    """Return the start of a point: as it is declared, or where the point of a row ended that goes before it.
+
+    Balls that would start alike and so move as one for ever start `APART`, as `vines.settle` does.
+    """
     start = p.system.started(declared)
-    return start if before is None else {name: float(before[f"end_{name}"]) for name in start}
+    if before is not None:
+        return {name: float(before[f"end_{name}"]) for name in start}
+    for group in getattr(p, "together", ()):
+        states = [(start[f"x2_{ball}"], start[f"v2_{ball}"]) for ball in group]
+        for place, ball in enumerate(group):
+            start[f"v2_{ball}"] += APART * states[:place].count(states[place])
+    return start
 
 
 def family_point(
@@ -89,13 +99,16 @@ def family_impacts(point_id: str, p: Parameters, impacts: np.ndarray) -> list[di
 def _at_impacts(impacts: np.ndarray) -> dict[str, np.ndarray]:
     """Return what is known of impacts, under all names that systems may have for it."""
     found = {name: impacts[name] for name in impacts.dtype.names or ()}
-    return found | {"w": impacts["x1"] - impacts["x2"]}
+    # a gap that is a coordinate is one of a cavity of half length 1: x1 - x2 would be beyond its wall by rounding
+    return found | {"w": impacts["side"].astype(np.float64)}
 
 
 def _powers(measures: Measures, hits: np.ndarray, duration: float, law: HarvestLaw | None) -> dict[str, Any]:
     """Return the mean power of the impacts, and what of it the law harvests on each side."""
     ties = getattr(measures, "ties", 0)
-    found: dict[str, Any] = {"impact_power": measures.impact_loss / measures.duration, "ties": ties}
+    # a run that the cap on events ended has no window
+    power = measures.impact_loss / measures.duration if measures.duration > 0 else None
+    found: dict[str, Any] = {"impact_power": power, "ties": ties}
     if law is not None:
         energy = Harvest(law.threshold, law.coefficients).energy(hits["w_dot"])
         found["harvested_left"] = float(energy[hits["side"] > 0].sum()) / duration
@@ -103,13 +116,13 @@ def _powers(measures: Measures, hits: np.ndarray, duration: float, law: HarvestL
     return found
 
 
-def _of_balls(measures: Measures) -> dict[str, float]:
+def _of_balls(measures: Measures) -> dict[str, float | None]:
     """Return what is told of each ball where balls have numbers."""
-    found: dict[str, float] = {}
+    found: dict[str, float | None] = {}
     for number, each in enumerate(getattr(measures, "balls", ()), start=1):
         found[f"kinetic_ratio_{number}"] = each.kinetic_ratio
         loss = each.impact_loss_left + each.impact_loss_right
-        found[f"impact_power_{number}"] = loss / measures.duration
+        found[f"impact_power_{number}"] = loss / measures.duration if measures.duration > 0 else None
     return found
 
 

@@ -139,9 +139,6 @@ def _check(params: dict[str, float], options: Any) -> None:
             raise ParameterError("V is 0, allowed is V != 0: it is the velocity that decays")
         given["A"] = 0.0
     p = parameters(options.system).of(given)
-    if "V" in params and not p.mirrored:
-        names = " and ".join(f"{name} = 0" for name in p.system.mirror.broken_by)
-        raise ParameterError(f"a transient is of a level system; give {names}")
     values = msgspec.structs.asdict(options)
     if "word" in values:
         word_for(values["word"], p.system)

@@ -14,7 +14,9 @@ __all__ = ["KIND"]
 def _fits(stage: Stage, pipeline: Pipeline) -> None:
     if not stage.needs:
         raise DeclarationError("a figure draws other stages; name them, needs = [...]")
-    check = plot_of(stage.options).check
+    plot = plot_of(stage.options)
+    plot.check_systems(stage, pipeline)
+    check = plot.check
     if check is not None:
         check(stage, pipeline)
 

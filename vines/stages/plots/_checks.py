@@ -2,15 +2,38 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterator
+from collections.abc import Callable, Collection, Iterable, Iterator
 from typing import TYPE_CHECKING, Any
 
 from vines.errors import DeclarationError, nearest
+from vines.schema import table
 
 if TYPE_CHECKING:
     from vines.pipeline import Pipeline, Stage
 
-__all__ = ["cells", "check_panels", "check_window", "has_diagram", "has_runs", "needs_table", "one_axis", "one_stage"]
+__all__ = [
+    "called",
+    "cells",
+    "check_panels",
+    "check_window",
+    "has_diagram",
+    "has_runs",
+    "needs_table",
+    "one_axis",
+    "one_stage",
+    "one_system",
+]
+
+
+def called(tables: Iterable[str], like: str) -> str:
+    """Return what a table of the VI-NES is called among the tables of a stage of any system; empty if it has none such.
+
+    Examples
+    --------
+    >>> called(("impact_pair_points", "impact_pair_impacts"), "impacts")
+    'impact_pair_impacts'
+    """
+    return next((name for name in tables if table(name).like == like), "")
 
 
 def check_window(options: Any) -> None:
@@ -36,12 +59,27 @@ def needs_table(stage: Stage, pipeline: Pipeline, table: str, kind: str) -> None
 
 def has_runs(stage: Stage) -> bool:
     """Say whether a stage logs runs of the simulator, which carry their impacts."""
-    return stage.kind.logs and "impacts" in stage.kind.tables
+    return stage.kind.logs and bool(called(stage.kind.tables, "impacts"))
 
 
 def has_diagram(stage: Stage) -> bool:
     """Say whether a stage has what diagrams draw: impacts of points, or orbits on branches."""
-    return "impacts" in stage.kind.tables or {"orbits", "branches"} <= set(stage.kind.tables)
+    orbits = called(stage.kind.tables, "orbits") and called(stage.kind.tables, "branches")
+    return bool(called(stage.kind.tables, "impacts") or orbits)
+
+
+def one_system(stages: Iterable[Stage], what: str) -> str:
+    """Return the system of all stages, and refuse those of several.
+
+    Raises
+    ------
+    DeclarationError
+        With the systems, after `what` in words.
+    """
+    systems = sorted({one.kind.system for one in stages})
+    if len(systems) > 1:
+        raise DeclarationError(f"{what} shows one system, the stages are of {', '.join(systems)}")
+    return systems[0]
 
 
 def one_axis(stage: Stage, pipeline: Pipeline) -> None:

@@ -10,9 +10,10 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.compute as pc
 
-from vines import schema
 from vines.figures import BranchLine, ImpactDots, Marker
-from vines.model import Word
+from vines.model import Word, most_balls, read_system
+from vines.schema import table
+from vines.stages.plots._checks import called
 from vines.stages.plots._caption import listed, shared_params
 
 if TYPE_CHECKING:
@@ -40,30 +41,33 @@ def diagram_parts(
         Types of bifurcations that are marked; all if empty.
     """
     axis, shared = stages[0].axes[0], shared_params(stages)
-    branches = [stage for stage in stages if _called(stage, "orbits")]
+    branches = [stage for stage in stages if called(stage.tables, "orbits")]
+    mirror = mirror and all(map(_mirrored, branches))
     # Events, which are no bifurcations, are marked only where they do not crowd.
     events = len(branches) == 1
     chosen = [(stage, _chosen(stage, families)) for stage in branches]
     return (
-        [_dots(stage, axis, shared) for stage in stages if _called(stage, "impacts")],
+        [_dots(stage, axis, shared) for stage in stages if called(stage.tables, "impacts")],
         [line for stage, rows in chosen for line in _lines(stage, rows, axis, shared, mirror)],
         [mark for stage, rows in chosen for mark in _markers(stage, rows, axis, marks, events=events, mirror=mirror)],
     )
 
 
-def _called(stage: Input, like: str) -> str:
-    """Return what a table of the VI-NES is called for the system of a stage; empty if the stage has none such."""
-    return next((name for name in stage.tables if schema.table(name).like == like), "")
+def _mirrored(stage: Input) -> bool:
+    """Return whether the mirror image of a motion is one, which a tilt ends."""
+    own = table(called(stage.tables, "orbits")).system
+    broken_by = read_system(own, most_balls(own)).mirror.broken_by
+    return all(stage.params.get(name, 0.0) == 0 and name not in stage.axes for name in broken_by)
 
 
 def _chosen(stage: Input, families: Collection[str]) -> list[dict[str, Any]]:
     """Return the rows of the branches that are drawn."""
-    rows = stage.table(_called(stage, "branches")).to_pylist()
+    rows = stage.table(called(stage.tables, "branches")).to_pylist()
     return [row for row in rows if not families or family_label(row) in families]
 
 
 def _dots(stage: Input, axis: str, shared: dict[str, float]) -> ImpactDots:
-    impacts = stage.table(_called(stage, "impacts"))
+    impacts = stage.table(called(stage.tables, "impacts"))
     column = _numpy(impacts)
     return ImpactDots(
         x=column(axis),
@@ -76,7 +80,13 @@ def _dots(stage: Input, axis: str, shared: dict[str, float]) -> ImpactDots:
         },
         label=_label("simulation", stage, shared),
         repeats=_repeats(impacts),
+        ball=_numbers(column("ball")) if "ball" in impacts.column_names else None,
     )
+
+
+def _numbers(balls: np.ndarray) -> np.ndarray | None:
+    """Return the numbers of the balls that hit, or None where balls have no numbers."""
+    return balls if balls.any() else None
 
 
 def _repeats(impacts: pa.Table) -> np.ndarray:
@@ -93,12 +103,13 @@ def _lines(
     stage: Input, branches: Iterable[dict[str, Any]], axis: str, shared: dict[str, float], mirror: bool
 ) -> Iterable[BranchLine]:
     """Yield a line for each impact of the orbits of each branch, and of their mirror images if these have one word."""
-    orbits = stage.table(_called(stage, "orbits"))
+    orbits = stage.table(called(stage.tables, "orbits"))
     for branch in branches:
         mine = orbits.filter(pc.field("branch_id") == branch["branch_id"])
         x = _numpy(mine)(axis)
         stable = mine["stable"].to_numpy(zero_copy_only=False).astype(bool)
         values, sides = _per_impact(mine)
+        balls = Word(branch["word"]).balls
         both = mirror and _has_image(branch)
         for turned, shown in ((1, values), (-1, _image(values))) if both else ((1, values),):
             for k, side in enumerate(sides):
@@ -110,6 +121,7 @@ def _lines(
                     label=_label(family_label(branch), stage, shared),
                     family=family_of(branch),
                     image=turned < 0,
+                    ball=balls[k],
                 )
 
 
@@ -149,7 +161,7 @@ def _markers(
 ) -> Iterable[Marker]:
     """Yield the bifurcations on some branches."""
     drawn = {branch["branch_id"]: _has_image(branch) for branch in branches}
-    for row in stage.table(_called(stage, "bifurcations")).to_pylist():
+    for row in stage.table(called(stage.tables, "bifurcations")).to_pylist():
         if row["branch_id"] not in drawn or (row["type"] == EVENT and not events):
             continue
         if marks and row["type"] not in marks:

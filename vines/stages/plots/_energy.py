@@ -10,9 +10,11 @@ import pyarrow as pa
 import pyarrow.compute as pc
 
 from vines.figures import FOUND, EnergyCurve, EnergyPanel, VelocityPanel
-from vines.model import PARAMETER_NAMES
+from vines.model import most_balls, read_system
+from vines.schema import table
 from vines.stages.bodies._distinct import Seen, all_attractors
 from vines.stages.plots._caption import listed
+from vines.stages.plots._checks import called
 
 if TYPE_CHECKING:
     from vines.pipeline import Input
@@ -39,8 +41,8 @@ def _stages(cell: Any, inputs: Mapping[str, Input]) -> list[Input]:
     return sorted((inputs[name] for name in cell.of), key=lambda stage: stage.direction == "down")
 
 
-def _rows(stage: Input, cell: Any, table: str) -> pa.Table:
-    rows = stage.table(table)
+def _rows(stage: Input, cell: Any, like: str) -> pa.Table:
+    rows = stage.table(called(stage.tables, like))
     for name, value in cell.where.items():
         rows = rows.filter(pc.field(name) == value)
     return rows
@@ -48,7 +50,7 @@ def _rows(stage: Input, cell: Any, table: str) -> pa.Table:
 
 def _fixed(stages: list[Input], cell: Any) -> dict[str, float]:
     """Return the parameters that have one value in all points of a cell."""
-    values = {name: set[float]() for name in PARAMETER_NAMES}
+    values = {name: set[float]() for name in _parameters(stages[0])}
     for stage in stages:
         rows = _rows(stage, cell, "points")
         for name, found in values.items():
@@ -56,17 +58,25 @@ def _fixed(stages: list[Input], cell: Any) -> dict[str, float]:
     return {name: found.pop() for name, found in values.items() if len(found) == 1}
 
 
+def _parameters(stage: Input) -> list[str]:
+    """Return the parameters of a stage's system, of as many balls as it has: of others the columns are empty."""
+    own, rows = table(stage.tables[0]).system, stage.table()
+    names = [each.name for each in read_system(own, most_balls(own)).parameters]
+    return [name for name in names if rows[name].null_count < rows.num_rows or not rows.num_rows]
+
+
 def _energy(stages: list[Input], cell: Any, caption: str) -> EnergyPanel:
     axis = stages[0].carried
     points = [_rows(stage, cell, "points") for stage in stages]
-    others = [_rows(stage, cell, "attractors") for stage in stages]
-    differing = [name for name in PARAMETER_NAMES if name != axis and name not in _fixed(stages, cell)]
+    others = [_rows(stage, cell, "attractors") for stage in stages if called(stage.tables, "attractors")]
+    fixed = _fixed(stages, cell)
+    differing = [name for name in _parameters(stages[0]) if name != axis and name not in fixed]
     groups = _groups(points[0], differing)
     curves = [
         _curve(
             axis,
-            [_of(table, group) for table in points],
-            [_of(table, group) for table in others],
+            [_of(rows, group) for rows in points],
+            [_of(rows, group) for rows in others],
             listed(group),
             cell.colours[k % len(cell.colours)],
         )
@@ -83,10 +93,10 @@ def _groups(points: pa.Table, names: list[str]) -> list[dict[str, float]]:
     return sorted(rows, key=lambda row: tuple(row[name] for name in names))
 
 
-def _of(table: pa.Table, group: dict[str, float]) -> pa.Table:
+def _of(rows: pa.Table, group: dict[str, float]) -> pa.Table:
     for name, value in group.items():
-        table = table.filter(pc.field(name) == value)
-    return table
+        rows = rows.filter(pc.field(name) == value)
+    return rows
 
 
 def _curve(axis: str, points: list[pa.Table], others: list[pa.Table], label: str, colour: str) -> EnergyCurve:
@@ -110,9 +120,12 @@ def _curve(axis: str, points: list[pa.Table], others: list[pa.Table], label: str
 
 def _velocities(stages: list[Input], cell: Any, caption: str) -> VelocityPanel:
     axis = stages[0].carried
-    tables = [_rows(stage, cell, "impacts").select([axis, "w_dot", "side", "attractor"]) for stage in stages]
-    together = pa.concat_tables(tables)
-    later = np.repeat(np.arange(len(tables)) > 0, [table.num_rows for table in tables])
+    tables = [_rows(stage, cell, "impacts") for stage in stages]
+    numbered = "ball" in tables[0].column_names
+    columns = [axis, "w_dot", "side", "attractor", *(["ball"] if numbered else [])]
+    together = pa.concat_tables([rows.select(columns) for rows in tables])
+    balls = together["ball"].to_numpy() if numbered else np.zeros(0)
+    later = np.repeat(np.arange(len(tables)) > 0, [rows.num_rows for rows in tables])
     found = np.where(together["attractor"].to_numpy() > 0, FOUND.index("random"), later.astype(np.int64))
     return VelocityPanel(
         axis=axis,
@@ -122,4 +135,5 @@ def _velocities(stages: list[Input], cell: Any, caption: str) -> VelocityPanel:
         found=found,
         caption=caption,
         window=cell.window,
+        ball=balls if balls.any() else None,
     )

@@ -10,6 +10,8 @@ import msgspec
 
 from vines.doors import Register
 from vines.errors import DeclarationError
+from vines.model import VI_NES, system_names
+from vines.schema import system_table, tables
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -46,6 +48,9 @@ class Plot:
     check : callable, optional
         ``check(stage, pipeline)`` raises :class:`vines.errors.DeclarationError` if the needed stages, ``stage.needs``,
         cannot be drawn so; called when the declaration is read.
+    tables : tuple of str, optional
+        Tables, as the VI-NES calls them, without which it draws nothing of a system. A system that has none such is
+        refused when the declaration is read; if empty, the plot itself sees to systems.
 
     Examples
     --------
@@ -57,11 +62,40 @@ class Plot:
     options: type[PlotOptions]
     draw: Callable[[Mapping[str, Input], Any], Figure]
     check: Callable[[Stage, Pipeline], None] | None = None
+    tables: tuple[str, ...] = ()
 
     @property
     def name(self) -> str:
         """What a declaration writes after ``plot =``."""
         return str(self.options.__struct_config__.tag)
+
+    def draws(self, system: str) -> bool:
+        """Say whether a system has what the plot draws.
+
+        Examples
+        --------
+        >>> [PLOTS.get(name).draws("parallel") for name in ("bifurcation", "basins")]
+        [True, False]
+        """
+        return system == VI_NES.name or all(system_table(system, each) in tables() for each in self.tables)
+
+    def check_systems(self, stage: Stage, pipeline: Pipeline) -> None:
+        """Refuse needed stages of systems that the plot cannot draw.
+
+        Raises
+        ------
+        DeclarationError
+            With the systems that it can draw, and the plots that can draw the system.
+        """
+        for name in stage.needs:
+            system = pipeline.stages[name].kind.system
+            if not self.draws(system):
+                can = ", ".join(each for each in sorted(system_names()) if self.draws(each))
+                others = ", ".join(sorted(each for each, plot in PLOTS.all().items() if plot.draws(system)))
+                raise DeclarationError(
+                    f"the plot {self.name!r} cannot draw the system {system!r} of {name}; it can draw {can}; "
+                    f"plots that can draw {system!r}: {others}"
+                )
 
 
 PLOTS: Register[Plot] = Register("plot", "vines.plots", Plot, DeclarationError)

@@ -5,6 +5,9 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable
 
+import numpy as np
+import pyarrow as pa
+
 from vines.figures import RunCurves
 from vines.logs import read
 from vines.pipeline import Input
@@ -16,27 +19,37 @@ __all__ = ["run_curves"]
 def run_curves(stages: Iterable[Input]) -> list[RunCurves]:
     """Return the runs that stages of kind ``trajectory`` logged, named by the parameters that they do not share.
 
-    Time is counted in forcing periods from the start of each log.
+    Time is counted in forcing periods from the start of each log. Of several balls there is one for each.
     """
     logs = [read(path) for stage in stages for path in stage.logs.values()]
     curves = []
     for log in logs:
-        period = 2 * math.pi / log.parameters["Omega"]
-        state, hit = ({name: rows[name].to_numpy() for name in rows.column_names} for rows in (log.states, log.impacts))
+        # of a system without a frequency time is the phase
+        period = 2 * math.pi / log.parameters.get("Omega", 1.0)
+        state, hit = _columns(log.states), _columns(log.impacts)
         begin = state["t"][0]
-        own = {k: v for k, v in log.parameters.items() if any(other.parameters[k] != v for other in logs)}
-        curves.append(
-            RunCurves(
-                t=(state["t"] - begin) / period,
-                x1=state["x1"],
-                x2=state["x2"],
-                w=state["w"],
-                w_dot=state["w_dot"],
-                hit_t=(hit["t"] - begin) / period,
-                hit_side=hit["side"],
-                hit_x2=hit["x2"],
-                hit_w_dot=hit["w_dot"],
-                label=listed(own),
+        own = {k: v for k, v in log.parameters.items() if any(other.parameters.get(k) != v for other in logs)}
+        for number, ball in ({k: _columns(rows) for k, rows in log.balls.items()} or {0: state}).items():
+            mine = hit["ball"] == number if number else np.ones(len(hit["t"]), dtype=bool)
+            called = f"ball {number}" if number else ""
+            curves.append(
+                RunCurves(
+                    t=(state["t"] - begin) / period,
+                    x1=state["x1"],
+                    x2=ball["x2"],
+                    w=ball["w"],
+                    w_dot=ball["w_dot"],
+                    hit_t=(hit["t"][mine] - begin) / period,
+                    hit_side=hit["side"][mine],
+                    hit_x2=hit["x2"][mine],
+                    hit_w_dot=hit["w_dot"][mine],
+                    label=",  ".join(filter(None, (called, listed(own)))),
+                    length=log.parameters.get(f"beta_{number}", 1.0),
+                    ball=number,
+                )
             )
-        )
     return curves
+
+
+def _columns(rows: pa.Table) -> dict[str, np.ndarray]:
+    return {name: rows[name].to_numpy() for name in rows.column_names}

@@ -82,4 +82,5 @@ PLOT = Plot(
     options=BasinsOptions,
     draw=_draw,
     check=_check,
+    tables=("basins",),
 )

@@ -7,10 +7,9 @@ from typing import TYPE_CHECKING, Annotated
 
 from msgspec import Meta
 
-from vines.errors import DeclarationError
 from vines.figures import PANELS
 from vines.model import most_balls, read_system
-from vines.stages.plots._checks import check_panels, check_window, one_axis
+from vines.stages.plots._checks import check_panels, check_window, one_axis, one_system
 from vines.stages.plots._plot import Plot, PlotOptions
 
 if TYPE_CHECKING:
@@ -38,10 +37,8 @@ class BifurcationOptions(PlotOptions, frozen=True, tag="bifurcation"):
 def _check(stage: Stage, pipeline: Pipeline) -> None:
     check_window(stage.options)
     one_axis(stage, pipeline)
-    systems = sorted({pipeline.stages[name].kind.system for name in stage.needs})
-    if len(systems) > 1:
-        raise DeclarationError(f"a bifurcation diagram shows one system, the stages are of {', '.join(systems)}")
-    without = read_system(systems[0], min(most_balls(systems[0]), 1)).without
+    system = one_system((pipeline.stages[name] for name in stage.needs), "a bifurcation diagram")
+    without = read_system(system, min(most_balls(system), 1)).without
     check_panels(stage.options, [panel for panel in PANELS if panel not in without])
 
 
@@ -66,4 +63,5 @@ PLOT = Plot(
     options=BifurcationOptions,
     draw=_draw,
     check=_check,
+    tables=("impacts", "orbits"),
 )

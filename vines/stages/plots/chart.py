@@ -85,4 +85,5 @@ PLOT = Plot(
     options=ChartOptions,
     draw=_draw,
     check=_check,
+    tables=("curves",),
 )

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 from msgspec import Meta
 
 from vines.errors import DeclarationError, nearest
-from vines.stages.plots._checks import check_window, one_axis
+from vines.stages.plots._checks import called, check_window, one_axis, one_system
 from vines.stages.plots._plot import Plot, PlotOptions
 
 if TYPE_CHECKING:
@@ -32,7 +32,8 @@ class MultipliersOptions(PlotOptions, frozen=True, tag="multipliers"):
 def _check(stage: Stage, pipeline: Pipeline) -> None:
     check_window(stage.options)
     one_axis(stage, pipeline)
-    if not any("branches" in pipeline.stages[name].kind.tables for name in stage.needs):
+    one_system((pipeline.stages[name] for name in stage.needs), "a figure of multipliers")
+    if not any(called(pipeline.stages[name].kind.tables, "branches") for name in stage.needs):
         raise DeclarationError("multipliers are those of branches; name a stage of kind 'branch' in needs")
 
 
@@ -40,7 +41,7 @@ def _draw(inputs: Mapping[str, Input], options: MultipliersOptions) -> Figure:
     from vines.figures import multiplier_figure
     from vines.stages.plots._caption import listed
 
-    stages = [stage for stage in inputs.values() if "branches" in stage.tables]
+    stages = [stage for stage in inputs.values() if called(stage.tables, "branches")]
     return multiplier_figure(
         stages[0].axes[0],
         multiplier_lines(stages, options.panels),
@@ -74,9 +75,11 @@ def _branches(stage: Input) -> list[MultiplierLines]:
     from vines.stages.plots._diagram import family_label, family_of
 
     axis = stage.axes[0]
-    orbits, bifurcations = stage.table("orbits"), stage.table("bifurcations")
+    orbits, branches, bifurcations = (
+        stage.table(called(stage.tables, like)) for like in ("orbits", "branches", "bifurcations")
+    )
     lines = []
-    for branch in stage.table("branches").to_pylist():
+    for branch in branches.to_pylist():
         mine = orbits.filter(pc.field("branch_id") == branch["branch_id"])
         met = bifurcations.filter(pc.field("branch_id") == branch["branch_id"])
         real, imaginary = (np.array(mine[f"multipliers_{part}"].to_pylist()) for part in ("re", "im"))
@@ -97,4 +100,5 @@ PLOT = Plot(
     options=MultipliersOptions,
     draw=_draw,
     check=_check,
+    tables=("branches", "orbits", "bifurcations"),
 )

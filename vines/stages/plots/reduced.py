@@ -75,4 +75,5 @@ PLOT = Plot(
     options=ReducedPlotOptions,
     draw=_draw,
     check=_check,
+    tables=("reduced",),
 )

@@ -10,7 +10,8 @@ import msgspec
 from msgspec import Meta
 
 from vines.errors import DeclarationError
-from vines.stages.plots._checks import cells
+from vines.model import most_balls, read_system
+from vines.stages.plots._checks import called, cells, one_system
 from vines.stages.plots._plot import Plot, PlotOptions
 
 if TYPE_CHECKING:
@@ -21,6 +22,9 @@ if TYPE_CHECKING:
 __all__ = ["PLOT", "ResponseCell", "ResponseOptions"]
 
 _SHOWN = ("energy", "max_abs_x1", "w_dot")
+_SIZES = {"max_abs_x1", "x1_no_ball"}
+"""What a panel of energies compares."""
+
 _Show = Annotated[str, Meta(description="What is shown", extra_json_schema={"enum": list(_SHOWN)})]
 
 
@@ -53,9 +57,13 @@ class ResponseOptions(PlotOptions, frozen=True, tag="response"):
 def _check(stage: Stage, pipeline: Pipeline) -> None:
     for where, cell, shown in cells(stage, pipeline, _SHOWN):
         carried = {one.carry.axis if one.carry is not None else "" for one in shown}
-        listed = all({"points", "impacts", "attractors"} <= set(one.kind.tables) for one in shown)
+        listed = all(one.kind.name == "sweep" and called(one.kind.tables, "impacts") for one in shown)
         if not listed or len(carried) != 1 or carried == {""}:
             raise DeclarationError(f"{where} shows stages of kind 'sweep' that are carried along one axis")
+        system = one_system(shown, where)
+        driven = sorted(_SIZES & set(read_system(system, min(most_balls(system), 1)).without))
+        if cell.show != "w_dot" and driven:
+            raise DeclarationError(f"{where}: the system {system!r} has no {', '.join(driven)}; it can show w_dot")
         for name, value in cell.where.items():
             for one in shown:
                 there = {axis.name: axis.values() for axis in one.axes}.get(name) or (one.params.get(name, math.nan),)
@@ -81,4 +89,5 @@ PLOT = Plot(
     options=ResponseOptions,
     draw=_draw,
     check=_check,
+    tables=("points", "impacts"),
 )

@@ -211,4 +211,5 @@ PLOT = Plot(
     options=RigBranchesOptions,
     draw=_draw,
     check=_check,
+    tables=("reconstructions",),
 )

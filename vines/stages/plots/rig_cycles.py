@@ -33,4 +33,5 @@ PLOT = Plot(
     options=RigCyclesOptions,
     draw=_draw,
     check=partial(needs_table, table="rig_cycles", kind="compare"),
+    tables=("comparisons",),
 )

@@ -44,4 +44,5 @@ PLOT = Plot(
     options=RigResidualOptions,
     draw=_draw,
     check=partial(needs_table, table="reconstructions", kind="reconstruct"),
+    tables=("reconstructions",),
 )

@@ -11,7 +11,8 @@ from msgspec import Meta
 
 from vines.errors import DeclarationError
 from vines.figures import PANELS, RUN_PANELS
-from vines.stages.plots._checks import cells, has_diagram, has_runs
+from vines.model import most_balls, read_system
+from vines.stages.plots._checks import called, cells, has_diagram, has_runs, one_system
 from vines.stages.plots._plot import Plot, PlotOptions
 
 if TYPE_CHECKING:
@@ -64,6 +65,11 @@ class SheetOptions(PlotOptions, frozen=True, tag="sheet"):
 
 def _check(stage: Stage, pipeline: Pipeline) -> None:
     for where, cell, shown in cells(stage, pipeline, _SHOWN):
+        system = one_system(shown, where)
+        without = read_system(system, min(most_balls(system), 1)).without
+        if cell.show in without:
+            shows = ", ".join(name for name in _SHOWN if name not in without)
+            raise DeclarationError(f"{where}: the system {system!r} has no {cell.show}; a sheet of it shows {shows}")
         if cell.show in RUN_PANELS:
             if not all(map(has_runs, shown)) or (cell.show != "phase_plane" and len(shown) > 1):
                 raise DeclarationError(f"{where} shows one stage of kind 'trajectory', a phase plane also more")
@@ -72,7 +78,7 @@ def _check(stage: Stage, pipeline: Pipeline) -> None:
         if not all(map(has_diagram, shown)) or len(varied) != 1 or {len(names) for names in varied} != {1}:
             raise DeclarationError(f"{where} shows sweeps and branches that vary one and the same parameter")
         if cell.show == "multipliers" and (
-            any("branches" not in one.kind.tables for one in shown) or len(cell.families) != 1
+            not all(called(one.kind.tables, "branches") for one in shown) or len(cell.families) != 1
         ):
             raise DeclarationError(f"{where} shows one family of stages of kind 'branch'; name it in families")
 
@@ -104,7 +110,8 @@ def _panel(cell: SheetCell, stages: list[Input], *, mirror: bool) -> Panel:
         if cell.show == "phase_plane":
             return PhasePlanePanel(runs, **look)
         panel = EndsPanel if cell.show == "ends" else GapPanel
-        return panel(runs[0], cell.periods, **look)
+        # the first run, which has a curve for each of its balls
+        return panel(runs[0], cell.periods, balls=runs[1 : max(run.ball for run in runs)], **look)
     axis, names = stages[0].axes[0], {kind: f"${text}$" for kind, text in cell.marks.items() if text}
     if cell.show == "multipliers":
         (branch,) = multiplier_lines(stages, cell.families)
@@ -120,4 +127,5 @@ PLOT = Plot(
     options=SheetOptions,
     draw=_draw,
     check=_check,
+    tables=("impacts", "orbits"),
 )
