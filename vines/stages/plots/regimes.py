@@ -61,7 +61,7 @@ def _draw(inputs: Mapping[str, Input], options: RegimesOptions) -> Figure:
         measure="kinetic_ratios" if balls and measure == "kinetic_ratio" else measure,
         caption=fixed(stage, stage.axes),
     )
-    return regimes_figure(shown, title=options.title, width=options.width)
+    return regimes_figure(shown, title=options.title, width=options.inches)
 
 
 def _classes(frame: Any) -> Any:
