@@ -161,7 +161,7 @@ def _thin(ax: Axes, figure: Figure) -> bool:
     for most in range(7, 1, -1):
         low, high = sorted(ax.get_xlim())
         shown = [each for each in ax.get_xticklabels() if low <= each.get_position()[0] <= high and each.get_text()]
-        gap = 0.5 * max((each.get_fontsize() for each in shown), default=0.0) * figure.dpi / 72
+        gap = 0.5 * max((float(each.get_fontsize()) for each in shown), default=0.0) * figure.dpi / 72
         boxes = [_extent(each) for each in shown]
         if all(one.x1 + gap <= other.x0 for one, other in itertools.pairwise(boxes)):
             return most < 7
