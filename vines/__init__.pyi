@@ -21,6 +21,7 @@ from .orbits import continue_orbit as continue_orbit
 from .orbits import find_orbit as find_orbit
 from .orbits import switch_branch as switch_branch
 from .stages import Study as Study
+from .stages import figure as figure
 from .stages import query as query
 from .stages import run as run
 from .stages import study as study

@@ -41,6 +41,7 @@ COMMANDS = {
     "query": ("vines.cli._query", "Ask the result tables in SQL."),
     "verify": ("vines.cli._verify", "Are the stored results intact and physically consistent?"),
     "check": ("vines.cli._check", "Do the results reproduce the published values?"),
+    "figure": ("vines.cli._figure", "Write a figure as a file for a paper: PDF, SVG or PNG, of any width."),
     "report": ("vines.cli._report", "Write one HTML page: figures, checks, tables, provenance."),
     "export": ("vines.cli._export", "Copy results into a folder that needs no vines."),
     "solve": ("vines.cli._solve", "Print the periodic orbit of a word of impacts."),

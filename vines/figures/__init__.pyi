@@ -16,6 +16,7 @@ from ._diagram_panel import DiagramPanel as DiagramPanel
 from ._energy import FOUND as FOUND
 from ._energy import EnergyCurve as EnergyCurve
 from ._energy import EnergyPanel as EnergyPanel
+from ._fit import fit_titles as fit_titles
 from ._measures import MeasureCurve as MeasureCurve
 from ._measures import MeasurePanel as MeasurePanel
 from ._multipliers import MultiplierLines as MultiplierLines
@@ -46,8 +47,12 @@ from ._runs import EndsPanel as EndsPanel
 from ._runs import GapPanel as GapPanel
 from ._runs import PhasePlanePanel as PhasePlanePanel
 from ._runs import RunCurves as RunCurves
+from ._saved import FORMATS as FORMATS
+from ._saved import save_as as save_as
 from ._sheet import Panel as Panel
 from ._sheet import sheet_figure as sheet_figure
 from ._style import COLOURS as COLOURS
 from ._style import PALETTE as PALETTE
 from ._style import save as save
+from ._style import wearing as wearing
+from ._style_sheet import style_settings as style_settings

@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 import numpy.typing as npt
 
-from vines.figures._style import RC, new_figure
+from vines.figures._fit import place_legend
+from vines.figures._style import look, new_figure
 from vines.model import VI_NES
 
 if TYPE_CHECKING:
@@ -87,7 +88,7 @@ def basins_figure(data: BasinMap, *, title: str = "", width: float = 7.0) -> Fig
     shown = np.array([to_rgb(colour) for colour in (*colours, UNSETTLED)])[data.attractor]
     shown = np.where(data.mirrored[:, None], SHADE * shown, shown)
     image, extent = _image(data, shown)
-    with mpl.rc_context(RC):
+    with mpl.rc_context(look()):
         figure = new_figure(width, 0.8 * width)
         ax = figure.add_subplot()
         ax.imshow(image, extent=extent, origin="lower", aspect="auto", interpolation="none")
@@ -97,8 +98,7 @@ def basins_figure(data: BasinMap, *, title: str = "", width: float = 7.0) -> Fig
             Patch(facecolor=colour, edgecolor="#777777", linewidth=0.5, label=name)
             for colour, name in zip((*colours, UNSETTLED), data.names, strict=False)
         ]
-        beside = 2 * max(len(name) + SWATCH for name in data.names) < LETTERS * width
-        figure.legend(handles=handles, loc="outside lower center", ncols=2 if beside else 1)
+        place_legend(figure, handles, [str(each.get_label()) for each in handles], ncols=2)
         ax.set_title(title, fontsize=9)
     return figure
 

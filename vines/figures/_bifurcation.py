@@ -10,7 +10,7 @@ from vines.figures._diagram import BranchLine, ImpactDots, Marker
 from vines.figures._diagram_panel import DiagramPanel
 from vines.figures._legend import add_legend
 from vines.figures._names import PANELS
-from vines.figures._style import RC, new_figure
+from vines.figures._style import LETTER, look, new_figure
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -56,13 +56,13 @@ def bifurcation_figure(
     for panel in panels:
         if panel not in PANELS:
             raise DeclarationError(f"unknown panel {panel!r} of a bifurcation diagram: {nearest(panel, PANELS)}")
-    with mpl.rc_context(RC):
+    with mpl.rc_context(look()):
         figure = new_figure(width, 0.75 + 2.75 * len(panels))
         axes = figure.subplots(len(panels), 1, sharex=True, squeeze=False)[:, 0]
         drawn = [DiagramPanel(axis, panel, dots, lines, markers, window=window) for panel in panels]
         for letter, panel, ax in zip("abcdefgh", drawn, axes, strict=False):
             panel.draw(ax)
-            ax.text(-0.082, 1.0, f"({letter})", transform=ax.transAxes, va="top", fontweight="bold")
+            ax.annotate(f"({letter})", (0.0, 1.0), LETTER, "axes fraction", "offset points", va="top", weight="bold")
         for ax in axes[:-1]:
             ax.set_xlabel("")
         if caption:

@@ -13,7 +13,7 @@ import numpy.typing as npt
 from vines.figures._legend import add_legend
 from vines.figures._marks import MARKS
 from vines.figures._names import NAMES, SYMBOLS
-from vines.figures._style import COLOURS, RC, new_figure
+from vines.figures._style import COLOURS, look, new_figure
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -92,7 +92,7 @@ def chart_figure(
     """
     import matplotlib as mpl
 
-    with mpl.rc_context(RC):
+    with mpl.rc_context(look()):
         figure = new_figure(width, 0.78 * width)
         ax = figure.subplots()
         for region in regions:

@@ -92,6 +92,8 @@ def draw_energy(ax: Axes, panel: EnergyPanel) -> None:
 
 def draw_reduction(ax: Axes, panel: EnergyPanel) -> None:
     """Draw max|x1| over that with no ball: below 1 the absorber helps, below the line more than a locked ball."""
+    from matplotlib.ticker import LogLocator, NullFormatter
+
     ax.axhline(1.0, color=COLOURS["mark"], **NO_BALL)
     for curve in panel.curves:
         ax.plot(curve.at, curve.locked / curve.no_ball, color=PALETTE[curve.colour], **LOCKED)
@@ -103,9 +105,16 @@ def draw_reduction(ax: Axes, panel: EnergyPanel) -> None:
     frame(ax, np.concatenate([curve.at for curve in panel.curves]), panel.window)
     shown = np.concatenate([c.reduction[_inside(c.x, panel.window)] for c in panel.curves] + [np.ones(1)])
     shown = shown[np.isfinite(shown) & (shown > 0)]
-    ax.set_ylim(0.6 * shown.min(), max(1.7, 1.5 * float(np.quantile(shown, 0.995))))
+    low, high = 0.6 * shown.min(), max(1.7, 1.5 * float(np.quantile(shown, 0.995)))
+    ax.set_ylim(low, high)
+    # A strip is too low for a number at each line of its scale.
+    ax.yaxis.set_major_locator(LogLocator(subs=(1.0,) if high > _DECADES * low else (0.5, 1.0, 2.0)))
+    ax.yaxis.set_major_formatter("{x:g}")
+    ax.yaxis.set_minor_formatter(NullFormatter())
 
 
+_DECADES = 20.0
+"""Factor between the ends of a strip beyond which only powers of ten have numbers."""
 NO_BALL: Any = {"linestyle": (0, (5, 2.5)), "linewidth": 0.8, "zorder": 1}
 LOCKED: Any = {"linestyle": "-", "linewidth": 0.8, "alpha": 0.75, "zorder": 1}
 

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from vines.figures._fit import place_legend
 from vines.figures._marks import DOTTED, MARKS, mark_style
 from vines.figures._style import BALLS, COLOURS, FAMILIES
 
@@ -107,12 +108,12 @@ def add_legend(figure: Figure, entries: Sequence[Entry], ncols: int = 3) -> None
     if entries:
         # A tuple of lines is drawn side by side by the handler; the annotations of matplotlib know single ones only.
         handles: Any = [drawn for _, drawn in entries]
-        figure.legend(
+        place_legend(
+            figure,
             handles,
             [label for label, _ in entries],
-            handler_map={tuple: HandlerTuple(ndivide=None, pad=0.3)},
-            loc="outside lower center",
             ncols=ncols,
+            handler_map={tuple: HandlerTuple(ndivide=None, pad=0.3)},
             columnspacing=1.6,
             handlelength=2.6,
         )

@@ -9,16 +9,18 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
+from vines.figures._fit import columns_in
 from vines.figures._legend import add_legend, mark_entries
 from vines.figures._marks import mark_style
 from vines.figures._names import NAMES, SYMBOLS
-from vines.figures._style import COLOURS, FAMILIES, RC, new_figure
+from vines.figures._style import COLOURS, FAMILIES, look, new_figure
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from vines.figures._legend import Entry
+    from vines.figures._fit import columns_in
+from vines.figures._legend import Entry
 
 __all__ = ["MultiplierLines", "MultiplierPanel", "multiplier_figure"]
 
@@ -133,17 +135,22 @@ def multiplier_figure(
     """
     import matplotlib as mpl
 
-    with mpl.rc_context(RC):
-        figure = new_figure(width, 3.4)
-        axes = figure.subplots(1, len(branches), squeeze=False)[0]
+    with mpl.rc_context(look()):
+        columns = columns_in(width, len(branches))
+        rows = -(-len(branches) // columns)
+        figure = new_figure(width, 0.9 + 2.5 * rows)
+        grid = figure.subplots(rows, columns, squeeze=False)
+        axes = grid.ravel()
         said: dict[str, tuple[Any, ...]] = {}
         for letter, branch, ax in zip("abcdefgh", branches, axes, strict=False):
             panel = MultiplierPanel(axis, branch, window)
             panel.draw(ax)
             said |= dict(panel.entries())
             ax.set_title(f"({letter})  {branch.label}", fontsize=9, loc="left")
-        for ax in axes[1:]:
+        for ax in grid[:, 1:].flat:
             ax.set_ylabel("")
+        for ax in axes[len(branches) :]:
+            ax.set_axis_off()
         if caption:
             figure.suptitle(caption, fontsize=8.5)
         add_legend(figure, list(said.items()))

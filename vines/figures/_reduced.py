@@ -4,14 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
 
 from vines.errors import DeclarationError, nearest
+from vines.figures._fit import columns_in, place_legend
 from vines.figures._names import ERRORS, NAMES, SYMBOLS
-from vines.figures._style import COLOURS, RC, new_figure
+from vines.figures._style import COLOURS, look, new_figure
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -87,11 +88,16 @@ def reduced_figure(
             raise DeclarationError(f"unknown panel {panel!r} of an error map: {nearest(panel, ERRORS)}")
     if not maps:
         raise DeclarationError("an error map needs a stage of kind reduced that varies two parameters; here is none")
-    with mpl.rc_context({**RC, "hatch.linewidth": 0.4}):
-        figure = new_figure(width, 0.9 + 2.9 * len(panels))
-        grid = figure.subplots(len(panels), len(maps), squeeze=False)
+    with mpl.rc_context({**look(), "hatch.linewidth": 0.4}):
+        columns = columns_in(width, len(maps))
+        each = -(-len(maps) // columns)  # rows of a quantity
+        figure = new_figure(width, 0.9 + 2.9 * len(panels) * each)
+        grid = figure.subplots(len(panels) * each, columns, squeeze=False).reshape(len(panels), each * columns)
         letters = iter("abcdefghijklmnop")
-        for row, panel in zip(grid, panels, strict=True):
+        for places, panel in zip(grid, panels, strict=True):
+            for ax in places[len(maps) :]:
+                ax.set_axis_off()
+            row = places[: len(maps)]
             drawn = [
                 _draw(ax, chart, panel, LogNorm(_LEVELS[0], _LEVELS[-1])) for ax, chart in zip(row, maps, strict=True)
             ]
@@ -158,14 +164,9 @@ def _legend(figure: Figure) -> None:
     from matplotlib.lines import Line2D
     from matplotlib.patches import Patch
 
-    figure.legend(
-        handles=[
-            Patch(
-                facecolor="white", edgecolor=COLOURS["ink"], hatch="////", label="exact orbit unstable or inadmissible"
-            ),
-            Patch(facecolor=_NOWHERE, label="no symmetric 1:1 orbit, exact or reduced"),
-            Line2D([], [], color=COLOURS["L"], linestyle="dashed", label="stable by the reduction"),
-        ],
-        loc="outside lower center",
-        ncols=3,
-    )
+    handles: list[Any] = [
+        Patch(facecolor="white", edgecolor=COLOURS["ink"], hatch="////", label="exact orbit unstable or inadmissible"),
+        Patch(facecolor=_NOWHERE, label="no symmetric 1:1 orbit, exact or reduced"),
+        Line2D([], [], color=COLOURS["L"], linestyle="dashed", label="stable by the reduction"),
+    ]
+    place_legend(figure, handles, [str(each.get_label()) for each in handles], ncols=3)

@@ -8,9 +8,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
+<<<<<<< HEAD
 from vines.figures._chart import CurveLine, curve_entries, draw_curves
+=======
+from vines.figures._fit import columns_in, place_legend
+>>>>>>> 461f2b691aee4420b7fae0fb8c387bec24c10cfa
 from vines.figures._names import NAMES, SYMBOLS
-from vines.figures._style import RC, new_figure
+from vines.figures._style import look, new_figure
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -113,10 +117,11 @@ def regimes_figure(data: RegimeMap, *, title: str = "", width: float = 7.0) -> F
     colours = np.array([to_rgb(colour) for colour in REGIME_CLASSES.values()] + [(1.0, 1.0, 1.0)])
     shown = colours[data.regime]
     shown = np.where(data.sticks[..., None], SHADE * shown, shown)
-    with mpl.rc_context(RC):
-        figure = new_figure(width, 0.56 * width)
+    with mpl.rc_context(look()):
+        beside_each_other = columns_in(width, 2) == 2
+        figure = new_figure(width, 0.56 * width if beside_each_other else 1.7 * width)
         above, beside = _MEASURES[data.measure]
-        left, right = figure.subplots(1, 2, sharey=True)
+        left, right = figure.subplots(1, 2, sharey=True) if beside_each_other else figure.subplots(2, 1)
         left.pcolormesh(data.x, data.y, shown, shading="nearest", rasterized=True)
         finite = data.ratio[np.isfinite(data.ratio) & (data.ratio > 0)]
         low, high = np.quantile(finite, [0.005, 1.0]) if finite.size else (1e-3, 1.0)
@@ -136,7 +141,8 @@ def regimes_figure(data: RegimeMap, *, title: str = "", width: float = 7.0) -> F
             ax.set_title(f"({letter})  {what}", fontsize=8.5, loc="left")
             draw_curves(ax, data.curves, cased=True)
             _scale(ax, data)
-        left.set_ylabel(_label(data.axes[1]))
+        for ax in (left,) if beside_each_other else (left, right):
+            ax.set_ylabel(_label(data.axes[1]))
         _write_names(left, data)
         used = np.unique(data.regime)
         handles: list[Any] = [
@@ -149,10 +155,14 @@ def regimes_figure(data: RegimeMap, *, title: str = "", width: float = 7.0) -> F
             handles.append(
                 Patch(facecolor=dark, edgecolor="#777777", linewidth=0.5, label="any, darker: sticking recurs")
             )
+<<<<<<< HEAD
         for label, line in curve_entries(data.curves):
             line.set_label(label)
             handles.append(line)
         figure.legend(handles=handles, loc="outside lower center", ncols=4 if data.curves else 5)
+=======
+        place_legend(figure, handles, [str(each.get_label()) for each in handles], ncols=5)
+>>>>>>> 461f2b691aee4420b7fae0fb8c387bec24c10cfa
         figure.suptitle(", ".join(part for part in (title, data.caption) if part), fontsize=9)
     return figure
 

@@ -12,9 +12,10 @@ import numpy as np
 import numpy.typing as npt
 
 from vines.figures._energy import LOCKED, NO_BALL, EnergyPanel, cross, diamond, draw_energy, draw_reduction, frame
+from vines.figures._fit import columns_in
 from vines.figures._legend import add_legend, ball_entries
 from vines.figures._names import NAMES, SYMBOLS
-from vines.figures._style import BALLS, COLOURS, RC, new_figure
+from vines.figures._style import BALLS, COLOURS, look, new_figure
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -68,7 +69,7 @@ def response_figure(
     panels : sequence of EnergyPanel or VelocityPanel
         In the order of the letters.
     columns : int
-        Panels side by side.
+        Panels side by side; fewer where the figure is too narrow for them.
     caption : str
         The parameters that all panels share, written above everything.
     width : float
@@ -76,11 +77,12 @@ def response_figure(
     """
     import matplotlib as mpl
 
+    columns = columns_in(width, columns)
     rows = [panels[k : k + columns] for k in range(0, len(panels), columns)]
     strips = [any(isinstance(panel, EnergyPanel) for panel in row) for row in rows]
     heights = [sum(_HEIGHTS) if strip else _HEIGHTS[0] for strip in strips]
     letters = itertools.cycle(string.ascii_lowercase)
-    with mpl.rc_context(RC):
+    with mpl.rc_context(look()):
         figure = new_figure(width, 0.9 + sum(heights))
         grid = figure.add_gridspec(len(rows), columns, height_ratios=heights)
         for i, row in enumerate(rows):

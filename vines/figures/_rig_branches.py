@@ -13,7 +13,7 @@ from vines.figures._diagram import BranchLine, Marker
 from vines.figures._diagram_panel import DiagramPanel
 from vines.figures._legend import Entry, add_legend
 from vines.figures._names import MEASURES
-from vines.figures._style import COLOURS, RC, new_figure
+from vines.figures._style import COLOURS, LETTER, look, new_figure
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -89,7 +89,7 @@ def rig_branches_figure(
     import matplotlib as mpl
 
     window = window or _around(points)
-    with mpl.rc_context(RC):
+    with mpl.rc_context(look()):
         figure = new_figure(width, 0.9 + 2.5 * len(points))
         axes = figure.subplots(len(points), 1, sharex=True, squeeze=False)[:, 0]
         entries: dict[str, tuple[Any, ...]] = {}
@@ -100,7 +100,9 @@ def rig_branches_figure(
             panel.draw(ax)
             _draw(ax, own)
             if len(points) > 1:
-                ax.text(-0.09, 1.0, f"({letter})", transform=ax.transAxes, va="top", fontweight="bold")
+                ax.annotate(
+                    f"({letter})", (0.0, 1.0), LETTER, "axes fraction", "offset points", va="top", weight="bold"
+                )
             entries |= {label: entries.get(label, drawn) for label, drawn in (*_entries(own), *panel.entries())}
         for ax in axes[:-1]:
             ax.set_xlabel("")

@@ -10,8 +10,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
+from vines.figures._fit import columns_in
 from vines.figures._legend import add_legend
-from vines.figures._style import COLOURS, PALETTE, RC, new_figure
+from vines.figures._style import COLOURS, PALETTE, look, new_figure
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -96,9 +97,9 @@ def _grid(
     from matplotlib.lines import Line2D
     from matplotlib.patches import Patch
 
-    columns = max(1, min(_COLUMNS, len(cycles)))
+    columns = columns_in(width, max(1, min(_COLUMNS, len(cycles))))
     rows = max(1, math.ceil(len(cycles) / columns))
-    with mpl.rc_context(RC):
+    with mpl.rc_context(look()):
         figure = new_figure(width, 0.8 + _HEIGHT * rows)
         axes = figure.subplots(rows, columns, squeeze=False)
         for k, ax in enumerate(axes.flat):

@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from vines.figures._legend import Entry, add_legend
 from vines.figures._rig_branches import DIRECTIONS, rig_mark
-from vines.figures._style import COLOURS, RC, new_figure
+from vines.figures._style import COLOURS, look, new_figure
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -53,7 +53,7 @@ def rig_residual_figure(
     from matplotlib.lines import Line2D
 
     ink, kinds = COLOURS["ink"], np.array(protocol)
-    with mpl.rc_context(RC):
+    with mpl.rc_context(look()):
         figure = new_figure(width, 3.4)
         ax = figure.subplots()
         ax.plot(temperature, 1e6 * noise, zorder=2, **_NOISE)

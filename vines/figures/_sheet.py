@@ -6,8 +6,9 @@ from collections.abc import Sequence
 from string import ascii_lowercase
 from typing import TYPE_CHECKING, Any, Literal, Protocol
 
+from vines.figures._fit import columns_in
 from vines.figures._legend import add_legend
-from vines.figures._style import RC, new_figure
+from vines.figures._style import look, new_figure
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -46,9 +47,9 @@ def sheet_figure(
     panels : sequence of Panel
         Row by row; letters follow this order.
     columns : int
-        Panels in a row.
+        Panels in a row; fewer where the figure is too narrow for them.
     letters : {"panels", "rows"}
-        What is lettered.
+        What is lettered; the rows are those of a figure that is wide enough.
     caption : str
         Written above everything.
     width : float
@@ -58,16 +59,17 @@ def sheet_figure(
     """
     import matplotlib as mpl
 
+    in_a_row, columns = columns, columns_in(width, columns)
     rows = -(-len(panels) // columns)
-    with mpl.rc_context(RC):
+    with mpl.rc_context(look()):
         figure = new_figure(width, 0.85 + height * rows)
         grid = figure.subplots(rows, columns, squeeze=False)
         axes = grid.ravel()
         for panel, ax in zip(panels, axes, strict=False):
             panel.draw(ax)
             if ax.get_xscale() == "linear":
-                ax.locator_params(axis="x", nbins=max(4, 11 - 2 * columns))
-        lettered = axes[: len(panels)] if letters == "panels" else grid[:, 0]
+                ax.locator_params(axis="x", nbins=max(2, min(max(4, 11 - 2 * columns), round(1.7 * width / columns))))
+        lettered = axes[: len(panels) : 1 if letters == "panels" else in_a_row]
         lettered = lettered if len(lettered) > 1 else ()
         for letter, ax in zip(ascii_lowercase, lettered, strict=False):
             ax.set_title(f"({letter})", fontsize=9, fontweight="bold", loc="left")

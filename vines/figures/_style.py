@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from contextvars import ContextVar
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
+
+from vines.figures._fit import fit_titles
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-__all__ = ["BALLS", "COLOURS", "FAMILIES", "PALETTE", "RC", "new_figure", "save"]
+__all__ = ["BALLS", "COLOURS", "FAMILIES", "LETTER", "PALETTE", "RC", "look", "new_figure", "save", "wearing"]
 
 COLOURS = {
     "L": "#c8102e",
@@ -66,6 +71,26 @@ RC: Any = {
     "svg.fonttype": "path",
 }
 
+LETTER = (-37.0, 0.0)
+"""Where the letter of a panel stands from its upper left corner [points]: beside its numbers, however wide it is."""
+
+_WORN: ContextVar[Mapping[str, Any]] = ContextVar("_WORN", default={})  # noqa: B039 - nobody changes it
+
+
+def look() -> dict[Any, Any]:
+    """Return matplotlib's settings for a figure: ours, and over them those of a style that is worn."""
+    return {**RC, **_WORN.get()}
+
+
+@contextmanager
+def wearing(settings: Mapping[str, Any]) -> Iterator[None]:
+    """Draw with settings of matplotlib over ours, as a style sheet gives them."""
+    token = _WORN.set(settings)
+    try:
+        yield
+    finally:
+        _WORN.reset(token)
+
 
 def new_figure(width: float, height: float) -> Figure:
     """Return an empty figure of that size [inch], drawn without any screen."""
@@ -73,7 +98,7 @@ def new_figure(width: float, height: float) -> Figure:
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 
-    with mpl.rc_context(RC):
+    with mpl.rc_context(look()):
         figure = Figure(figsize=(width, height), layout="constrained")
         FigureCanvasAgg(figure)
     return figure
@@ -91,7 +116,8 @@ def save(figure: Figure, folder: Path, name: str = "picture") -> list[Path]:
     with mpl.rc_context(RC):
         engine = figure.get_layout_engine()
         if engine is not None:
-            engine.execute(figure)
+            if fit_titles(figure):
+                engine.execute(figure)
             figure.set_layout_engine(None)  # "none" would keep a placeholder, for which each file is drawn twice
         figure.savefig(files[0], metadata={"Software": "vines"})
         figure.savefig(files[1], metadata={"Date": None, "Creator": "vines"})

@@ -45,4 +45,5 @@ from ._plan import pool_keys as pool_keys
 from ._reading import load as load
 from ._run import run_pipeline as run_pipeline
 from ._shard import Shard as Shard
+from ._whole import stored_inputs as stored_inputs
 from ._worker import body_of as body_of

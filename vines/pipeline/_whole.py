@@ -7,16 +7,18 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from vines.errors import CodeError, SchemaError
+from vines.errors import CodeError, SchemaError, StoreError
 from vines.pipeline._demand import Checked, Demand, demand
 from vines.pipeline._jobs import Batch, Input, Range, Spread, WholeJob, one_by_one
+from vines.pipeline._plan import Planner
 from vines.pipeline._worker import body_of
 from vines.store import Result, Store, describe_table, write_parquet
 
 if TYPE_CHECKING:
-    from vines.pipeline._plan import Planner, Prepared
+    from vines.pipeline._declaration import Pipeline
+    from vines.pipeline._plan import Prepared
 
-__all__ = ["WholeTask", "compute_whole", "whole_task"]
+__all__ = ["WholeTask", "compute_whole", "stored_inputs", "whole_task"]
 
 _PICTURES = ("picture.png", "picture.svg")
 
@@ -153,6 +155,37 @@ def compute_whole(task: WholeTask, spread: Spread = one_by_one) -> str:
         }
         store.commit(task.key, folder, manifest, replace=task.replace)
     return ""
+
+
+def stored_inputs(pipeline: Pipeline, name: str, store: Store) -> dict[str, Input]:
+    """Return what the results that a stage needs hold now, without computing anything.
+
+    Parameters
+    ----------
+    pipeline : Pipeline
+        As declared.
+    name : str
+        One of its stages.
+    store : Store
+        Where results are kept.
+
+    Raises
+    ------
+    StoreError
+        If a needed stage is not computed as it is declared now.
+    """
+    planner = Planner(pipeline, store)
+    needs = pipeline.stages[name].needs
+    for each in pipeline.order:
+        if each == name:
+            break
+        plan = planner.plan(each)
+        if each in needs and plan.state != "up_to_date":
+            raise StoreError(
+                f"{pipeline.name}.{each} is not computed as it is declared ({plan.reason}); 'vines run {pipeline.name} "
+                f"{each}' does it"
+            )
+    return {need: _input(need, store.result(planner.keys[need])) for need in needs}
 
 
 def _input(name: str, result: Result) -> Input:

@@ -10,6 +10,8 @@ from .api._declarable import describe_kind as describe_kind
 from .api._declarable import describe_plot as describe_plot
 from .api._declarable import list_kinds as list_kinds
 from .api._declarable import list_plots as list_plots
+from .api._drawing import figure as figure
+from .api._drawing import save_figure as save_figure
 from .api._export import export as export
 from .api._finding import all_logs as all_logs
 from .api._finding import find_logs as find_logs

@@ -6,7 +6,7 @@ from typing import Any
 
 from vines.errors import DeclarationError
 from vines.pipeline import Kind, Pipeline, Stage
-from vines.stages.plots import PLOTS, PlotOptions, plot_of
+from vines.stages.plots import PLOTS, PlotOptions, inches, plot_of
 
 __all__ = ["KIND"]
 
@@ -15,6 +15,7 @@ def _fits(stage: Stage, pipeline: Pipeline) -> None:
     if not stage.needs:
         raise DeclarationError("a figure draws other stages; name them, needs = [...]")
     plot = plot_of(stage.options)
+    inches(stage.options.width)
     plot.check_systems(stage, pipeline)
     check = plot.check
     if check is not None:

@@ -4,5 +4,6 @@ A plot is one registered thing: its options, what it needs, and how rows become 
 """
 
 from vines.stages.plots._plot import PLOTS, Plot, PlotOptions, plot_of, register
+from vines.stages.plots._width import inches
 
-__all__ = ["PLOTS", "Plot", "PlotOptions", "plot_of", "register"]
+__all__ = ["PLOTS", "Plot", "PlotOptions", "inches", "plot_of", "register"]

@@ -12,6 +12,7 @@ from vines.doors import Register
 from vines.errors import DeclarationError
 from vines.model import VI_NES, system_names
 from vines.schema import system_table, tables
+from vines.stages.plots._width import inches
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -25,7 +26,21 @@ class PlotOptions(msgspec.Struct, frozen=True, forbid_unknown_fields=True, tag_f
     """A picture of the needed stages; which further options there are depends on the plot."""
 
     title: Annotated[str, msgspec.Meta(description="Written above; the parameters that all stages share if empty")] = ""
-    width: Annotated[float, msgspec.Meta(gt=0, description="Width of the picture [inch]")] = 7.0
+    width: Annotated[
+        Annotated[float, msgspec.Meta(gt=0)] | str,
+        msgspec.Meta(description='Width of the picture: inches, or a text with its unit, "85mm", "8.5cm", "3.35in"'),
+    ] = 7.0
+
+    @property
+    def inches(self) -> float:
+        """Width of the picture [inch].
+
+        Raises
+        ------
+        DeclarationError
+            If it is no width of a picture.
+        """
+        return inches(self.width)
 
 
 @dataclass(frozen=True, slots=True)

@@ -30,7 +30,7 @@ def _draw(inputs: Mapping[str, Input], options: BasinsOptions) -> Figure:
     from vines.figures import basins_figure
 
     (stage,) = inputs.values()
-    return basins_figure(_map(stage), title=options.title, width=options.width)
+    return basins_figure(_map(stage), title=options.title, width=options.inches)
 
 
 def _map(stage: Input) -> BasinMap:

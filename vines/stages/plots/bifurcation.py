@@ -53,7 +53,7 @@ def _draw(inputs: Mapping[str, Input], options: BifurcationOptions) -> Figure:
         *diagram_parts(stages, mirror=options.mirror),
         panels=options.panels,
         caption=options.title or listed(shared_params(stages)),
-        width=options.width,
+        width=options.inches,
         window=options.window,
     )
 

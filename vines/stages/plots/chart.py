@@ -51,7 +51,7 @@ def _draw(inputs: Mapping[str, Input], options: ChartOptions) -> Figure:
         special,
         regions,
         caption=options.title or listed(curves[0].params),
-        width=options.width,
+        width=options.inches,
     )
 
 

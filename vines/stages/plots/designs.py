@@ -131,7 +131,7 @@ def _draw(inputs: Mapping[str, Input], options: DesignsOptions) -> Figure:
         [_panel(cell, found, options) for cell in options.cells],
         columns=options.columns,
         caption=options.title,
-        width=options.width,
+        width=options.inches,
         height=options.height,
     )
 

@@ -117,7 +117,7 @@ def _draw(inputs: Mapping[str, Input], options: MeasuresOptions) -> Figure:
         _told_once([_panel(cell, inputs, options.labels) for cell in options.cells]),
         columns=options.columns,
         caption=options.title or listed(shared_params(inputs.values())),
-        width=options.width,
+        width=options.inches,
         height=options.height,
     )
 

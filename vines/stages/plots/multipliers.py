@@ -46,7 +46,7 @@ def _draw(inputs: Mapping[str, Input], options: MultipliersOptions) -> Figure:
         stages[0].axes[0],
         multiplier_lines(stages, options.panels),
         caption=options.title or listed(stages[0].params),
-        width=options.width,
+        width=options.inches,
         window=options.window,
     )
 

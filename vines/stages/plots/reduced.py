@@ -44,7 +44,7 @@ def _draw(inputs: Mapping[str, Input], options: ReducedPlotOptions) -> Figure:
     from vines.figures import reduced_figure
 
     maps = [_map(stage) for stage in inputs.values()]
-    return reduced_figure(maps, panels=options.panels, title=options.title, width=options.width)
+    return reduced_figure(maps, panels=options.panels, title=options.title, width=options.inches)
 
 
 def _map(stage: Input) -> ErrorMap:

@@ -93,7 +93,7 @@ def _draw(inputs: Mapping[str, Input], options: RegimesOptions) -> Figure:
             line for each in inputs.values() if called(each.tables, "curves") for line in lines(each, first, second)
         ),
     )
-    return regimes_figure(shown, title=options.title, width=options.width)
+    return regimes_figure(shown, title=options.title, width=options.inches)
 
 
 def _classes(frame: Any) -> Any:

@@ -80,7 +80,7 @@ def _draw(inputs: Mapping[str, Input], options: ResponseOptions) -> Figure:
 
     panels, shared = response_panels(options.cells, inputs)
     return response_figure(
-        panels, columns=options.columns, caption=options.title or listed(shared), width=options.width
+        panels, columns=options.columns, caption=options.title or listed(shared), width=options.inches
     )
 
 

@@ -78,7 +78,7 @@ def _draw(inputs: Mapping[str, Input], options: RigBranchesOptions) -> Figure:
         caption="; ".join(
             filter(None, (options.title, f"branches at {listed(shared_params(branches))}" if branches else ""))
         ),
-        width=options.width,
+        width=options.inches,
         window=options.window,
     )
 

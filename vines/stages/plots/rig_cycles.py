@@ -25,7 +25,7 @@ def _draw(inputs: Mapping[str, Input], options: RigCyclesOptions) -> Figure:
     from vines.figures import rig_cycles_figure
     from vines.stages.plots._rig import cycles_of
 
-    return rig_cycles_figure(cycles_of(inputs), caption=options.title, width=options.width)
+    return rig_cycles_figure(cycles_of(inputs), caption=options.title, width=options.inches)
 
 
 PLOT = Plot(

@@ -35,7 +35,7 @@ def _draw(inputs: Mapping[str, Input], options: RigResidualOptions) -> Figure:
         [row["protocol"] for row in runs],
         np.array([row["accepted"] for row in runs], dtype=bool),
         caption=options.title,
-        width=options.width,
+        width=options.inches,
     )
 
 

@@ -93,7 +93,7 @@ def _draw(inputs: Mapping[str, Input], options: SheetOptions) -> Figure:
         columns=options.columns,
         letters=options.letters,
         caption=options.title or listed(shared_params(inputs.values())),
-        width=options.width,
+        width=options.inches,
         height=options.height,
     )
 

@@ -1,0 +1,108 @@
+"""Figures drawn anew from what is stored: for a paper's column, in Python, or as the file that is asked for."""
+
+import re
+
+import matplotlib as mpl
+import matplotlib.image
+import pytest
+
+import vines
+from vines.errors import DeclarationError, StoreError, UnknownNameError
+from vines.stages import study
+
+FIGURE = "quickstart.figure"
+
+
+@pytest.fixture(scope="module")
+def made(quickstart):
+    return study(quickstart.root)
+
+
+def test_a_figure_is_matplotlibs_own_and_may_be_changed(made):
+    figure = vines.figure("quickstart", width="85mm", study=made)
+    assert figure.get_size_inches()[0] == pytest.approx(85 / 25.4)
+    assert [ax.get_xlabel() for ax in figure.axes][-1] == "forcing amplitude  $A$"
+    figure.axes[0].set_ylim(-3, 3)
+    assert vines.figure(FIGURE, study=made).get_size_inches()[0] == 7.0
+
+
+def test_files_have_the_format_that_is_asked_for_and_text_that_can_be_searched(quickstart, tmp_path):
+    for ending in ("pdf", "svg", "png"):
+        done = quickstart.vines("figure", FIGURE, "--out", tmp_path / f"a.{ending}", "--width", "85mm", "--dpi", "100")
+        assert done.stdout.startswith(f"wrote {tmp_path / f'a.{ending}'}")
+    assert (tmp_path / "a.pdf").read_bytes().startswith(b"%PDF")
+    assert b"/Type /Font" in (tmp_path / "a.pdf").read_bytes()
+    assert "forcing amplitude" in (tmp_path / "a.svg").read_text("utf-8")
+    assert matplotlib.image.imread(tmp_path / "a.png").shape[1] == pytest.approx(335, abs=2)
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["a.pdf", "a.png", "a.svg"]
+
+
+def test_the_same_figure_has_the_same_bytes(made, tmp_path):
+    from vines.stages import save_figure
+
+    one, other = (save_figure(FIGURE, tmp_path / name, study=made) for name in ("a.pdf", "b.pdf"))
+    assert one.read_bytes() == other.read_bytes()
+
+
+def test_a_style_sheet_is_laid_over_the_look_of_vines(made, tmp_path):
+    sheet = tmp_path / "thesis.mplstyle"
+    sheet.write_text("axes.linewidth: 2.5\nfont.family: DejaVu Serif\n")
+    figure = vines.figure(FIGURE, style=sheet, study=made)
+    assert figure.axes[0].spines["left"].get_linewidth() == 2.5
+    assert figure.axes[0].xaxis.label.get_fontfamily() == ["DejaVu Serif"]
+    assert vines.figure(FIGURE, study=made).axes[0].spines["left"].get_linewidth() == 0.7
+    assert mpl.rcParams["axes.linewidth"] == 0.8
+
+
+SENSELESS = {
+    "millimetres as inches": (["--width", "85"], r'width is 85 inch; allowed is 1\.5 to 20 inch .*; write "85mm" for mm'),
+    "a poster": (["--width", "3m"], "mm, cm, in or pt"),
+    "a hair": (["--width", "5mm"], "allowed is 1.5 to 20 inch"),
+    "another format": (["--out", "a.jpg"], r"a figure ends in \.pdf, \.png, \.svg, such as a\.pdf"),
+    "no folder": (["--out", "none/a.pdf"], "the folder none does not exist"),
+    "no style": (["--style", "thesys"], "no style 'thesys'"),
+    "no style sheet": (["--style", "none.mplstyle"], "no such style sheet"),
+    "an unknown option": (["--set", "stages.figure.colour='red'"], "unknown key 'colour'"),
+}
+
+
+@pytest.mark.parametrize("case", SENSELESS)
+def test_what_cannot_be_is_one_line_and_leaves_no_file(quickstart, case, tmp_path, monkeypatch):
+    arguments, expected = SENSELESS[case]
+    before = set(quickstart.root.iterdir())
+    done = quickstart.vines("figure", FIGURE, *arguments, check=False)
+    assert (done.returncode, done.stdout, done.stderr.count("\n")) == (2, "", 1), done.stderr
+    assert re.search(expected, done.stderr), done.stderr
+    assert set(quickstart.root.iterdir()) == before
+
+
+def test_a_style_sheet_with_a_mistake_is_named(made, tmp_path):
+    sheet = tmp_path / "thesis.mplstyle"
+    sheet.write_text("axes.linewidht: 2.5\n")
+    with pytest.raises(DeclarationError, match=r"thesis\.mplstyle: .*axes\.linewidht"):
+        vines.figure(FIGURE, style=sheet, study=made)
+    sheet.write_text("font.family: No Such Font\n")
+    with pytest.raises(DeclarationError, match="none of the fonts of 'No Such Font' is installed"):
+        vines.figure(FIGURE, style=sheet, study=made)
+
+
+def test_names_that_are_none_and_results_that_are_stale_are_refused(made):
+    with pytest.raises(UnknownNameError, match=r"quickstart has no figure 'up': .*figure"):
+        vines.figure("quickstart.up", study=made)
+    with pytest.raises(UnknownNameError, match=r"fig2 has 2 figures; name one: fig2\.figure, fig2\.caption_figure"):
+        vines.figure("fig2", study=made)
+    with pytest.raises(
+        StoreError, match=r"quickstart\.\w+ is not computed as it is declared \(.*'vines run quickstart "
+    ):
+        vines.figure(FIGURE, overrides={"params.r": 0.6}, study=made)
+
+
+@pytest.mark.parametrize("width", [85, 0.5, -1, "85"])
+def test_a_width_that_is_no_width_is_refused_when_it_is_declared(project, width):
+    declared = (project.root / "pipelines" / "quickstart.toml").read_text()
+    value = f'"{width}"' if isinstance(width, str) else width
+    text = declared.replace("[stages.figure]\n", f"[stages.figure]\nwidth = {value}\n")
+    (project.root / "pipelines" / "mine.toml").write_text(text)
+    done = project.vines("status", "mine", check=False)
+    assert (done.returncode, done.stderr.count("\n")) == (2, 1)
+    assert "width is" in done.stderr

@@ -1,0 +1,194 @@
+"""Fit what is written around the panels of a figure to its width, whatever that is."""
+
+from __future__ import annotations
+
+import itertools
+import re
+from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+    from matplotlib.text import Text
+
+__all__ = ["broken", "columns_in", "fit_titles", "place_legend"]
+
+_WORDS = re.compile(r"(?:\$[^$]*\$|[^\s$])+")
+"""What a line is not broken within: a formula, and what is written to it without a space."""
+_NARROWEST = 1.7
+"""Inches that a panel with its numbers and labels takes at least."""
+_EDGE = 4.0
+"""Points that stay free at an edge of the figure."""
+
+
+def columns_in(width: float, wanted: int) -> int:
+    """Return how many panels stand side by side: as many as are wanted, fewer where each would be too narrow.
+
+    Examples
+    --------
+    >>> [columns_in(width / 25.4, 3) for width in (85, 120, 180)]
+    [1, 2, 3]
+    """
+    return max(1, min(wanted, int(width / _NARROWEST)))
+
+
+def broken(text: str, fits: Callable[[str], bool]) -> str:
+    r"""Return a text in as few lines as fit, broken between words and never inside a formula.
+
+    Parameters
+    ----------
+    text : str
+        The text; where it fits as it stands it is returned as it is.
+    fits : callable
+        ``fits(line)`` says whether a line is short enough. A single word that is too long stands alone.
+
+    Examples
+    --------
+    >>> broken("$\\mu = 0.01$,  $A = 0.015$,  $r = 0.65$", lambda line: len(line) < 30)
+    '$\\mu = 0.01$, $A = 0.015$,\n$r = 0.65$'
+    """
+    if all(fits(line) for line in text.split("\n")):
+        return text
+    lines = [""]
+    for word in _WORDS.findall(text):
+        longer = f"{lines[-1]} {word}".lstrip()
+        if lines[-1] and not fits(longer):
+            lines.append(word)
+        else:
+            lines[-1] = longer
+    return "\n".join(lines)
+
+
+def fit_titles(figure: Figure) -> bool:
+    """Break titles that are longer than there is room, and thin numbers along x that touch each other.
+
+    The figure gets the height of the lines that come to it.
+
+    Parameters
+    ----------
+    figure : matplotlib Figure
+        With constrained layout, by which it is laid out here; its legend is placed already.
+
+    Returns
+    -------
+    bool
+        Whether anything was changed, so that it has to be laid out again.
+    """
+    engine = figure.get_layout_engine()
+    if engine is None:
+        return False
+    engine.execute(figure)  # places of the panels
+    thinned = [_thin(ax, figure) for ax in figure.axes]
+    before = after = 0.0
+    for title, room in _titles(figure):
+        old = _height(title)
+        title.set_text(broken(title.get_text(), lambda line, title=title, room=room: _width(title, line) <= room))
+        if _height(title) > old:
+            before, after = before + old, after + _height(title)
+    if after > before:
+        width, height = figure.get_size_inches()
+        figure.set_size_inches(width, height + (after - before) / figure.dpi)
+    return any(thinned) or after > before
+
+
+def place_legend(
+    figure: Figure, handles: Sequence[Any], labels: Sequence[str], *, ncols: int, handler_map: Any = None, **how: Any
+) -> None:
+    """Write a legend below the panels, in as many columns as fit the width; what it takes the figure gets in height.
+
+    Parameters
+    ----------
+    figure : matplotlib Figure
+        The figure.
+    handles : sequence of artists
+        What is shown before each label.
+    labels : sequence of str
+        The labels; one that is wider than the figure is broken.
+    ncols : int
+        Columns at most.
+    handler_map : dict, optional
+        Who draws which handles.
+    **how
+        Further options of :meth:`matplotlib.figure.Figure.legend`.
+    """
+
+    def legend(columns: int, words: Sequence[str]) -> Any:
+        for old in list(figure.legends):
+            old.remove()
+        return figure.legend(
+            list(handles), list(words), handler_map=handler_map, loc="outside lower center", ncols=columns, **how
+        )
+
+    room = figure.bbox.width - 2 * _EDGE * figure.dpi / 72
+    drawn = legend(ncols, labels)
+    first = _extent(drawn).height
+    columns = min(ncols, len(labels))
+    while columns > 1 and _extent(drawn).width > room:
+        columns -= 1
+        drawn = legend(columns, labels)
+    if (wide := _extent(drawn).width) > room:
+        text = drawn.get_texts()[0]
+        lost = wide - max(_width(each, each.get_text()) for each in drawn.get_texts())  # handles and gaps
+        drawn = legend(columns, [broken(each, lambda line: _width(text, line) <= room - lost) for each in labels])
+    taller = _extent(drawn).height - first
+    if taller > 0:
+        width, height = figure.get_size_inches()
+        figure.set_size_inches(width, height + taller / figure.dpi)
+
+
+def _titles(figure: Figure) -> list[tuple[Text, float]]:
+    """Return the titles of the figure and of its panels, each with its room, px."""
+    edge = _EDGE * figure.dpi / 72
+    found: list[tuple[Text, float]] = []
+    above: Any = getattr(figure, "_suptitle", None)
+    if above is not None and above.get_text():
+        found.append((above, figure.bbox.width - 2 * edge))
+    for ax in figure.axes:
+        left: Any = ax._left_title  # pyright: ignore[reportAttributeAccessIssue] # no other way to it
+        if left.get_text():
+            found.append((left, _room(ax, figure) - edge))
+        if ax.title.get_text():
+            found.append((ax.title, ax.bbox.width))
+    return found
+
+
+def _thin(ax: Axes, figure: Figure) -> bool:
+    """Take numbers from a linear axis along x until none touches the next; say whether any was taken."""
+    locator: Any = ax.xaxis.get_major_locator()
+    if ax.get_xscale() != "linear" or not hasattr(locator, "set_params") or not ax.xaxis.get_visible():
+        return False
+    for most in range(7, 1, -1):
+        low, high = sorted(ax.get_xlim())
+        shown = [each for each in ax.get_xticklabels() if low <= each.get_position()[0] <= high and each.get_text()]
+        gap = 0.5 * max((float(each.get_fontsize()) for each in shown), default=0.0) * figure.dpi / 72
+        boxes = [_extent(each) for each in shown]
+        if all(one.x1 + gap <= other.x0 for one, other in itertools.pairwise(boxes)):
+            return most < 7
+        locator.set_params(nbins=most)
+    return True
+
+
+def _room(ax: Axes, figure: Figure) -> float:
+    """Return how far a title may reach from the left edge of a panel: to the next panel or to the edge."""
+    box = ax.bbox
+    others = [other.bbox for other in figure.axes if other.get_label() != "<colorbar>"]
+    beside = [each.x0 for each in others if each.x0 >= box.x1 and each.y0 < box.y1 and each.y1 > box.y0]
+    return min([figure.bbox.width, *beside]) - box.x0
+
+
+def _extent(artist: Any) -> Any:
+    return artist.get_window_extent(artist.get_figure(root=True).canvas.get_renderer())
+
+
+def _width(text: Text, line: str) -> float:
+    """Return how wide a line is in the font of a text, px."""
+    kept = text.get_text()
+    text.set_text(line)
+    width = float(_extent(text).width)
+    text.set_text(kept)
+    return width
+
+
+def _height(text: Text) -> float:
+    return float(_extent(text).height)
