@@ -26,7 +26,7 @@ def own_word(word: str | Word, p: Any) -> Word:
     """
     word = Word(word)
     if getattr(p, "balls", 0) == 1 and set(word.balls) == {1}:
-        return Word(f"{word.letters[::2]}/{word.p}T")
+        return Word(f"{word.letters.replace('1', '')}/{word.p}T")
     alike = getattr(p, "alike", ())
     return word.relabelled(alike)[0] if alike and any(word.balls) else word
 
