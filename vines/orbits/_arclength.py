@@ -94,7 +94,10 @@ class Walk:
                 return None
         if np.linalg.norm((y - here.y) / self.zero.scale) > self.reach * length:
             return None
-        there = self.zero.point(y, (y - here.y) / self.zero.scale)
+        try:
+            there = self.zero.point(y, (y - here.y) / self.zero.scale)
+        except OrbitNotFound:
+            return None  # At its end a family that sticks may close, and not be found again from what was rounded.
         if here.tangent @ there.tangent < math.cos(self.turn):
             return None
         return there, iterations, crossed is not None

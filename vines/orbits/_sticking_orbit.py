@@ -128,12 +128,17 @@ def sticking_orbit(word: Word, p: Params, release: Release, remark: str = "") ->
 
 
 def _skew(way: Round, p: Params, release: Release, rows: Floats) -> float:
-    t, states, _ = _contacts(way, p, release, rows)
+    t, states, _, _ = _contacts(way, p, release, rows)
     return asymmetry(way.word, way.word.p * p.period, t, states)
 
 
-def _contacts(way: Round, p: Params, release: Release, rows: Floats) -> tuple[Floats, Floats, npt.NDArray[np.int64]]:
-    """Return times and states of the contacts in canonical order, and their rows in the order of the round."""
+def _contacts(
+    way: Round, p: Params, release: Release, rows: Floats
+) -> tuple[Floats, Floats, npt.NDArray[np.int64], float]:
+    """Return times and states of the contacts in canonical order, their rows in the order of the round, and its start.
+
+    The start is that of the clock of the round in the time of the orbit, up to its period.
+    """
     places = _places(way, rows)
     t = release.phase / p.Omega + rows[places, col.TIME]
     states = rows[places][:, [col.X1, col.V1, col.X2, col.V2]]
@@ -144,7 +149,8 @@ def _contacts(way: Round, p: Params, release: Release, rows: Floats) -> tuple[Fl
     starts = way.word.rotations()
     k = min(starts, key=lambda k: (float(t[k] % p.period), k))
     t = np.concatenate([t[k:], t[:k] + duration])
-    return t - math.floor(t[0] / p.period) * p.period, np.concatenate([states[k:], states[:k]]), places
+    early = math.floor(t[0] / p.period) * p.period
+    return t - early, np.concatenate([states[k:], states[:k]]), places, release.phase / p.Omega - early
 
 
 def _places(way: Round, rows: Floats) -> npt.NDArray[np.int64]:
@@ -165,7 +171,7 @@ def _assembled(
     way: Round, p: Params, release: Release, rows: Floats, out: Floats, half: Floats | None, remark: str
 ) -> Orbit:
     word, c = way.word, constants(p)
-    t, states, places = _contacts(way, p, release, rows)
+    t, states, places, start = _contacts(way, p, release, rows)
     twice = np.concatenate([rows, rows[1:]])
     run = Trajectory(p, 0.0, 0.0, float(rows[-1, col.TIME]), "complete", rows)
     margins = np.empty((len(run.sticks), 3))
@@ -187,7 +193,7 @@ def _assembled(
         abs(last[col.V1] - rows[0, col.V1]),
         abs(last[col.X1] - rows[0, col.X1]),
     )
-    spells = _spells(way, run, release, margins, float(t[0]))
+    spells = _spells(way, run, margins, start, float(t[0]))
     for array in (t, states, jacobians, spells):
         array.setflags(write=False)
     return Orbit(
@@ -215,7 +221,7 @@ def _with_zeros(pair: npt.NDArray[np.complex128]) -> npt.NDArray[np.complex128]:
     return np.append(pair, np.zeros(2))
 
 
-def _spells(way: Round, run: Trajectory, release: Release, margins: Floats, begin: float) -> npt.NDArray[np.void]:
+def _spells(way: Round, run: Trajectory, margins: Floats, start: float, begin: float) -> npt.NDArray[np.void]:
     """Return the spells of sticking of an orbit whose first contact is at `begin`, in the order of its contacts."""
     sticks, p = run.sticks, run.params
     releases = run.rows[run.rows[:, col.KIND] == col.RELEASE]
@@ -223,8 +229,7 @@ def _spells(way: Round, run: Trajectory, release: Release, margins: Floats, begi
     for name in ("side", "impacts", "phase_start", "phase_release"):
         out[name] = sticks[name]
     duration = way.word.p * p.period
-    late = release.phase / p.Omega + sticks["t_start"] - begin
-    shift = release.phase / p.Omega - np.floor(late / duration) * duration
+    shift = start - np.floor((start + sticks["t_start"] - begin) / duration) * duration
     out["t_start"], out["t_release"] = sticks["t_start"] + shift, sticks["t_release"] + shift
     out["x1"], out["v1"] = releases[:, col.X1], releases[:, col.V1]
     out["slowest"], out["least_force"], out["falls"] = (margins[:, k] for k in (SLOWEST, LEAST_FORCE, FALLS))
