@@ -82,7 +82,9 @@ def roles(first: Iterable[str], second: Iterable[str], groups: Collection[Collec
     names: dict[int, int] = {}
     for one, other in zip(first, second, strict=True):
         ball, there = ball_of(one), ball_of(other)
-        if (one[0], one.endswith(STICKS)) != (other[0], other.endswith(STICKS)) or names.setdefault(ball, there) != there:
+        if (one[0], one.endswith(STICKS)) != (other[0], other.endswith(STICKS)) or names.setdefault(
+            ball, there
+        ) != there:
             return {}
     changed = {ball: there for ball, there in names.items() if ball != there}
     alike = all(any({ball, there} <= set(group) for group in groups) for ball, there in changed.items())

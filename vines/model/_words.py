@@ -15,9 +15,7 @@ __all__ = ["Word", "word_for"]
 
 _LEFT, _RIGHT = (contact.letter for contact in VI_NES.contacts)
 _SIGNS = {contact.letter: contact.sign for contact in VI_NES.contacts}
-_SHAPE = re.compile(
-    rf"((?:[{VI_NES.alphabet}]\*?)+|(?:[{VI_NES.alphabet}][1-9]\*?)+)(?:/([1-9][0-9]*)?T)?"
-)
+_SHAPE = re.compile(rf"((?:[{VI_NES.alphabet}]\*?)+|(?:[{VI_NES.alphabet}][1-9]\*?)+)(?:/([1-9][0-9]*)?T)?")
 _SWAP = str.maketrans(dict(VI_NES.mirror.letters))
 _HOW = (
     f"write the impacts as letters {' and '.join(VI_NES.alphabet)}, each with the number of its ball where there are "
@@ -33,9 +31,9 @@ class Word:
     p forcing periods. An orbit has no first impact, so that any rotation names the same orbit; the
     lexicographically least one is kept. A repetition stays one: ``LRLR/2T`` is an orbit of least period 2T.
 
-    A star behind a letter is a complete chatter: all impacts of the ball on that wall since it last hit elsewhere or was
-    let go, infinitely many, after which it sticks to the wall until the contact force vanishes. They count as one contact
-    at the time of the first, so that ``L*R*`` is a 1:1 orbit that sticks on both sides, and ``LR`` one that never does.
+    A star behind a letter is a complete chatter: all impacts of the ball on that wall since it last hit elsewhere or
+    was let go, infinitely many, after which it sticks to the wall until the contact force vanishes. They count as one
+    contact at the time of the first: ``L*R*`` is a 1:1 orbit that sticks on both sides, ``LR`` one that never does.
 
     Where a system has several balls, each letter has the number of the ball that hits: ``L1L2R1R2``. A system with one
     ball writes no number.

@@ -50,8 +50,8 @@ def continue_orbit(
 ) -> Branch:
     """Follow an orbit in one parameter, through folds, and locate the bifurcations on the way.
 
-    The branch ends where the parameter leaves its range on either side, or at the grazing that ends admissibility; a
-    family that sticks also where a chatter no longer completes, or where the contact force would vanish without falling.
+    The branch ends where the parameter leaves its range on either side, or at the grazing that ends admissibility. A
+    family that sticks ends also where a chatter no longer completes, or the contact force vanishes without falling.
 
     Parameters
     ----------
@@ -179,9 +179,7 @@ class _Branch:
         last, nothing = self.points[-1].orbit, complex(math.nan, math.nan)
         value = min(max(self.points[-1].value + found.beyond, self.low), self.high)
         there = last.params.replace(**{self.problem.parameter: value})
-        self.bifurcations.append(
-            Bifurcation(found.type, self.problem.parameter, value, there, nothing, nothing, last)
-        )
+        self.bifurcations.append(Bifurcation(found.type, self.problem.parameter, value, there, nothing, nothing, last))
         return found.type
 
     def _record(self, here: Point, there: Point, last: bool) -> str | None:

@@ -72,7 +72,7 @@ class StickingProblem:
 
     def _by_parameter(self, y: Floats, here: Floats) -> Floats:
         step = DIFFERENCE * max(abs(float(y[-1])), 0.01)
-        sides = [(shift, self._defect(y + [0.0, 0.0, shift])) for shift in (step, -step)]
+        sides = [(shift, self._defect(np.array([y[0], y[1], y[2] + shift]))) for shift in (step, -step)]
         known = [(shift, met[0]) for shift, met in sides if met is not None]
         if not known:
             return np.full(2, math.nan)

@@ -3,7 +3,7 @@
 Just after a release the ball is on a wall, moves with it, and the contact force vanishes: x1'' = F - lam v1 - x1 = 0. So
 the phase of the forcing and v1 say all, and a periodic orbit that sticks is a fixed point of a map of the plane. The
 impacts of its chatters are not unknowns: the event loop finds them, as many as it takes until a merge is exact to
-rounding. The derivative of the map is that of the tangent map, with its impacts, merges and releases (docs/sticking.md).
+rounding. The derivative of the map is that of the tangent map, through impacts, merges and releases (docs/sticking.md).
 """
 
 from __future__ import annotations
@@ -12,9 +12,9 @@ import math
 
 from vines.dynamics.kernels import advance, begin, flow_basis, jump_basis
 from vines.dynamics.kernels import rows as col
-from vines.kernels import linked_njit, new_matrix, new_vector, njit, zero_matrix, zero_vector
+from vines.kernels import linked_njit, new_vector, njit, zero_matrix
 
-__all__ = ["CHATTER", "ROOM", "newton_round", "round_kernel", "search_rounds"]
+__all__ = ["CHATTER", "ROOM", "force_slope", "newton_round", "pass_event", "round_kernel", "search_rounds"]
 
 CHATTER = 2
 """Size of the mark of a contact that is a complete chatter; that of a single impact is 1."""
@@ -26,7 +26,10 @@ _LONGEST = 2.0
 """A round may last that many spans and one forcing period more."""
 
 _HALVINGS = 12
-_ITERATIONS = 40
+
+_QUICK = 40
+"""Rounds that Newton's method may take from a release of a grid: from a good one it takes five to ten."""
+
 _EPS = 2.220446049250313e-16
 
 
@@ -49,6 +52,24 @@ def _release(c, side, phase, v1, state):
     return side * (force_slope(c, phase) - v1) < 0.0
 
 
+@njit
+def pass_event(c, row, Y):
+    """Apply the effect of an event to the disturbances that are the columns of Y, as `jump_basis`, and exactly at a merge.
+
+    A disturbed run has a gap then, which what is left of its chatter closes; meanwhile the damper gives the common motion
+    lam mu/(1 + mu)² times the gap (docs/sticking.md). That is as small as the hops that the merge leaves out.
+    """
+    if row[col.KIND] != col.STICK:
+        jump_basis(c, row, Y)
+        return
+    share = c.lam * c.mu / ((1.0 + c.mu) * (1.0 + c.mu))
+    closes = Y[0] - Y[2]
+    jump_basis(c, row, Y)
+    for j in range(4):
+        Y[1, j] += share * closes[j]
+        Y[3, j] += share * closes[j]
+
+
 @linked_njit
 def round_kernel(c, side, wanted, span, phase, v1, rows, out):
     """Run from a release to the one that ends the wanted contacts.
@@ -67,8 +88,8 @@ def round_kernel(c, side, wanted, span, phase, v1, rows, out):
     rows : (ROOM, ROW) float array
         Filled with the events, from a row for the start to that of the release.
     out : (6,) float array
-        Filled with the time from release to release, the velocity there, and the derivatives of the time by the time and
-        the velocity at the start, then those of the velocity.
+        Filled with the time from release to release, the velocity there, and the derivatives of that time by time and
+        velocity of the start, then those of the velocity.
 
     Returns
     -------
@@ -119,7 +140,7 @@ def round_kernel(c, side, wanted, span, phase, v1, rows, out):
     Y[1, 1] = Y[3, 1] = 1.0
     for i in range(1, count):
         flow_basis(c, rows[i - 1, col.MODE], rows[i, col.TAU], Y)
-        jump_basis(c, rows[i], Y)
+        pass_event(c, rows[i], Y)
     # A disturbed run is let go when its own force vanishes. Until then x1'' is 0, to first order.
     falls = force_slope(c, last[col.PHASE]) - last[col.V1]
     for j in range(2):
@@ -134,8 +155,17 @@ def _defect(out, span, sign, v1):
 
 
 @linked_njit
-def newton_round(c, side, wanted, span, sign, phase, v1, rows, out):
+def newton_round(c, side, wanted, span, sign, phase, v1, most, rows, out):
     """Solve for a release that comes back after a span, or as its mirror image (sign -1), by damped Newton steps.
+
+    Parameters
+    ----------
+    c, side, wanted, span, phase, v1, rows, out
+        As for `round_kernel`; the release from which to start.
+    sign : float
+        +1 or -1.
+    most : int
+        Rounds that may be run.
 
     Returns
     -------
@@ -147,7 +177,8 @@ def newton_round(c, side, wanted, span, sign, phase, v1, rows, out):
         return 0, phase, v1, math.inf
     late, fast = _defect(out, span, sign, v1)
     size = max(abs(late), abs(fast))
-    for _ in range(_ITERATIONS):
+    ran = 1
+    while ran < most:
         a, b = out[2] - 1.0, out[3]
         d, e = out[4], out[5] - sign
         det = a * e - b * d
@@ -159,6 +190,7 @@ def newton_round(c, side, wanted, span, sign, phase, v1, rows, out):
         for _ in range(_HALVINGS):
             trial_phase, trial_v = phase + share * c.Omega * dt, v1 + share * dv
             met = round_kernel(c, side, wanted, span, trial_phase, trial_v, rows, out)
+            ran += 1
             if met > 0:
                 late, fast = _defect(out, span, sign, trial_v)
                 better = max(abs(late), abs(fast))
@@ -202,7 +234,7 @@ def search_rounds(c, side, wanted, span, sign, phases, speeds, rows, found):
             if round_kernel(c, side, wanted, span, phases[i], v1, rows, out) == 0:
                 continue
             met += 1
-            rounds, phase, v, _ = newton_round(c, side, wanted, span, sign, phases[i], v1, rows, out)
+            rounds, phase, v, _ = newton_round(c, side, wanted, span, sign, phases[i], v1, _QUICK, rows, out)
             if rounds == 0 or count == found.shape[0]:
                 continue
             new = True

@@ -28,6 +28,9 @@ Floats = npt.NDArray[np.float64]
 _SAME = 1e-9
 """Largest difference, in any component, of an orbit to its mirror image that counts as symmetric."""
 
+_ROUNDS = 400
+"""Rounds that Newton's method may take from a guess."""
+
 _ALMOST = 1e-5
 """The same before the symmetric solution is computed as such."""
 
@@ -68,7 +71,16 @@ class Round:
     def solve(self, p: Params, guess: Release) -> tuple[Release | None, float]:
         """Return the release that Newton's method finds, None if none, and what is left of the defect."""
         count, phase, v1, defect = newton_round(
-            constants(p), self.side, self.wanted, self.span(p.period), self.sign, guess.phase, guess.v1, _rows(), _out()
+            constants(p),
+            self.side,
+            self.wanted,
+            self.span(p.period),
+            self.sign,
+            guess.phase,
+            guess.v1,
+            _ROUNDS,
+            _rows(),
+            _out(),
         )
         return (Release(phase % (2 * math.pi), v1) if count else None), defect
 
@@ -154,7 +166,7 @@ def _contacts(
 
 
 def _places(way: Round, rows: Floats) -> npt.NDArray[np.int64]:
-    """Return the rows of the contacts of a round: each impact, but of a chatter that ends in sticking only the first."""
+    """Return the rows of the contacts of a round: each impact, but of a complete chatter only the first."""
     places: list[int] = []
     going = False
     for i, kind in enumerate(rows[:, col.KIND].tolist()):
@@ -218,7 +230,7 @@ def _assembled(
 
 def _with_zeros(pair: npt.NDArray[np.complex128]) -> npt.NDArray[np.complex128]:
     """Return the multipliers of an orbit that sticks: sticking leaves nothing of the two directions of w and w'."""
-    return np.append(pair, np.zeros(2))
+    return np.concatenate([pair, np.zeros(2, dtype=np.complex128)])
 
 
 def _spells(way: Round, run: Trajectory, margins: Floats, start: float, begin: float) -> npt.NDArray[np.void]:

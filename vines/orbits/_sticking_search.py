@@ -27,8 +27,10 @@ _GRID = 48
 """Releases tried in either direction."""
 
 _PERIODS = 200
+"""Forcing periods of each simulation, beside twenty of those of the orbit."""
+
 _LATE = 16
-"""Releases of each simulation that are tried: the last ones."""
+"""Releases of each simulation that are tried: the last ones, and two periods of the orbit in all."""
 
 _MARGIN = 1.5
 """By how much releases of the grid may be faster than any seen in the simulations."""
@@ -52,7 +54,9 @@ def search_sticking(word: Word, p: Params) -> tuple[list[Orbit], str]:
     if word.n == 0 or word.m == 0:
         return found, "every contact on one wall pushes the ball the same way, and nothing brings it back"
     runs = [
-        simulate(p, **dict(zip(STATE_NAMES, start, strict=True)), periods=_PERIODS, max_impacts_per_period=2000)
+        simulate(
+            p, **dict(zip(STATE_NAMES, start, strict=True)), periods=_PERIODS + 20 * word.p, max_impacts_per_period=2000
+        )
         for start in STARTS
     ]
     for release in (*_of_runs(way, p, runs), *_of_grid(way, p, _fastest(runs, p))):
@@ -95,8 +99,8 @@ def _of_runs(way: Round, p: Params, runs: list[Trajectory]) -> Iterator[Release]
     """Yield what Newton's method finds from the last releases of simulations."""
     for run in runs:
         rows = run.rows
-        late = rows[(rows[:, col.KIND] == col.RELEASE) & (rows[:, col.SIDE] == way.side)][-_LATE:]
-        for row in late:
+        late = rows[(rows[:, col.KIND] == col.RELEASE) & (rows[:, col.SIDE] == way.side)]
+        for row in late[-(_LATE + 2 * sum(way.word.sticks)) :]:
             release, _ = way.solve(p, Release(float(row[col.PHASE]), float(row[col.V1])))
             if release is not None:
                 yield release
@@ -128,7 +132,7 @@ def _fastest(runs: list[Trajectory], p: Params) -> float:
 
 
 def refine_sticking(word: Word, p: Params, guess: Orbit | npt.ArrayLike) -> Orbit:
-    """Return the orbit that Newton's method finds from a guess: an orbit of the word, or time and velocity of a release.
+    """Return the orbit that Newton's method finds from an orbit of the word, or from time and velocity of a release.
 
     Raises
     ------

@@ -10,13 +10,12 @@ from vines.dynamics.kernels import (
     flight,
     flow_basis,
     free_ball,
-    jump_basis,
     pull,
     turn,
 )
 from vines.dynamics.kernels import rows as col
 from vines.kernels import copy_values, linked_njit, new_cube, njit, zero_matrix
-from vines.orbits._sticking_map import force_slope
+from vines.orbits._sticking_map import force_slope, pass_event
 from vines.orbits._survey import NO_TURNING
 from vines.orbits._turning import turning_points_kernel
 
@@ -97,7 +96,7 @@ def _to_contact(c, rows, first, last, J):
     _just_after(c, rows[first], Y)
     for i in range(first + 1, last):
         flow_basis(c, rows[i - 1, col.MODE], rows[i, col.TAU], Y)
-        jump_basis(c, rows[i], Y)
+        pass_event(c, rows[i], Y)
     flow_basis(c, rows[last - 1, col.MODE], rows[last, col.TAU], Y)
     row = rows[last]
     motion = flight(c, c.free, row[col.X1], row[col.V1], row[col.PHASE], 0.0)
