@@ -1,9 +1,9 @@
 """Attractors that stick at random parameters, each found as an orbit by its word.
 
-Run as ``python -m benchmarks.sticking [points] [seed]``. mu is drawn log-uniformly from .005 to 1, lam from .005 to .4, A from
-.01 to 1, Omega from .6 to 1.6 and r from .3 to .9. What `settle` finds from its default start counts if it is periodic
-and sticks; of ``L*R*`` no more than six in ten. Each orbit is compared with the simulator in time and state of every contact
-and release, and its multipliers with differences in 70 digits by a code of its own.
+Run as ``python -m benchmarks.sticking [points] [seed]``. mu is drawn log-uniformly from .005 to 1, lam from .005 to .4,
+A from .01 to 1, Omega from .6 to 1.6 and r from .3 to .9. What `settle` finds from its default start counts if it is
+periodic and sticks; of ``L*R*`` no more than six in ten. Each orbit is compared with the simulator in time and state of
+every contact and release, and its multipliers with differences in 70 digits by a code of its own.
 """
 
 from __future__ import annotations

@@ -29,7 +29,7 @@ STEP = mp.mpf("1e-18")
 
 
 class Event(NamedTuple):
-    """An impact: wall and time, and, if it is the last of a chatter that was followed, how long the ball then sticks."""
+    """An impact: wall and time, and, if it is the last of a followed chatter, how long the ball sticks then."""
 
     side: int
     t: float

@@ -67,6 +67,8 @@ def left_family(joint: Bifurcation) -> Orbit:
         If it is lost.
     """
     orbit = joint.orbit
+    if orbit.word.sticking:
+        raise OrbitNotFound(f"what {joint} comes out of sticks; find it by its own word and follow it to there")
     n = len(orbit.word) // 2
     if joint.type == "period_doubling":
         word = Word(f"{orbit.word.letters[:n]}/{orbit.word.p // 2}T")

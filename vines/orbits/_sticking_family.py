@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from vines.errors import ParameterError
-from vines.model import Params
+from vines.model import Params, Word
 from vines.orbits._family import DIFFERENCE
 from vines.orbits._orbit import Orbit
 from vines.orbits._sticking_orbit import Release, Round, release_of, sticking_orbit
@@ -29,13 +29,19 @@ class StickingProblem:
         Gives the word and the parameters that stay fixed.
     parameter : str
         Name of the parameter that varies.
+    word : Word, optional
+        Another word, of which the orbit is one too: its own, gone through twice.
+    symmetric : bool, optional
+        Whether the family is to be kept symmetric; by default if the orbit is.
     """
 
-    def __init__(self, orbit: Orbit, parameter: str) -> None:
-        self.word = orbit.word
+    def __init__(
+        self, orbit: Orbit, parameter: str, *, word: Word | None = None, symmetric: bool | None = None
+    ) -> None:
+        self.word = orbit.word if word is None else word
         self.parameter = parameter
         self._fixed = orbit.params
-        self._round = Round(orbit.word, half=orbit.symmetric)
+        self._round = Round(self.word, half=orbit.symmetric if symmetric is None else symmetric)
         begin = release_of(orbit)
         self.start = np.array([begin.phase, begin.v1, orbit.params.as_dict()[parameter]])
 

@@ -1,7 +1,7 @@
 """From one release to the release that ends a sequence of contacts, by the event loop of the simulator itself.
 
-Just after a release the ball is on a wall, moves with it, and the contact force vanishes: x1'' = F - lam v1 - x1 = 0. So
-the phase of the forcing and v1 say all, and a periodic orbit that sticks is a fixed point of a map of the plane. The
+Just after a release the ball is on a wall, moves with it, and the contact force vanishes: x1'' = F - lam v1 - x1 = 0.
+So the phase of the forcing and v1 say all, and a periodic orbit that sticks is a fixed point of a map of the plane. The
 impacts of its chatters are not unknowns: the event loop finds them, as many as it takes until a merge is exact to
 rounding. The derivative of the map is that of the tangent map, through impacts, merges and releases (docs/sticking.md).
 """
@@ -54,10 +54,10 @@ def _release(c, side, phase, v1, state):
 
 @njit
 def pass_event(c, row, Y):
-    """Apply the effect of an event to the disturbances that are the columns of Y, as `jump_basis`, and exactly at a merge.
+    """Apply the effect of an event to the disturbances that are the columns of Y, at a merge better than `jump_basis`.
 
-    A disturbed run has a gap then, which what is left of its chatter closes; meanwhile the damper gives the common motion
-    lam mu/(1 + mu)² times the gap (docs/sticking.md). That is as small as the hops that the merge leaves out.
+    A disturbed run has a gap then, which what is left of its chatter closes; meanwhile the damper gives the common
+    motion lam mu/(1 + mu)² times the gap (docs/sticking.md), which is as small as the hops that the merge leaves out.
     """
     if row[col.KIND] != col.STICK:
         jump_basis(c, row, Y)
