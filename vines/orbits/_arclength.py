@@ -97,7 +97,7 @@ class Walk:
         try:
             there = self.zero.point(y, (y - here.y) / self.zero.scale)
         except OrbitNotFound:
-            return None  # At its end a family that sticks may close, and not be found again from what was rounded.
+            return None
         if here.tangent @ there.tangent < math.cos(self.turn):
             return None
         return there, iterations, crossed is not None
