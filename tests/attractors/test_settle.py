@@ -108,7 +108,7 @@ def test_an_unstable_orbit_is_left() -> None:
 def test_a_complete_chatter_is_one_contact() -> None:
     p = Params(mu=0.630582, A=0.299886, Omega=1.23057, r=0.287605, lam=0.229229)
     found = settle(p)
-    assert (found.regime, found.word) == ("periodic", "LR/3T")
+    assert (found.regime, found.word) == ("periodic", "L*R*/3T")
     assert found.sticks == pytest.approx(2 / 3)
     assert found.measures.impacts_left > 2
     assert np.isneginf(found.exponents[-1])

@@ -150,3 +150,30 @@ def test_bad_words_are_refused_in_one_line(text):
 def test_the_type_alone_does_not_tell_the_order():
     with pytest.raises(ParameterError, match="order of the impacts"):
         Word("2:2/2T")
+
+
+@pytest.mark.parametrize(
+    ("text", "canonical", "name", "sticks", "symmetric", "mirror"),
+    [
+        ("RL*", "L*R", "1:1", (True, False), False, "LR*"),
+        ("R*L*/3T", "L*R*/3T", "1:1/3T", (True, True), True, "L*R*/3T"),
+        ("RLLR*", "LLR*R", "2:2", (False, False, True, False), False, "L*LRR"),
+    ],
+)
+def test_a_star_is_a_complete_chatter(text, canonical, name, sticks, symmetric, mirror):
+    word = Word(text)
+    assert (str(word), word.name, word.sticks, word.symmetric) == (canonical, name, sticks, symmetric)
+    assert word.sticking
+    assert str(word.mirror) == mirror
+    assert not Word("LLR").sticking
+
+
+@pytest.mark.parametrize("text", ["LL*R", "L*RL", "R*LR"])
+def test_an_impact_of_a_chatter_is_not_written_apart(text):
+    with pytest.raises(ParameterError, match="part of that chatter"):
+        Word(text)
+
+
+def test_equal_balls_keep_their_stars():
+    assert str(Word("L2*L1R2R1").relabelled([(1, 2)])[0]) == "L1*L2R1R2"
+    assert (Word("L1*R2").sticks, Word("L1*R2").balls) == ((True, False), (1, 2))

@@ -7,7 +7,10 @@ import numpy as np
 from vines.dynamics.kernels import rows as col
 from vines.kernels import integer_vector, linked_njit, njit
 
-__all__ = ["contacts", "difference", "mark", "mirror_difference", "repetition"]
+__all__ = ["STUCK", "completes", "contacts", "difference", "mark", "mirror_difference", "repetition"]
+
+STUCK = 64
+"""Added to the size of a `mark` where the contact is a complete chatter."""
 
 
 @njit
@@ -15,6 +18,20 @@ def mark(rows, i):
     """Return the wall of a contact, times the number of the ball where there are several."""
     side = 1 if rows[i, col.SIDE] > 0.0 else -1
     return side * int(rows[i, col.ROW]) if rows.shape[1] > col.ROW else side
+
+
+@njit
+def completes(rows, n, i):
+    """Say whether the impacts of a ball on a wall that begin with row i end in sticking."""
+    balls = rows.shape[1] > col.ROW
+    for j in range(i + 1, n):
+        if balls and rows[j, col.ROW] != rows[i, col.ROW]:
+            continue
+        if rows[j, col.KIND] == col.STICK:
+            return True
+        if rows[j, col.KIND] == col.IMPACT and mark(rows, j) != mark(rows, i):
+            return False
+    return False
 
 
 @linked_njit

@@ -7,7 +7,15 @@ import math
 from vines.attractors import _verdict as v
 from vines.attractors._approach import nearest_orbit
 from vines.attractors._coming import comes
-from vines.attractors._contacts import contacts, difference, mark, mirror_difference, repetition
+from vines.attractors._contacts import (
+    STUCK,
+    completes,
+    contacts,
+    difference,
+    mark,
+    mirror_difference,
+    repetition,
+)
 from vines.attractors._multipliers import multipliers
 from vines.dynamics.kernels import directions, ringing, tangent_product
 from vines.dynamics.kernels import rows as col
@@ -66,7 +74,8 @@ def judge_window(c, rows, n, periods, tolerance, longest, verdict):
     Returns
     -------
     ndarray of int8
-        Sides of the contacts in one repetition, in order of time; empty if there is none.
+        Sides of the contacts in one repetition, in order of time, that of a complete chatter larger by STUCK; empty if
+        there is none.
     """
     clear(verdict)
     kept = contacts(rows, n, 0.0)
@@ -90,7 +99,7 @@ def judge_window(c, rows, n, periods, tolerance, longest, verdict):
             least = p
             while least % 2 == 0 and 2 * lags[least // 2] == lags[least] and lasts[least // 2] < HALVED:
                 least //= 2
-            return _repeats(c, rows, kept, least, lags[least], lasts[least], tolerance, verdict)
+            return _repeats(c, rows, n, kept, least, lags[least], lasts[least], tolerance, verdict)
         if best == 0 or lasts[p] < 0.5 * lasts[best]:
             best, best_filled = p, filled
     verdict[v.REGIME] = v.OPEN
@@ -125,25 +134,25 @@ def _largest_speed(rows, n):
 
 
 @cold_njit
-def _repeats(c, rows, kept, p, lag, last, tolerance, verdict):
+def _repeats(c, rows, n, kept, p, lag, last, tolerance, verdict):
     """Judge a run that repeats: it may still be creeping towards its orbit, or sit on an unstable one."""
     count = kept.shape[0]
     span = p * 2.0 * math.pi / c.Omega
     first, end = kept[count - 1 - lag], kept[count - 1]
-    n = len(directions(c))
-    roots = complex_vector(n)
+    d = len(directions(c))
+    roots = complex_vector(d)
     largest = multipliers(tangent_product(c, rows, first, end), roots)
     for i in range(first + 1, end + 1):
         if rows[i, col.KIND] == col.STICK:
             # After a merge two directions are gone, those of the ball against the wall; what shows is rounding.
-            roots[n - 2] = roots[n - 1] = 0.0
+            roots[d - 2] = roots[d - 1] = 0.0
             break
     nearest = math.inf
-    for k in range(n):
+    for k in range(d):
         size = abs(roots[k])
         nearest = min(nearest, abs(1.0 - roots[k]))
-        verdict[v.EXPONENTS + n + k] = roots[k].real
-        verdict[v.EXPONENTS + 2 * n + k] = roots[k].imag
+        verdict[v.EXPONENTS + d + k] = roots[k].real
+        verdict[v.EXPONENTS + 2 * d + k] = roots[k].imag
         verdict[v.EXPONENTS + k] = math.log(size) / span if size > 0.0 else -math.inf
     verdict[v.LYAPUNOV_ERROR] = 0.0
     if largest > 1.0 + UNSTABLE:
@@ -166,8 +175,12 @@ def _repeats(c, rows, kept, p, lag, last, tolerance, verdict):
             return byte_vector(0)
     sides = byte_vector(lag)
     for k in range(lag):
-        sides[k] = mark(rows, kept[count - lag + k])
+        # The oldest of them: what a chatter at the end of the window becomes may not be seen any more.
+        i = kept[count - 1 - lag + k]
+        sides[k] = mark(rows, i)
         verdict[v.LEFT if sides[k] > 0 else v.RIGHT] += 1.0
+        if completes(rows, n, i):
+            sides[k] += STUCK if sides[k] > 0 else -STUCK
     verdict[v.REGIME], verdict[v.SETTLED] = v.PERIODIC, 1.0
     verdict[v.P], verdict[v.LAG] = p, lag
     mirrored = mirror_difference(rows, kept, lag, span, verdict[v.SCALE])

@@ -10,6 +10,7 @@ import numpy.typing as npt
 
 from vines.attractors import _verdict as v
 from vines.attractors._attractor import Attractor
+from vines.attractors._contacts import STUCK
 from vines.dynamics.kernels import room_of
 from vines.dynamics.runs import STATUS, measures_from
 from vines.model import VI_NES, Word
@@ -21,13 +22,23 @@ _WORDS: dict[tuple[bytes, int, tuple[tuple[int, ...], ...], int], Word] = {}
 
 
 def word_of(sides: npt.NDArray[np.int8], p: int, of: Any = None) -> Word:
-    """Return the word of the contacts in one repetition of p forcing periods; each is worked out once."""
+    """Return the word of the contacts in one repetition of p forcing periods; each is worked out once.
+
+    `sides` is the wall times the number of the ball, the size larger by STUCK where the contact is a complete chatter.
+    """
     alike = getattr(of, "alike", ())
     balls = getattr(of, "balls", 0)
     key = (sides.tobytes(), p, alike, balls)
     word = _WORDS.get(key)
     if word is None:
-        letters = of.system.letters(sides, np.abs(sides).tolist()) if balls else VI_NES.letters(sides)
+        numbers = np.abs(sides)
+        stuck = numbers > STUCK
+        numbers = np.where(stuck, numbers - STUCK, numbers).tolist()
+        each = [
+            of.system.letters([side], [ball]) if balls else VI_NES.letters([side])
+            for side, ball in zip(sides.tolist(), numbers, strict=True)
+        ]
+        letters = "".join(name + "*" * sticks for name, sticks in zip(each, stuck.tolist(), strict=True))
         word = _WORDS[key] = own_word(f"{letters}/{p}T", of)
     return word
 

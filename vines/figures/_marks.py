@@ -17,6 +17,8 @@ MARKS = {
     "fold": ("D", "fold"),
     "neimark_sacker": ("^", "Neimark–Sacker"),
     "grazing": ("v", "grazing"),
+    "incomplete_chatter": ("X", "chatter no longer completes"),
+    "release_tangency": ("P", "release without a fall of the contact force"),
     "pair_turns_real": ("|", "a pair of multipliers turns real"),
 }
 """Symbol and name of each type."""

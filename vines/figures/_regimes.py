@@ -8,11 +8,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
-<<<<<<< HEAD
 from vines.figures._chart import CurveLine, curve_entries, draw_curves
-=======
 from vines.figures._fit import columns_in, place_legend
->>>>>>> 461f2b691aee4420b7fae0fb8c387bec24c10cfa
 from vines.figures._names import NAMES, SYMBOLS
 from vines.figures._style import look, new_figure
 
@@ -155,14 +152,11 @@ def regimes_figure(data: RegimeMap, *, title: str = "", width: float = 7.0) -> F
             handles.append(
                 Patch(facecolor=dark, edgecolor="#777777", linewidth=0.5, label="any, darker: sticking recurs")
             )
-<<<<<<< HEAD
         for label, line in curve_entries(data.curves):
             line.set_label(label)
             handles.append(line)
-        figure.legend(handles=handles, loc="outside lower center", ncols=4 if data.curves else 5)
-=======
-        place_legend(figure, handles, [str(each.get_label()) for each in handles], ncols=5)
->>>>>>> 461f2b691aee4420b7fae0fb8c387bec24c10cfa
+        labels = [str(each.get_label()) for each in handles]
+        place_legend(figure, handles, labels, ncols=4 if data.curves else 5)
         figure.suptitle(", ".join(part for part in (title, data.caption) if part), fontsize=9)
     return figure
 

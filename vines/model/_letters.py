@@ -1,28 +1,49 @@
-"""The letters of words: impacts one by one, rotations, and names of equal balls."""
+"""The letters of words: contacts one by one, rotations, and names of equal balls."""
 
 from __future__ import annotations
 
+import re
 from collections.abc import Collection, Iterable
 
-__all__ = ["impacts", "renamed", "roles", "rotated"]
+__all__ = ["STICKS", "ball_of", "impacts", "renamed", "roles", "rotated"]
+
+STICKS = "*"
+"""Behind the letter of a contact that is a complete chatter, after which the ball sticks."""
+
+_CONTACT = re.compile(r"[A-Z][1-9]?\*?")
 
 
 def impacts(letters: str) -> list[str]:
-    """Return each impact: a letter, with the number of its ball if there is one.
+    """Return each contact: a letter, with the number of its ball if there is one, and a star if the ball sticks.
 
     Examples
     --------
-    >>> impacts("LLR"), impacts("L1R2")
-    (['L', 'L', 'R'], ['L1', 'R2'])
+    >>> impacts("LLR"), impacts("L1R2"), impacts("L*R")
+    (['L', 'L', 'R'], ['L1', 'R2'], ['L*', 'R'])
     """
+    if STICKS in letters:
+        return _CONTACT.findall(letters)
     width = 1 + letters[-1:].isdecimal()
     return [letters[k : k + width] for k in range(0, len(letters), width)]
 
 
+def ball_of(contact: str) -> int:
+    """Return the number of the ball of a contact, 0 where balls have no numbers."""
+    return int(contact[1:].rstrip(STICKS) or 0)
+
+
 def rotated(letters: str) -> list[str]:
-    """Return all rotations, from the letters as they are."""
-    width = 1 + letters[-1:].isdecimal()
-    return [letters[k:] + letters[:k] for k in range(0, len(letters), width)]
+    """Return all rotations, from the letters as they are.
+
+    Examples
+    --------
+    >>> rotated("L*RR")
+    ['L*RR', 'RRL*', 'RL*R']
+    """
+    starts = [0]
+    for each in impacts(letters)[:-1]:
+        starts.append(starts[-1] + len(each))
+    return [letters[k:] + letters[:k] for k in starts]
 
 
 def renamed(letters: str, groups: Collection[Collection[int]]) -> tuple[str, dict[int, int]]:
@@ -41,7 +62,7 @@ def renamed(letters: str, groups: Collection[Collection[int]]) -> tuple[str, dic
     names: dict[int, int] = {}
     found: list[str] = []
     for each in impacts(letters):
-        ball = int(each[1:] or 0)
+        ball = ball_of(each)
         if ball in own and ball not in names:
             names[ball] = own[ball].pop(0)
         found.append(each[0] + each[1:].replace(str(ball), str(names.get(ball, ball))))
@@ -60,8 +81,10 @@ def roles(first: Iterable[str], second: Iterable[str], groups: Collection[Collec
     """
     names: dict[int, int] = {}
     for one, other in zip(first, second, strict=True):
-        ball, there = int(one[1:] or 0), int(other[1:] or 0)
-        if one[0] != other[0] or names.setdefault(ball, there) != there:
+        ball, there = ball_of(one), ball_of(other)
+        if (one[0], one.endswith(STICKS)) != (other[0], other.endswith(STICKS)) or names.setdefault(
+            ball, there
+        ) != there:
             return {}
     changed = {ball: there for ball, there in names.items() if ball != there}
     alike = all(any({ball, there} <= set(group) for group in groups) for ball, there in changed.items())

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 from vines.bounds import shown
 from vines.errors import ParameterError
-from vines.model._letters import impacts, renamed, roles, rotated
+from vines.model._letters import STICKS, ball_of, impacts, renamed, roles, rotated
 from vines.model._system import System
 from vines.model._vi_nes import VI_NES
 
@@ -16,13 +16,13 @@ __all__ = ["Word", "word_for"]
 
 _LEFT, _RIGHT = (contact.letter for contact in VI_NES.contacts)
 _SIGNS = {contact.letter: contact.sign for contact in VI_NES.contacts}
-_SHAPE = re.compile(rf"([{VI_NES.alphabet}]+|(?:[{VI_NES.alphabet}][1-9])+)(?:/([1-9][0-9]*)?T)?")
+_SHAPE = re.compile(rf"((?:[{VI_NES.alphabet}]\*?)+|(?:[{VI_NES.alphabet}][1-9]\*?)+)(?:/([1-9][0-9]*)?T)?")
 _LONGEST = 200
 """Most impacts of a word, and most forcing periods."""
 _SWAP = str.maketrans(dict(VI_NES.mirror.letters))
 _HOW = (
     f"write the impacts as letters {' and '.join(VI_NES.alphabet)}, each with the number of its ball where there are "
-    "several, then /pT if p > 1, such as LR, LLR, LRLR/2T or L1L2R1R2"
+    "several and a star where it sticks, then /pT if p > 1, such as LR, LLR, LRLR/2T, L*R or L1L2R1R2"
 )
 
 
@@ -33,6 +33,10 @@ class Word:
     L is an impact on the left end of the cavity (w = +1), R on the right (w = -1), in the order of time, over
     p forcing periods. An orbit has no first impact, so that any rotation names the same orbit; the
     lexicographically least one is kept. A repetition stays one: ``LRLR/2T`` is an orbit of least period 2T.
+
+    A star behind a letter is a complete chatter: all impacts of the ball on that wall since it last hit elsewhere or
+    was let go, infinitely many, after which it sticks to the wall until the contact force vanishes. They count as one
+    contact at the time of the first: ``L*R*`` is a 1:1 orbit that sticks on both sides, ``LR`` one that never does.
 
     Where a system has several balls, each letter has the number of the ball that hits: ``L1L2R1R2``. A system with one
     ball writes no number.
@@ -65,6 +69,9 @@ class Word:
     Word('LRR')
     >>> Word("R2L1L2R1").letters, Word("L1L2R2L1R1").name
     ('L1L2R1R2', '2:1|1:1')
+    >>> w = Word("RL*")
+    >>> str(w), w.name, w.sticks
+    ('L*R', '1:1', (True, False))
     """
 
     letters: str
@@ -83,6 +90,8 @@ class Word:
             letters, p = match[1], int(match[2] or 1) if len(match[2] or "") < 6 else _LONGEST + 1
             if len(impacts(letters)) > _LONGEST or p > _LONGEST:
                 raise ParameterError(f"{shown(text)} is too long a word; allowed are {_LONGEST} impacts over {_LONGEST}T")
+            if STICKS in letters:
+                _refuse_split_chatter(text, letters)
         object.__setattr__(self, "letters", min(rotated(letters)))
         object.__setattr__(self, "p", p)
 
@@ -105,7 +114,7 @@ class Word:
         >>> Word("L1L2R1R2").balls, Word("LR").balls
         ((1, 2, 1, 2), (0, 0))
         """
-        return tuple(int(each[1:] or 0) for each in impacts(self.letters))
+        return tuple(ball_of(each) for each in impacts(self.letters))
 
     @property
     def name(self) -> str:
@@ -155,6 +164,22 @@ class Word:
         (1, 1, -1)
         """
         return tuple(_SIGNS[each[0]] for each in impacts(self.letters))
+
+    @property
+    def sticks(self) -> tuple[bool, ...]:
+        """Whether each contact is a complete chatter that ends in sticking.
+
+        Examples
+        --------
+        >>> Word("L*RR").sticks
+        (True, False, False)
+        """
+        return tuple(each.endswith(STICKS) for each in impacts(self.letters))
+
+    @property
+    def sticking(self) -> bool:
+        """Whether the ball sticks somewhere in the orbit."""
+        return STICKS in self.letters
 
     @property
     def mirror(self) -> Word:
@@ -251,11 +276,24 @@ def word_for(text: str | Word, system: System) -> Word:
     known = [contact.letter for contact in system.contacts]
     if system.balls == 1:
         known += sorted({letter[0] for letter in known})
-    if not set(impacts(word.letters)) <= set(known):
+    if not {each.rstrip(STICKS) for each in impacts(word.letters)} <= set(known):
         raise ParameterError(
             f"{str(text)!r} is not a word of the system {system.name!r}, which has the impacts {', '.join(known)}"
         )
     return word
+
+
+def _refuse_split_chatter(text: str, letters: str) -> None:
+    """Refuse an impact on the wall of a complete chatter just before it, which belongs to that chatter."""
+    before: dict[int, str] = {}
+    for each in impacts(letters) * 2:
+        ball = ball_of(each)
+        if before.get(ball) == each.removesuffix(STICKS) != each:
+            raise ParameterError(
+                f"{text!r} is not a word: the impact {before[ball]} just before {each} is part of that chatter, which "
+                f"has all impacts on its wall since the last one elsewhere or the last release; write {each} alone"
+            )
+        before[ball] = each
 
 
 def _word(letters: str, p: int) -> Word:

@@ -19,8 +19,9 @@ from vines.orbits._equations import newton_kernel
 from vines.orbits._general import ITERATIONS, proper, same
 from vines.orbits._joined import mirror_image
 from vines.orbits._orbit import Orbit
-from vines.orbits._own_word import whole_word
+from vines.orbits._own_word import sticking_word, whole_word
 from vines.orbits._seeds import base_word, doubled_times, harvested_times, random_times, simplex_times
+from vines.orbits._sticking_search import search_sticking
 from vines.orbits._values import marks_of, unit_of
 
 __all__ = ["Orbits", "all_orbits"]
@@ -95,6 +96,9 @@ def all_orbits(word: str | Word, p: Any) -> Orbits:
     (True, [(True, False), (False, True), (False, True)])
     """
     word = whole_word(word, p)
+    if word.sticking:
+        found, how = search_sticking(sticking_word(word, p), p)
+        return Orbits(_in_order(found), complete=word.n == 0 or word.m == 0, remark=how, nearest=np.inf)
     refuse_resonance(p)
     if not isinstance(p, Params):
         return _searched(word, p)

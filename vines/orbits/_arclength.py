@@ -97,7 +97,10 @@ class Walk:
                 return None
         if np.linalg.norm((y - here.y) / self.zero.scale) > self.reach * length:
             return None
-        there = self.zero.point(y, (y - here.y) / self.zero.scale)
+        try:
+            there = self.zero.point(y, (y - here.y) / self.zero.scale)
+        except OrbitNotFound:
+            return None
         if here.tangent @ there.tangent < math.cos(self.turn):
             return None
         return there, iterations, crossed is not None

@@ -22,7 +22,8 @@ class Bifurcation:
     Attributes
     ----------
     type : str
-        fold, symmetry_breaking, period_doubling, neimark_sacker or grazing; in `Branch.events` pair_turns_real.
+        fold, symmetry_breaking, period_doubling, neimark_sacker or grazing; of orbits that stick also
+        incomplete_chatter and release_tangency, where they end; in `Branch.events` pair_turns_real.
     parameter : str
         The parameter in which the branch was followed.
     value : float
@@ -34,7 +35,7 @@ class Bifurcation:
     half_multiplier : complex
         For a symmetric orbit that of the half map, -1 at a symmetry breaking; else `multiplier`.
     orbit : Orbit
-        The orbit there.
+        The orbit there; at an end of a family that sticks, next to it.
     """
 
     type: str
@@ -71,8 +72,9 @@ class Branch:
         axis and a complex pair becomes two real ones, or the reverse.
     ends : tuple of str, str
         Why the branch begins and ends where it does: ``range`` (of the parameter), ``grazing``, ``symmetry_breaking``
-        or ``period_doubling`` (where it comes out of another family), ``points`` (as many as were allowed), ``lost``
-        (the corrector failed at the smallest step).
+        or ``period_doubling`` (where it comes out of another family), ``incomplete_chatter`` or ``release_tangency``
+        (of orbits that stick), ``points`` (as many as were allowed), ``lost`` (the corrector failed at the smallest
+        step).
     parent : str or None
         Name of the branch that it was switched from, if it was.
     remark : str

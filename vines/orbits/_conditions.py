@@ -90,7 +90,8 @@ def _product_one(m: Multipliers) -> float:
 def _discriminant(m: Multipliers) -> float:
     if not _resolved(m):
         return math.nan
-    return float(np.prod([(a - b) ** 2 for a, b in combinations(m, 2)]).real)
+    # Those that sticking makes zero meet each other always.
+    return float(np.prod([(a - b) ** 2 for a, b in combinations(m[m != 0], 2)]).real)
 
 
 def conditions(symmetric: bool) -> tuple[Condition, ...]:
@@ -127,6 +128,7 @@ def critical_multiplier(kind: str, point: Point, symmetric: bool) -> tuple[compl
             return None
         found = m[i]
     else:
+        m = m[m != 0]
         i, j = min(combinations(range(len(m)), 2), key=lambda pair: abs(m[pair[0]] - m[pair[1]]))
         # Two multipliers that differ by rounding are one, whose real part is the mean.
         found = complex((m[i] + m[j]).real / 2)

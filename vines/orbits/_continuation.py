@@ -27,6 +27,8 @@ from vines.orbits._family import GeneralProblem
 from vines.orbits._general import origin
 from vines.orbits._orbit import Orbit
 from vines.orbits._problem import Point, Problem, ZeroSet
+from vines.orbits._sticking_ends import end_of
+from vines.orbits._sticking_family import StickingProblem
 from vines.orbits._symmetric import SymmetricProblem
 
 __all__ = ["continue_orbit"]
@@ -51,7 +53,8 @@ def continue_orbit(
 ) -> Branch:
     """Follow an orbit in one parameter, through folds, and locate the bifurcations on the way.
 
-    The branch ends where the parameter leaves its range on either side, or at the grazing that ends admissibility.
+    The branch ends where the parameter leaves its range on either side, or at the grazing that ends admissibility. A
+    family that sticks ends also where a chatter no longer completes, or the contact force vanishes without falling.
 
     Parameters
     ----------
@@ -119,6 +122,8 @@ def continue_orbit(
 def _problem(orbit: Orbit, parameter: str) -> Problem:
     if not isinstance(orbit.params, Params):
         return ChainProblem(orbit, parameter)
+    if orbit.word.sticking:
+        return StickingProblem(orbit, parameter)
     if orbit.symmetric and len(orbit.word) == 2:
         return SymmetricProblem(orbit, parameter)
     return GeneralProblem(orbit, parameter)
@@ -150,6 +155,7 @@ class _Branch:
         towards[-1] = np.sign(self.stop - start)
         here = Point(self.problem.start, self.curve.tangent(self.problem.start, towards), self.orbit)
         self.orbits.append(self.orbit)
+        self.points = [here]
         end = Walk(
             self.curve,
             np.array([self.low]),
@@ -159,6 +165,8 @@ class _Branch:
             turn=_TURN,
             only_inside=True,
         ).follow(here, self._record, self.max_points)
+        if end == "lost" and self.orbit.word.sticking:
+            end = self._ended() or end
         return Branch(
             self.problem.word,
             self.problem.parameter,
@@ -168,8 +176,20 @@ class _Branch:
             ("range", end),
         )
 
+    def _ended(self) -> str | None:
+        """Add the bifurcation at which a family that sticks ends just behind its last orbit, and return its type."""
+        found = end_of(self.points, self.high - self.low)
+        if found is None:
+            return None
+        last, nothing = self.points[-1].orbit, complex(math.nan, math.nan)
+        value = min(max(self.points[-1].value + found.beyond, self.low), self.high)
+        there = last.params.replace(**{self.problem.parameter: value})
+        self.bifurcations.append(Bifurcation(found.type, self.problem.parameter, value, there, nothing, nothing, last))
+        return found.type
+
     def _record(self, here: Point, there: Point, last: bool) -> str | None:
         """Add what lies between two points, and the second one; return why the branch ends there, if it does."""
+        self.points.append(there)
         met = sorted(
             (hit for condition in self.conditions if (hit := self._locate(condition, here, there)) is not None),
             key=lambda hit: hit[0],

@@ -13,7 +13,8 @@ from vines.model import Params, Word
 from vines.orbits._all import Orbits, all_orbits
 from vines.orbits._general import refine, search
 from vines.orbits._orbit import Orbit
-from vines.orbits._own_word import whole_word
+from vines.orbits._own_word import sticking_word, whole_word
+from vines.orbits._sticking_search import no_sticking_orbit, refine_sticking
 from vines.orbits._symmetric import no_symmetric_orbit
 
 __all__ = ["find_orbit"]
@@ -58,10 +59,12 @@ def find_orbit(word: str | Word, p: Any, guess: Orbit | npt.ArrayLike | None = N
     """
     word = whole_word(word, p)
     if guess is not None:
-        return refine(word, p, guess)
+        return refine_sticking(sticking_word(word, p), p, guess) if word.sticking else refine(word, p, guess)
     found = all_orbits(word, p)
     if found:
         return choose(found)
+    if word.sticking:
+        raise no_sticking_orbit(word, p, found.remark)
     if isinstance(p, Params) and word.symmetric and len(word) == 2:
         raise no_symmetric_orbit(p, word)
     if isinstance(p, Params) and (word.n == 0 or word.m == 0):

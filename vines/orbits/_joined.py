@@ -15,6 +15,7 @@ from vines.orbits._family import GeneralProblem
 from vines.orbits._general import origin, refine
 from vines.orbits._orbit import Orbit
 from vines.orbits._problem import ZeroSet
+from vines.orbits._sticking_orbit import mirrored_sticking
 
 __all__ = ["BRANCHING", "is_joint", "left_family", "mirror_image", "unfolded"]
 
@@ -33,6 +34,8 @@ def mirror_image(orbit: Orbit) -> Orbit:
     >>> print(mirror_image(find_orbit("LLR", Params(mu=0.01, A=0.023))).word)
     LRR
     """
+    if orbit.word.sticking:
+        return mirrored_sticking(orbit)
     return assemble(orbit.word.mirror, orbit.params, orbit.t + orbit.params.period / 2, -orbit.states, orbit.remark)
 
 
@@ -66,6 +69,8 @@ def left_family(joint: Bifurcation) -> Orbit:
         If it is lost.
     """
     orbit = joint.orbit
+    if orbit.word.sticking:
+        raise OrbitNotFound(f"what {joint} comes out of sticks; find it by its own word and follow it to there")
     n = len(orbit.word) // 2
     if joint.type == "period_doubling":
         word = Word(f"{orbit.word.letters[:n]}/{orbit.word.p // 2}T")

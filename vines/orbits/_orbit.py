@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import hashlib
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
 
@@ -16,9 +16,19 @@ from vines.dynamics.runs import IMPACT
 from vines.html import html_table
 from vines.model import V1, V2, X2, Word
 
-__all__ = ["Orbit", "short_hash"]
+__all__ = ["SPELL", "Orbit", "short_hash"]
 
 Floats = npt.NDArray[np.float64]
+
+SPELL = np.dtype(
+    [("contact", "i8"), ("side", "i1"), ("impacts", "i8")]
+    + [(name, "f8") for name in ("t_start", "t_release", "phase_start", "phase_release", "x1", "v1")]
+    + [(name, "f8") for name in ("slowest", "least_force", "falls")]
+)
+"""A spell of sticking; see `Orbit.spells`."""
+
+_NO_SPELLS = np.empty(0, dtype=SPELL)
+_NO_SPELLS.setflags(write=False)
 
 
 def short_hash(*parts: object) -> str:
@@ -35,6 +45,8 @@ def short_hash(*parts: object) -> str:
 @dataclass(frozen=True, eq=False)
 class Orbit:
     """A periodic solution, stable or not, admissible or not. All values are dimensionless.
+
+    Where the ball sticks (`spells`), the impacts of the chatter before count as one, the first of them.
 
     The first impact is that of the canonical word (if its letters repeat, the one of least phase); times are those of
     a forcing of phase zero at t = 0, the first in [0, T).
@@ -68,6 +80,13 @@ class Orbit:
         Energy measures and energy budget over one period pT, in closed form.
     remark : str
         What the search has to say, such as how many other solutions there are.
+    spells : structured array, shape (K,)
+        Spells of sticking, one for each contact of the word with a star: `contact`, its place in the word; `side`;
+        `impacts` of the chatter that were followed one by one; times and phases [rad] at which the chatter accumulates
+        and the ball is let go (`t_start`, `t_release`, `phase_start`, `phase_release`); `x1` and `v1` at the release;
+        and how near the spell is to its end as a family: `slowest`, the least speed of an impact of the chatter that a
+        faster one follows (inf if none), `least_force`, the least contact force at a minimum within the spell (inf if
+        none), and `falls`, the rate at which the force falls at the release.
     """
 
     word: Word
@@ -85,6 +104,7 @@ class Orbit:
     residual: float
     measures: Measures
     remark: str = ""
+    spells: npt.NDArray[np.void] = field(default_factory=lambda: _NO_SPELLS)
 
     @property
     def name(self) -> str:

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import Any
 
-from vines.errors import ParameterError
-from vines.model import Word
+from vines.errors import OrbitNotFound, ParameterError
+from vines.model import Params, Word
 
-__all__ = ["own_word", "whole_word"]
+__all__ = ["own_word", "sticking_word", "whole_word"]
 
 
 def own_word(word: str | Word, p: Any) -> Word:
@@ -26,7 +26,7 @@ def own_word(word: str | Word, p: Any) -> Word:
     """
     word = Word(word)
     if getattr(p, "balls", 0) == 1 and set(word.balls) == {1}:
-        return Word(f"{word.letters[::2]}/{word.p}T")
+        return Word(f"{word.letters.replace('1', '')}/{word.p}T")
     alike = getattr(p, "alike", ())
     return word.relabelled(alike)[0] if alike and any(word.balls) else word
 
@@ -53,4 +53,20 @@ def whole_word(word: str | Word, p: Any) -> Word:
         who = ", ".join(f"ball {number}" for number in numbers if number) or "a ball without number"
         has = f"balls 1 … {balls}" if balls > 1 else "one ball"
         raise ParameterError(f"{word} has impacts of {who}, the system has {has}; give a word in which each hits")
+    return word
+
+
+def sticking_word(word: Word, p: Any) -> Word:
+    """Return a word with a star if its orbits can be computed: so far those of the VI-NES.
+
+    Raises
+    ------
+    OrbitNotFound
+        For another system.
+    """
+    if not isinstance(p, Params):
+        raise OrbitNotFound(
+            f"{word} sticks, and orbits that stick are computed for the VI-NES only, not for {p.system.name!r}; follow "
+            "it by simulation"
+        )
     return word

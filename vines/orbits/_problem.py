@@ -8,6 +8,7 @@ from typing import Protocol
 import numpy as np
 import numpy.typing as npt
 
+from vines.errors import OrbitNotFound
 from vines.model import Word
 from vines.orbits._orbit import Orbit
 
@@ -66,8 +67,18 @@ class ZeroSet:
         self.scale = np.append(np.maximum(unknowns, 0.1 * unknowns.max(initial=1e-3)), spans)
 
     def tangent(self, y: Floats, towards: Floats) -> Floats:
-        """Return the unit tangent at y on the side of `towards`."""
-        null = np.linalg.svd(self.problem.equations(y)[1] * self.scale)[2][-1]
+        """Return the unit tangent at y on the side of `towards`.
+
+        Raises
+        ------
+        OrbitNotFound
+            Where the equations do not exist: at its end a family that sticks may close, from what was rounded.
+        """
+        matrix = self.problem.equations(y)[1]
+        if not np.isfinite(matrix).all():
+            problem = self.problem
+            raise OrbitNotFound(f"the {problem.word} branch closes at {problem.parameter} = {y[-1]:.9g}; stop before")
+        null = np.linalg.svd(matrix * self.scale)[2][-1]
         return null if null @ towards >= 0 else -null
 
     def correct(self, guess: Floats, normal: Floats) -> tuple[Floats, int] | None:

@@ -15,11 +15,11 @@ from vines.orbits._flights import start_kernel
 from vines.orbits._floquet import monodromy
 from vines.orbits._orbit import Orbit
 
-__all__ = ["base_word", "doubled_times", "harvested_times", "random_times", "simplex_times"]
+__all__ = ["STARTS", "base_word", "doubled_times", "harvested_times", "random_times", "simplex_times"]
 
 Floats = npt.NDArray[np.float64]
 
-_STARTS = (
+STARTS = (
     (0.0, 0.0, 0.0, 0.1),
     (0.3, 0.0, 0.3, -1.0),
     (-0.5, 0.8, 0.1, 0.6),
@@ -61,10 +61,10 @@ def harvested_times(word: Word, p: Any) -> Iterator[Floats]:
 def _starts(p: Any) -> Iterator[dict[str, float]]:
     """Yield the starts of simulations: of another system with all in the middle, at several speeds of the balls."""
     if isinstance(p, Params):
-        yield from (dict(zip(STATE_NAMES, start, strict=True)) for start in _STARTS)
+        yield from (dict(zip(STATE_NAMES, start, strict=True)) for start in STARTS)
         return
     balls = [body.velocity.name for body in p.system.bodies if body.name.startswith("ball")]
-    for *_, speed in _STARTS:
+    for *_, speed in STARTS:
         yield {name: speed / (1 + k) for k, name in enumerate(balls)}
 
 

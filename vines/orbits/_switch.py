@@ -7,12 +7,14 @@ import numpy as np
 from vines.domains import Of, stated
 from vines.dynamics import no_ball
 from vines.errors import OrbitNotFound, ParameterError
-from vines.model import X1
+from vines.model import X1, Word
 from vines.orbits._branch import Bifurcation
 from vines.orbits._family import GeneralProblem
 from vines.orbits._general import origin, refine
 from vines.orbits._joined import BRANCHING, is_joint, left_family, mirror_image, unfolded
 from vines.orbits._orbit import Orbit
+from vines.orbits._sticking_family import StickingProblem
+from vines.orbits._sticking_search import refine_sticking
 
 __all__ = ["switch_branch"]
 
@@ -22,6 +24,9 @@ _STEPS = (0.02, 0.04, 0.01, 0.08, 0.005, 0.0025)
 _ITERATIONS = 15
 _CLOSE = 1e-6
 """Newton step relative to the step off the family, after which the closing equations take over."""
+
+_STICKING = 1e-11
+"""The same of an orbit that sticks, which is run from release to release and not flight by flight."""
 
 _RESIDUAL = 1e-13
 """Largest residual of an orbit that was reached, in a cavity that is larger than the motion."""
@@ -65,7 +70,7 @@ def switch_branch(bifurcation: Bifurcation) -> list[Orbit]:
         )
     if is_joint(bifurcation):
         return [left_family(bifurcation)]
-    problem = GeneralProblem(unfolded(bifurcation.type, bifurcation.orbit), bifurcation.parameter, symmetric=False)
+    problem = _unfolded(bifurcation)
     for step in _STEPS:
         orbit = _step_off(problem, step)
         if orbit is not None:
@@ -76,13 +81,23 @@ def switch_branch(bifurcation: Bifurcation) -> list[Orbit]:
     )
 
 
+def _unfolded(bifurcation: Bifurcation) -> GeneralProblem | StickingProblem:
+    """Return the family of the old orbits, as one of those that come out of it, from the branching point on."""
+    orbit, parameter = bifurcation.orbit, bifurcation.parameter
+    if not orbit.word.sticking:
+        return GeneralProblem(unfolded(bifurcation.type, orbit), parameter, symmetric=False)
+    twice = bifurcation.type == "period_doubling"
+    word = Word(f"{orbit.word.letters * 2}/{2 * orbit.word.p}T") if twice else orbit.word
+    return StickingProblem(orbit, parameter, word=word, symmetric=False)
+
+
 def _pair(orbit: Orbit) -> list[Orbit]:
     """Return an orbit and its mirror image in the one order that does not depend on which of them was found."""
     pair = [orbit, mirror_image(orbit)]
     return sorted(pair, key=lambda one: float(one.states[:, X1].mean()), reverse=True)
 
 
-def _step_off(problem: GeneralProblem, step: float) -> Orbit | None:
+def _step_off(problem: GeneralProblem | StickingProblem, step: float) -> Orbit | None:
     """Return the orbit at this distance along the null vector from where the problem starts, or None.
 
     The old family has no component along the null vector that joins it to the new one, so that a prescribed component
@@ -105,11 +120,12 @@ def _step_off(problem: GeneralProblem, step: float) -> Orbit | None:
         return None
     if np.abs(y - problem.start)[:-1].max() > 3 * step:
         return None
-    here = problem.orbit(y)
     try:
-        orbit = refine(here.word, here.params, here)
+        here = problem.orbit(y)
+        solve = refine_sticking if here.word.sticking else refine
+        orbit = solve(here.word, here.params, here)
     except OrbitNotFound:
         return None
     # Residuals are sums of parts as large as the steady motion without the ball.
-    allowed = _RESIDUAL * (1.0 + no_ball(orbit.params))
+    allowed = (_STICKING if orbit.word.sticking else _RESIDUAL) * (1.0 + no_ball(orbit.params))
     return orbit if orbit.residual <= allowed and origin(orbit) is None and not orbit.symmetric else None

@@ -8,7 +8,7 @@ import numpy as np
 
 from vines.model import PARAMETER_NAMES
 from vines.stages.audit._cycles import Cycles
-from vines.stages.audit._defect import Defect, model_defects, relative, words
+from vines.stages.audit._defect import Defect, model_defects, relative, sticking, words
 from vines.stages.audit._flights import Flights
 from vines.stages.audit._orbits import product_defect
 from vines.stages.audit._rows import Floats, Rows
@@ -16,6 +16,9 @@ from vines.stages.audit._rows import Floats, Rows
 __all__ = ["bifurcation_defects", "branch_defects", "curve_defects"]
 
 _AT_ONE = ("fold", "symmetry_breaking")
+_WITHOUT = ("grazing", "incomplete_chatter", "release_tangency")
+"""Types at which no multiplier is critical."""
+
 _CRITICAL = 1e-5
 """Where two multipliers meet, at a fold of a symmetric pair for instance, each is known to half the digits only."""
 
@@ -31,8 +34,10 @@ def bifurcation_defects(rows: Rows) -> Iterator[Defect]:
     yield Defect("impacts", "as many in each list", 0.0, np.where(right, 0.0, np.inf))
     if right.all():
         cycles = _cycles(rows)
-        yield Defect("closure", "each flight, flown afresh, meets the next impact", 1e-9, cycles.closure)
-        beyond = np.maximum(cycles.sums.largest_gap - 1, 0.0)
+        stuck = sticking(rows)
+        closure = np.where(stuck, np.nan, cycles.closure)
+        yield Defect("closure", "each flight, flown afresh, meets the next impact", 1e-9, closure)
+        beyond = np.where(stuck, np.nan, np.maximum(cycles.sums.largest_gap - 1, 0.0))
         yield Defect("admissibility", "|w| <= 1 between the impacts", 1e-9, beyond)
 
 
@@ -74,7 +79,7 @@ def _critical(rows: Rows) -> Floats:
     off = np.where(types == "period_doubling", np.abs(m + 1), off)
     off = np.where(types == "neimark_sacker", np.where(m.imag != 0, np.abs(np.abs(m) - 1), np.inf), off)
     off = np.where(types == "pair_turns_real", np.abs(m.imag), off)
-    return np.where(types == "grazing", np.nan, off)
+    return np.where(np.isin(types, _WITHOUT), np.nan, off)
 
 
 def curve_defects(rows: Rows) -> Iterator[Defect]:

@@ -10,7 +10,7 @@ import numpy.typing as npt
 from vines.model import PARAMETER_NAMES, VI_NES
 from vines.stages.audit._rows import Floats, Rows
 
-__all__ = ["Defect", "forced_amplitude", "model_defects", "relative", "words"]
+__all__ = ["Defect", "forced_amplitude", "model_defects", "relative", "sticking", "words"]
 
 
 class Defect(NamedTuple):
@@ -85,6 +85,12 @@ def model_defects(rows: Rows, where: npt.NDArray[np.bool_]) -> list[Defect]:
             Defect("yardsticks", "x1_no_ball, x1_locked in closed form", 1e-9, np.where(where, values, np.nan))
         )
     return found
+
+
+def sticking(rows: Rows) -> npt.NDArray[np.bool_]:
+    """Return which rows are of orbits that stick, whose contacts are joined by more than a flight."""
+    codes, known = rows.codes("word")
+    return np.isin(codes, [code for code, word in enumerate(known) if "*" in word])
 
 
 def words(rows: Rows) -> Floats:

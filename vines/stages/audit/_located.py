@@ -24,6 +24,10 @@ __all__ = ["locate_again"]
 _BESIDE = (1e-3, 1e-4, 1e-5)
 """Distances of the orbit that is followed from the bifurcation, relative to the value of the parameter."""
 
+_STICKING_ENDS = ("incomplete_chatter", "release_tangency")
+_EXTRAPOLATED = 1e-7
+"""What is allowed of the ends of families that stick, which are extrapolated."""
+
 
 def locate_again(result: Result, table: str, place: int) -> Comparison:
     """Locate the bifurcation of a row of a table of bifurcations again and compare where it lies."""
@@ -34,7 +38,8 @@ def locate_again(result: Result, table: str, place: int) -> Comparison:
     if nearest is None:
         comparison.same(f"{row['type']} at {row['parameter']} = {row['value']:.10g}", "there", "not met again")
         return comparison
-    comparison.number("value", row["value"], nearest.value, TOLERANCE)
+    allowed = _EXTRAPOLATED if row["type"] in _STICKING_ENDS else TOLERANCE
+    comparison.number("value", row["value"], nearest.value, allowed)
     return comparison
 
 

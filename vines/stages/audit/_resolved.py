@@ -11,8 +11,8 @@ import numpy.typing as npt
 
 from vines.dynamics import simulate
 from vines.errors import OrbitNotFound
-from vines.model import STATE_NAMES, VI_NES, Word
-from vines.orbits import Orbit, find_orbit, orbit_row
+from vines.model import STATE_NAMES, VI_NES, Params, Word
+from vines.orbits import Orbit, all_orbits, find_orbit, orbit_row
 from vines.schema import system_table
 from vines.stages.audit._compare import TOLERANCE, Comparison, compare_rows, stored_row
 from vines.stages.audit._located import locate_again
@@ -53,7 +53,10 @@ def resolve_again(result: Result, table: str, place: int, rng: np.random.Generat
     scale = _DISTURBED * word.p * p.period
     # The relative times are disturbed by less than a tenth of the shortest flight, so that their order stays.
     shortest = float(np.diff(t, append=t[0] + word.p * p.period).min())
-    orbit = _solve(word, p, t, rng.uniform(-1, 1, len(t)) * min(scale, 0.1 * shortest))
+    if word.sticking:
+        orbit = _searched(word, p, t)
+    else:
+        orbit = _solve(word, p, t, rng.uniform(-1, 1, len(t)) * min(scale, 0.1 * shortest))
     comparison = Comparison()
     m = np.array(row["multipliers_re"]) + 1j * np.array(row["multipliers_im"])
     finite = bool(np.isfinite(m).all())
@@ -66,7 +69,7 @@ def resolve_again(result: Result, table: str, place: int, rng: np.random.Generat
         largest = float(np.abs(one).max())
         for k, (a, b) in enumerate(zip(one, other, strict=True)):
             comparison.number(f"coefficient {k} of the multipliers", float(abs(a - b)), 0.0, allowed * 10 * largest)
-        if row["admissible"]:
+        if row["admissible"] and not word.sticking:
             _fly(comparison, orbit)
     return comparison
 
@@ -93,6 +96,14 @@ def _solve(word: Word, p: Any, t: npt.NDArray[np.float64], disturbance: npt.NDAr
         with contextlib.suppress(OrbitNotFound):
             return find_orbit(word, p, t + part * disturbance)
     return find_orbit(word, p, t)
+
+
+def _searched(word: Word, p: Params, t: npt.NDArray[np.float64]) -> Orbit:
+    """Search for an orbit that sticks: what its row tells is no release from which to solve for it."""
+    found = all_orbits(word, p)
+    if not found:
+        raise OrbitNotFound(f"no {word} orbit at {p}: it was not found again ({found.remark})")
+    return min(found, key=lambda orbit: float(np.abs(orbit.t - t).max()))
 
 
 def _fly(comparison: Comparison, orbit: Orbit) -> None:

@@ -1,0 +1,108 @@
+"""Where a family of orbits that stick ends, and why: what it needs of its flights, chatters and spells runs out.
+
+The simulator's map from release to release exists on one side of such an end only, so that no function of it changes
+its sign there: the branch is followed until steps of 1e-8 fail, and the end is where the margin that runs out would
+vanish (docs/sticking.md).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from vines.orbits._problem import Point
+
+__all__ = ["GRAZING", "INCOMPLETE_CHATTER", "RELEASE_TANGENCY", "End", "chatter_exponent", "end_of"]
+
+GRAZING = "grazing"
+INCOMPLETE_CHATTER = "incomplete_chatter"
+RELEASE_TANGENCY = "release_tangency"
+
+_BASE = 1e-6
+"""Distance of the points, in ranges of the parameter, from whose margins the end is extrapolated."""
+
+_NEAR = 1e-4
+"""Most by which the parameter may have to be moved on to the end, in ranges of the parameter."""
+
+
+class End(NamedTuple):
+    """The end of a family: its type, and by how much farther than the last orbit the parameter gets."""
+
+    type: str
+    beyond: float
+
+
+def chatter_exponent(r: float) -> float:
+    """Return the power of the distance to the end with which the stick after a chatter vanishes there.
+
+    At the end a chatter accumulates just where the contact force vanishes. Near that place the ball is pushed by
+    w'' = j s towards the wall, s the time left, and the hops with departure speed u = rho j s² repeat at rho = rho*:
+    each leaves 1 - y of the time, with (3 - y)(1 - y)² = r (3 - 2 y). A deviation of rho grows at each impact by a
+    factor k; once it is as large as rho itself the chatter is over, complete or not, after a number of impacts that is
+    the logarithm of the distance to the end over that of k. What is left then is the stick.
+
+    Examples
+    --------
+    >>> print(f"{chatter_exponent(0.35):.4f} {chatter_exponent(0.65):.4f}")
+    0.6068 0.6012
+    """
+    low, high = 0.0, 1.0
+    for _ in range(200):
+        y = 0.5 * (low + high)
+        if (3 - y) * (1 - y) ** 2 > r * (3 - 2 * y):
+            low = y
+        else:
+            high = y
+    y = 0.5 * (low + high)
+    grows = r * ((1 / 2 - 2 * y / 3) / (1 - y) ** 2 + 2 * (y / 2 - y * y / 3) / (1 - y) ** 3) / (1 / 2 - y / 3)
+    return math.log(1 / (1 - y)) / math.log(grows)
+
+
+def _speeds(point: Point) -> float:
+    orbit = point.orbit
+    return float(min(np.min(orbit.side * orbit.w_dot), np.min(orbit.spells["slowest"])))
+
+
+def _stick(point: Point) -> float:
+    """Return the length of the shortest spell, to the power with which it falls as the distance to its end."""
+    spells, r = point.orbit.spells, point.orbit.params.r
+    shortest = float(np.min(spells["t_release"] - spells["t_start"]))
+    return max(shortest, 0.0) ** (1 / chatter_exponent(r)) if 0 < r < 1 else shortest
+
+
+_MARGINS: tuple[tuple[str, Callable[[Point], float]], ...] = (
+    (GRAZING, lambda point: point.orbit.min_clearance),
+    (GRAZING, _speeds),
+    (INCOMPLETE_CHATTER, _stick),
+    (RELEASE_TANGENCY, lambda point: float(np.min(point.orbit.spells["falls"]))),
+    (RELEASE_TANGENCY, lambda point: float(np.min(point.orbit.spells["least_force"]))),
+)
+
+
+def end_of(points: Sequence[Point], width: float) -> End | None:
+    """Return why a family ends just behind its last point, None if no margin runs out.
+
+    Parameters
+    ----------
+    points : sequence of Point
+        Of the family, up to the last one.
+    width : float
+        Of the range of the parameter.
+    """
+    last = points[-1]
+    before = next((point for point in reversed(points) if abs(point.value - last.value) > _BASE * width), None)
+    if before is None:
+        return None
+    least, found = _NEAR, None
+    move = last.value - before.value
+    for kind, margin in _MARGINS:
+        first, second = margin(before), margin(last)
+        if not (math.isfinite(first) and math.isfinite(second) and second < first):
+            continue
+        beyond = move * second / (first - second)
+        if abs(beyond) < least * width:
+            least, found = abs(beyond) / width, End(kind, beyond)
+    return found
