@@ -55,7 +55,7 @@ def test_a_style_sheet_is_laid_over_the_look_of_vines(made, tmp_path):
 
 
 SENSELESS = {
-    "millimetres as inches": (["--width", "85"], r'width is 85 inch; allowed is 1\.5 to 20 inch .*; write "85mm" for mm'),
+    "millimetres as inches": (["--width", "85"], r'width is 85 inch; allowed is 1\.5 to 20 .*; write "85mm" for mm'),
     "a poster": (["--width", "3m"], "mm, cm, in or pt"),
     "a hair": (["--width", "5mm"], "allowed is 1.5 to 20 inch"),
     "another format": (["--out", "a.jpg"], r"a figure ends in \.pdf, \.png, \.svg, such as a\.pdf"),

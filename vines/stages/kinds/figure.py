@@ -15,7 +15,8 @@ def _fits(stage: Stage, pipeline: Pipeline) -> None:
     if not stage.needs:
         raise DeclarationError("a figure draws other stages; name them, needs = [...]")
     plot = plot_of(stage.options)
-    inches(stage.options.width)
+    options: Any = stage.options
+    inches(options.width)
     plot.check_systems(stage, pipeline)
     check = plot.check
     if check is not None:
