@@ -91,7 +91,7 @@ def picture(job):
     if job.options.tally:
         with Path(job.options.tally).open("a") as stream:
             stream.write(f"{os.getpid()}\\n")
-    for end in ("png", "svg"):
+    for end in ("png", "svg", "pdf"):
         (job.folder / f"picture.{end}").write_text(" ".join(job.inputs))
     return Batch()
 '''

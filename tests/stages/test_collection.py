@@ -63,7 +63,7 @@ def test_a_failing_pipeline_does_not_stop_the_others(both):
     assert "pair: stage second.checks failed: " in done.stderr
     assert "first.up: done, 3 points" in done.stdout
     assert "1 of 1 published values reproduced" in done.stdout
-    assert "first: data/results/" in done.stdout
+    assert "data/figures/first." in done.stdout
     assert done.stdout.index("second.up") < done.stdout.index("first.up")
 
     status = both.vines("status", "pair").stdout

@@ -106,3 +106,31 @@ def test_a_width_that_is_no_width_is_refused_when_it_is_declared(project, width)
     done = project.vines("status", "mine", check=False)
     assert (done.returncode, done.stderr.count("\n")) == (2, 1)
     assert "width is" in done.stderr
+
+
+SMALL = """
+[stages.up]
+kind = "sweep"
+vary.A = [0.015, 0.016]
+settle = 50
+record = 16
+[stages.picture]
+kind = "figure"
+plot = "bifurcation"
+needs = ["up"]
+"""
+
+
+def test_pictures_lie_under_the_names_of_their_stages_and_a_copy_that_is_changed_comes_back(project):
+    (project.root / "pipelines" / "small.toml").write_text("[params]\nmu = 0.01\n" + SMALL)
+    said = project.vines("run", "small", "--jobs", "1").stdout
+    copies = {path.name: path for path in (project.data / "figures").iterdir()}
+    assert sorted(copies) == ["small.picture.pdf", "small.picture.png", "small.picture.svg"]
+    assert re.search(r"figures/small\.picture\.png \(and \.svg, \.pdf\)", said)
+    (drawn,) = project.data.glob("results/*/picture.pdf")
+    right = {ending: drawn.with_suffix(ending).read_bytes() for ending in (".pdf", ".png", ".svg")}
+    copies["small.picture.pdf"].write_bytes(b"retouched")
+    copies["small.picture.png"].unlink()
+    assert drawn.read_bytes() == right[".pdf"]
+    assert "nothing to compute" in project.vines("run", "small").stdout
+    assert {path.suffix: path.read_bytes() for path in copies.values()} == right

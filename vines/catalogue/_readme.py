@@ -47,7 +47,7 @@ connection.sql("select pipeline, stage, count(*) from points group by all")
 | | |
 |---|---|
 | `tables/` | the tables, one file a stage and table, sorted by the axes of the stage |
-| `figures/` | the pictures made of them, PNG and SVG |
+| `figures/` | the pictures made of them, PNG, SVG and PDF |
 | `logs/` | MCAP logs of single runs{logs} |
 | `load.sql` | the views |
 | `dictionary.csv`, `schemas/` | every column with type, unit, description, source and allowed values |

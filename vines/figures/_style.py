@@ -69,6 +69,7 @@ RC: Any = {
     # Element ids of an SVG are hashes; a fixed salt and text as outlines make the bytes repeatable anywhere.
     "svg.hashsalt": "vines",
     "svg.fonttype": "path",
+    "pdf.fonttype": 42,
 }
 
 LETTER = (-37.0, 0.0)
@@ -105,14 +106,14 @@ def new_figure(width: float, height: float) -> Figure:
 
 
 def save(figure: Figure, folder: Path, name: str = "picture") -> list[Path]:
-    """Write ``<name>.png`` and ``<name>.svg`` into a folder, without dates, and return the paths.
+    """Write a figure as PNG, SVG and PDF into a folder, without dates, and return the paths.
 
-    Panels are laid out once, so both files show the same, and each file is drawn once. Drawing is slow: a sheet of 12
+    Panels are laid out once, so all files show the same, and each file is drawn once. In a PDF text is text. Drawing is slow: a sheet of 12
     panels has hundreds of ticks and texts, which matplotlib measures at every draw.
     """
     import matplotlib as mpl
 
-    files = [folder / f"{name}.png", folder / f"{name}.svg"]
+    files = [folder / f"{name}.{ending}" for ending in ("png", "svg", "pdf")]
     with mpl.rc_context(RC):
         engine = figure.get_layout_engine()
         if engine is not None:
@@ -121,4 +122,5 @@ def save(figure: Figure, folder: Path, name: str = "picture") -> list[Path]:
             figure.set_layout_engine(None)  # "none" would keep a placeholder, for which each file is drawn twice
         figure.savefig(files[0], metadata={"Software": "vines"})
         figure.savefig(files[1], metadata={"Date": None, "Creator": "vines"})
+        figure.savefig(files[2], metadata={"CreationDate": None, "ModDate": None, "Creator": "vines"})
     return files

@@ -48,7 +48,7 @@ class Kind:
     needs : bool
         Whether ``needs`` is allowed (whole shape only).
     logs, pictures : bool
-        Whether it makes MCAP logs, or ``picture.png`` and ``picture.svg``.
+        Whether it makes MCAP logs, or ``picture.png``, ``picture.svg`` and ``picture.pdf``.
     check : callable, optional
         ``check(params, options)`` raises :class:`vines.errors.ParameterError` (or `StateError`) when these
         cannot be. Called with the corners of the declared box before anything is written.

@@ -11,7 +11,7 @@ from vines.pipeline._declaration import Pipeline
 from vines.pipeline._events import Event, Report, RunSummary, StageOutcome, silent
 from vines.pipeline._plan import Planner, Prepared, StagePlan
 from vines.pipeline._whole import WholeTask, compute_whole, whole_task
-from vines.store import Store
+from vines.store import Store, show_pictures
 
 if TYPE_CHECKING:
     from concurrent.futures import Future
@@ -237,6 +237,8 @@ class _Run:
         if outcome.key:
             self.planner.set_key(name, outcome.key)
             self.store.pin(self.pipeline.name, name, _pin(prepared, outcome))
+            if prepared.stage.kind.pictures:
+                show_pictures(self.store.data, self.store.results / outcome.key, f"{self.pipeline.name}.{name}")
         self.outcomes[name] = outcome
         what = "failed" if outcome.state == "failed" else "done"
         text = outcome.reason if outcome.state == "failed" else outcome.remark

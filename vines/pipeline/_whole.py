@@ -12,7 +12,7 @@ from vines.pipeline._demand import Checked, Demand, demand
 from vines.pipeline._jobs import Batch, Input, Range, Spread, WholeJob, one_by_one
 from vines.pipeline._plan import Planner
 from vines.pipeline._worker import body_of
-from vines.store import Result, Store, describe_table, write_parquet
+from vines.store import PICTURES, Result, Store, describe_table, write_parquet
 
 if TYPE_CHECKING:
     from vines.pipeline._declaration import Pipeline
@@ -20,7 +20,6 @@ if TYPE_CHECKING:
 
 __all__ = ["WholeTask", "compute_whole", "stored_inputs", "whole_task"]
 
-_PICTURES = ("picture.png", "picture.svg")
 
 
 @dataclass(frozen=True, slots=True)
@@ -210,7 +209,7 @@ def _write(task: WholeTask, batch: Batch, folder: Path, provenance: dict[str, An
     if unknown:
         raise SchemaError(f"{task.body}: returned table {min(unknown)!r}, which its kind does not name")
     if task.pictures:
-        missing = [name for name in _PICTURES if not (folder / name).is_file()]
+        missing = [name for name in PICTURES if not (folder / name).is_file()]
         if missing:
             raise SchemaError(f"{task.body}: left no {missing[0]} in its folder")
     about = {}

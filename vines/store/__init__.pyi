@@ -9,6 +9,8 @@ from ._keys import key_of as key_of
 from ._parquet import TableFile as TableFile
 from ._parquet import read_parquet as read_parquet
 from ._parquet import write_parquet as write_parquet
+from ._pictures import PICTURES as PICTURES
+from ._pictures import show_pictures as show_pictures
 from ._pools import Located as Located
 from ._pools import Part as Part
 from ._pools import Pool as Pool

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 from vines.stages.api._home import Home, current
 from vines.stages.api._parts import load_parts
-from vines.store import read_sealed, write_sealed
+from vines.store import PICTURES, read_sealed, show_pictures, write_sealed
 
 if TYPE_CHECKING:
     import pyarrow as pa
@@ -44,7 +44,7 @@ def found(name: str, *, study: Home | None = None) -> list[str]:
     if not results:
         return []
     findings = _cached(store, pipeline, results)
-    lines = ["Found", *(f"  {line}" for line in findings), "", "Files", *_files(store, results), "", "Next"]
+    lines = ["Found", *(f"  {line}" for line in findings), "", "Files", *_files(store, pipeline, results), "", "Next"]
     return lines + [_step(command, what) for command, what in _next(pipeline, results)]
 
 
@@ -60,8 +60,7 @@ def _results(store: Store, declared: Pipeline) -> dict[str, Result]:
 def _of_all(store: Store, parts: list[Part]) -> list[str]:
     """Return what a collection has: its pictures, and how many of the published values are reproduced."""
     results = {part.pipeline.name: _results(store, part.pipeline) for part in parts}
-    pictures = {name: list(_pictures(found)) for name, found in results.items()}
-    lines = [f"  {name}: {_short(picture)} (and .svg)" for name, each in pictures.items() for picture in each]
+    lines = [line for name, each in results.items() for line in _pictures(store, name, each)]
     lines = ["Files", *lines, ""] if lines else []
     together = {f"{name}.{stage}": result for name, found in results.items() for stage, result in found.items()}
     checked = _verdicts(together)
@@ -190,16 +189,24 @@ def _place(row: dict[str, Any]) -> str:
     return f"mu = {row['mu']:g}, A = {row['A']:g}, Omega = {row['Omega']:g}"
 
 
-def _files(store: Store, results: dict[str, Result]) -> Iterable[str]:
+def _files(store: Store, pipeline: str, results: dict[str, Result]) -> Iterable[str]:
     tables = sum(len(result.tables) for result in results.values())
     logs = [path for result in results.values() for path in result.logs.values()]
     yield f"  {_short(store.data / 'results')}: {tables} Parquet tables" + (f", {len(logs)} MCAP logs" if logs else "")
-    for picture in _pictures(results):
-        yield f"  {_short(picture)} (and .svg)"
+    yield from _pictures(store, pipeline, results)
 
 
-def _pictures(results: dict[str, Result]) -> Iterable[Path]:
-    yield from (r.folder / "picture.png" for r in results.values() if (r.folder / "picture.png").is_file())
+def _pictures(store: Store, pipeline: str, results: dict[str, Result]) -> Iterable[str]:
+    """Yield a line for each figure: its copy under the name of its stage, else where it lies itself.
+
+    A copy that lacks or was changed is made again, unless nothing can be written.
+    """
+    for stage, result in results.items():
+        drawn, copy = result.folder / PICTURES[0], store.data / "figures" / f"{pipeline}.{stage}.png"
+        if drawn.is_file():
+            with contextlib.suppress(OSError):
+                show_pictures(store.data, result.folder, f"{pipeline}.{stage}")
+            yield f"  {_short(copy if copy.is_file() else drawn)} (and .svg, .pdf)"
 
 
 def _next(pipeline: str, results: dict[str, Result]) -> Iterable[tuple[str, str]]:

@@ -74,7 +74,7 @@ def _facts(kind: Kind) -> Iterator[str]:
         yield "- `needs`: the stages whose results it takes"
     made = [f"table `{name}`" for name in kind.tables]
     made += [
-        word for word, there in (("MCAP logs", kind.logs), ("`picture.png`, `picture.svg`", kind.pictures)) if there
+        word for word, there in (("MCAP logs", kind.logs), ("`picture.png`, `.svg`, `.pdf`", kind.pictures)) if there
     ]
     yield f"- makes: {', '.join(made)}"
     yield ""

@@ -31,7 +31,7 @@ def _code(options: Any) -> tuple[str, ...]:
 
 KIND = Kind(
     name="figure",
-    summary="a picture of other stages, PNG and SVG",
+    summary="a picture of other stages, PNG, SVG and PDF",
     shape="whole",
     options=PlotOptions,
     body="vines.stages.plots._figure:compute",
