@@ -23,8 +23,10 @@ __all__ = ["no_sticking_orbit", "refine_sticking", "search_sticking"]
 
 Floats = npt.NDArray[np.float64]
 
-_GRID = 48
-"""Releases tried in either direction."""
+_GRIDS = (48, 96, 192)
+"""Releases tried in either direction: the next finer grid where too few of one lead to the contacts of the word."""
+
+_ENOUGH = 100
 
 _PERIODS = 200
 """Forcing periods of each simulation, beside twenty of those of the orbit."""
@@ -59,7 +61,10 @@ def search_sticking(word: Word, p: Params) -> tuple[list[Orbit], str]:
         )
         for start in STARTS
     ]
-    for release in (*_of_runs(way, p, runs), *_of_grid(way, p, _fastest(runs, p))):
+    fastest = _fastest(runs, p)
+    # Over half a period more releases lead to the contacts of a symmetric orbit.
+    halves = _of_grid(Round(word, half=True), p, fastest) if word.symmetric else ()
+    for release in (*_of_runs(way, p, runs), *halves, *_of_grid(way, p, fastest)):
         _add(found, word, p, release)
     if word.mirror == word:
         for orbit in [orbit for orbit in found if not orbit.symmetric]:
@@ -67,8 +72,7 @@ def search_sticking(word: Word, p: Params) -> tuple[list[Orbit], str]:
             if not any(same(known, image.t, image.states) for known in found):
                 found.append(image)
     return found, (
-        f"Newton's method from {_GRID} x {_GRID} phases and velocities of the release and from simulations: "
-        "there may be more"
+        "Newton's method from a grid of phases and velocities of the release and from simulations: there may be more"
     )
 
 
@@ -107,22 +111,28 @@ def _of_runs(way: Round, p: Params, runs: list[Trajectory]) -> Iterator[Release]
 
 
 def _of_grid(way: Round, p: Params, fastest: float) -> Iterator[Release]:
-    """Yield what it finds from a grid of releases."""
-    places = (np.arange(_GRID) + 0.5) / _GRID
-    found = np.empty((_MOST, 2))
-    count, _ = search_rounds(
-        constants(p),
-        way.side,
-        way.wanted,
-        way.span(p.period),
-        way.sign,
-        2 * math.pi * places,
-        fastest * places,
-        np.empty((ROOM, col.ROW)),
-        found,
-    )
-    for phase, v1 in found[:count].tolist():
-        yield Release(phase, v1)
+    """Yield what it finds from a grid of releases, made finer until the contacts of the word come from enough of them.
+
+    Half of the grid's velocities lie in the lowest quarter of their range.
+    """
+    for size in _GRIDS:
+        places = (np.arange(size) + 0.5) / size
+        found = np.empty((_MOST, 2))
+        count, met = search_rounds(
+            constants(p),
+            way.side,
+            way.wanted,
+            way.span(p.period),
+            way.sign,
+            2 * math.pi * places,
+            fastest * places**2,
+            np.empty((ROOM, col.ROW)),
+            found,
+        )
+        for phase, v1 in found[:count].tolist():
+            yield Release(phase, v1)
+        if met >= _ENOUGH:
+            return
 
 
 def _fastest(runs: list[Trajectory], p: Params) -> float:
