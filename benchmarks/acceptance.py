@@ -168,6 +168,7 @@ SECTIONS = {
     "Waiting for the command line": waiting,
     "Dynamics, beside its peers": benchmark("dynamics"),
     "Periodic orbits, beside AUTO-07p": benchmark("orbits"),
+    "Attractors that stick, each found by its word": benchmark("sticking"),
     "The paper, from an empty store": paper,
     "The catalogue, beside its peers": benchmark("catalogue"),
     "Reading a run of the rig": benchmark("rig_ingest"),

@@ -8,7 +8,16 @@ from benchmarks.sticking_in_digits import multipliers_in_digits
 from vines.attractors import settle
 from vines.errors import OrbitNotFound, ParameterError
 from vines.model import Params, Word
-from vines.orbits import all_orbits, bifurcation_row, continue_orbit, find_orbit, mirror_image, orbit_row, switch_branch
+from vines.orbits import (
+    all_orbits,
+    bifurcation_row,
+    continue_orbit,
+    find_orbit,
+    follow_end,
+    mirror_image,
+    orbit_row,
+    switch_branch,
+)
 from vines.orbits._floquet import monodromy
 from vines.orbits._sticking_ends import chatter_exponent
 from vines.systems import ImpactPair
@@ -128,3 +137,15 @@ def test_what_is_not_there_is_said():
     with pytest.raises(OrbitNotFound, match="for the VI-NES only"):
         find_orbit("L*R", ImpactPair(B=1.0, G=0.0, r=0.3))
     assert all_orbits("L*L*", P).complete
+
+
+def test_the_bound_of_the_region_that_sticks_is_followed_in_two_parameters():
+    orbit = find_orbit("L*R*", Params(mu=0.01, A=0.5))
+    ends = follow_end(orbit, "A", 0.05, other="mu", values=[0.01, 0.02])
+    assert [end.type for end in ends] == ["incomplete_chatter"] * 2
+    # From the other side, along mu at the same A.
+    across = find_orbit("L*R*", Params(mu=0.01, A=ends[1].params.A))
+    (same,) = follow_end(across, "mu", 0.05, other="A", values=[across.params.A])
+    assert (same.type, same.params.mu) == ("incomplete_chatter", pytest.approx(0.02, abs=1e-8))
+    with pytest.raises(ParameterError, match="does not stick"):
+        follow_end(find_orbit("LR", Params(mu=0.01, A=0.017)), "A", 0.05, other="mu", values=[0.01])

@@ -33,7 +33,7 @@ class Attractor:
         Whether the run reached its attractor; for a periodic one, to the tolerance asked for.
     word : str or None
         If periodic, the contacts over p forcing periods in canonical rotation, such as ``LLR`` or ``LRLR/2T``; a
-        complete chatter counts as one contact.
+        complete chatter, after which the ball sticks, counts as one contact and has a star: ``L*R``.
     name : str or None
         If periodic, n:m/pT (paper, section 3.1), such as ``2:1`` or ``2:2/2T``.
     n, m, p : int or None

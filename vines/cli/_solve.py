@@ -107,6 +107,15 @@ def describe(orbit: Orbit) -> str:
     ]
     head = ["", "t", "phase", "to the next", *STATE_NAMES, "w'"]
     text += ["", "impacts (just before each)", *lines(head, rows, wrap=None)]
+    if len(orbit.spells):
+        names = ("t_start", "t_release", "phase_start", "phase_release", "x1", "v1")
+        spells = [
+            [VI_NES.letters([spell["side"]]), *(f"{spell[name]:.10f}" for name in names), str(spell["impacts"])]
+            for spell in orbit.spells
+        ]
+        head = ["", "chatter ends", "release", "its phase", "its phase", "x1 there", "v1 there", "impacts followed"]
+        text += ["", "sticking (after a chatter, of which the first impact stands above)"]
+        text += lines(head, spells, wrap=None)
     text += ["", "Floquet multipliers over the period"]
     text += lines(["", "modulus"], [[_complex(z), f"{abs(z):.10f}"] for z in orbit.multipliers.tolist()], wrap=None)
     free, locked = no_ball(p), ball_locked(p)

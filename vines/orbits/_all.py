@@ -45,7 +45,8 @@ class Orbits(list[Orbit]):
     ----------
     complete : bool
         Whether every orbit of the word is in the list. True for words of two and three impacts, where all flight times
-        are searched; two orbits nearer than 1e-5 of a forcing period, next to a fold, may count as one.
+        are searched; two orbits nearer than 1e-5 of a forcing period, next to a fold, may count as one. A word without
+        a star has no orbits that stick, so that nothing is said about those; words with a star are never complete.
     remark : str
         How they were searched for.
     nearest : float
@@ -77,7 +78,8 @@ def all_orbits(word: str | Word, p: Any) -> Orbits:
         A list in order of largest multiplier, symmetric orbits first. Words of two impacts and of three are searched
         completely (``.complete``), and symmetric orbits of four and six. For longer words the list holds what
         Newton's method finds from stretches of simulations at p and at neighbouring amplitudes, from
-        orbits of half the period, and from random flight times, and may lack some.
+        orbits of half the period, and from random flight times, and may lack some. Orbits that stick have words of
+        their own (``L*R``), which are searched from a grid of releases and from simulations (docs/sticking.md).
 
     Raises
     ------

@@ -31,11 +31,13 @@ def find_orbit(word: str | Word, p: Any, guess: Orbit | npt.ArrayLike | None = N
     Parameters
     ----------
     word : str or Word
-        Such as ``LR``, ``LLR`` or ``LRLR/2T``.
+        Such as ``LR``, ``LLR`` or ``LRLR/2T``; of an orbit that sticks with a star, ``L*R``, as `vines.settle` names
+        it. A word without a star is that of orbits that never stick.
     p : Params, or the parameters of another system
     guess : Orbit or (N,) array, optional
         An orbit of the word at nearby parameters, or times of the impacts in the canonical order of the word, for a
-        forcing of phase zero at t = 0. The solution that Newton's method finds from there is returned.
+        forcing of phase zero at t = 0; for a word with a star time and v1 of the release after the first one, two
+        numbers. The solution that Newton's method finds from there is returned.
 
     Returns
     -------

@@ -23,8 +23,11 @@ __all__ = ["no_sticking_orbit", "refine_sticking", "search_sticking"]
 
 Floats = npt.NDArray[np.float64]
 
-_GRID = 48
-"""Releases tried in either direction."""
+_GRIDS = (48, 96, 192)
+"""Releases tried in either direction: a finer grid where too few of one lead to the contacts of the word, the finest
+only where nothing is found."""
+
+_ENOUGH = 100
 
 _PERIODS = 200
 """Forcing periods of each simulation, beside twenty of those of the orbit."""
@@ -59,16 +62,24 @@ def search_sticking(word: Word, p: Params) -> tuple[list[Orbit], str]:
         )
         for start in STARTS
     ]
-    for release in (*_of_runs(way, p, runs), *_of_grid(way, p, _fastest(runs, p))):
+    for release in _of_runs(way, p, runs):
         _add(found, word, p, release)
+    fastest = _fastest(runs, p)
+    # Over half a period more releases lead to the contacts of a symmetric orbit.
+    for each in (Round(word, half=True), way) if word.symmetric else (way,):
+        for size in _GRIDS:
+            releases, met = _of_grid(each, p, fastest, size)
+            for release in releases:
+                _add(found, word, p, release)
+            if met >= _ENOUGH or (found and size > _GRIDS[0]):
+                break
     if word.mirror == word:
         for orbit in [orbit for orbit in found if not orbit.symmetric]:
             image = mirrored_sticking(orbit)
             if not any(same(known, image.t, image.states) for known in found):
                 found.append(image)
     return found, (
-        f"Newton's method from {_GRID} x {_GRID} phases and velocities of the release and from simulations: "
-        "there may be more"
+        "Newton's method from a grid of phases and velocities of the release and from simulations: there may be more"
     )
 
 
@@ -106,23 +117,25 @@ def _of_runs(way: Round, p: Params, runs: list[Trajectory]) -> Iterator[Release]
                 yield release
 
 
-def _of_grid(way: Round, p: Params, fastest: float) -> Iterator[Release]:
-    """Yield what it finds from a grid of releases."""
-    places = (np.arange(_GRID) + 0.5) / _GRID
+def _of_grid(way: Round, p: Params, fastest: float, size: int) -> tuple[list[Release], int]:
+    """Return what it finds from a grid of releases, and from how many of these the contacts of the word come.
+
+    Half of the grid's velocities lie in the lowest quarter of their range.
+    """
+    places = (np.arange(size) + 0.5) / size
     found = np.empty((_MOST, 2))
-    count, _ = search_rounds(
+    count, met = search_rounds(
         constants(p),
         way.side,
         way.wanted,
         way.span(p.period),
         way.sign,
         2 * math.pi * places,
-        fastest * places,
+        fastest * places**2,
         np.empty((ROOM, col.ROW)),
         found,
     )
-    for phase, v1 in found[:count].tolist():
-        yield Release(phase, v1)
+    return [Release(phase, v1) for phase, v1 in found[:count].tolist()], met
 
 
 def _fastest(runs: list[Trajectory], p: Params) -> float:

@@ -28,6 +28,9 @@ minimum within the spell; rate at which the force falls at the release. The firs
 _SHORT = 1e-4
 """Flights shorter than this turn once, away from the wall, and their end at an impact is certain."""
 
+_RESOLVED = 1e-4
+"""Speed of an impact beside which one before it counts as slow: the last ones of a chatter are in order to rounding."""
+
 _PARTS = 64
 """Parts of a spell in which a minimum of the contact force is looked for."""
 
@@ -152,7 +155,7 @@ def survey_sticking(c, rows, contacts, spells):
             while rows[j, col.KIND] != col.IMPACT:
                 j -= 1
             speed = abs(rows[j, col.V1] - rows[j, col.V2])
-            if speed < fastest:
+            if speed < fastest and fastest > _RESOLVED:
                 slowest = min(slowest, speed)
             fastest = max(fastest, speed)
             j -= 1

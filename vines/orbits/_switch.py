@@ -21,6 +21,9 @@ __all__ = ["switch_branch"]
 _STEPS = (0.02, 0.04, 0.01, 0.08, 0.005, 0.0025)
 """Lengths of the step off the old family along the null vector, in radians of phase; the first that works is taken."""
 
+_SHORTER = (1e-3, 3e-4, 1e-4)
+"""Tried too where the orbits stick: their velocities at the release may be small, and their families short."""
+
 _ITERATIONS = 15
 _CLOSE = 1e-6
 """Newton step relative to the step off the family, after which the closing equations take over."""
@@ -71,12 +74,13 @@ def switch_branch(bifurcation: Bifurcation) -> list[Orbit]:
     if is_joint(bifurcation):
         return [left_family(bifurcation)]
     problem = _unfolded(bifurcation)
-    for step in _STEPS:
+    steps = (*_STEPS, *_SHORTER) if problem.word.sticking else _STEPS
+    for step in steps:
         orbit = _step_off(problem, step)
         if orbit is not None:
             return _pair(orbit) if bifurcation.type == "symmetry_breaking" else [orbit]
     raise OrbitNotFound(
-        f"no {problem.word} orbit was reached from {bifurcation} by steps of {min(_STEPS):g} to {max(_STEPS):g} rad; "
+        f"no {problem.word} orbit was reached from {bifurcation} by steps of {min(steps):g} to {max(steps):g} rad; "
         "the branching may be degenerate: change another parameter"
     )
 

@@ -76,13 +76,18 @@ def word_of(words: Sequence[str]) -> Word:
 
 
 def same_pattern(one: Word, other: Word) -> bool:
-    """Say whether two words are one up to the mirror (x, t) -> (-x, t + T/2).
+    """Say whether two words are one up to the mirror (x, t) -> (-x, t + T/2) and to where the ball sticks.
+
+    What is measured are contacts; whether the ball stays on the wall after one does not show in its word.
 
     Examples
     --------
     >>> same_pattern(Word("LLR"), Word("LRR")), same_pattern(Word("LR"), Word("LLR"))
     (True, False)
+    >>> same_pattern(Word("LR*"), Word("LR"))
+    True
     """
+    one, other = (Word(str(word).replace("*", "")) if word.sticking else word for word in (one, other))
     return str(one) in (str(other), str(other.mirror))
 
 
