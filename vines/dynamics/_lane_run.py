@@ -232,5 +232,5 @@ def run_block(
                 measure(L)
                 for i in range(LANES):
                     if L[f.MEND + i] > 0.0:
-                        mend(held[i], L, record, i, lengths[int(run[i, WHO])])
+                        mend(held, L, record, i, lengths[int(run[i, WHO])])
                 renew(L)
