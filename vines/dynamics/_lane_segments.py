@@ -72,7 +72,7 @@ def part_of(L, i):
 
 
 @linked_njit
-def end_segment(c, L, record, i, length, row):
+def end_segment(held, L, record, i, length, row):
     """Add the segment that a row ends, cut where a part ends, and what its event costs; begin the next segment."""
     _, _, total, values, batch, segment, _, _ = record
     part = part_of(L, i)
@@ -86,18 +86,18 @@ def end_segment(c, L, record, i, length, row):
     first = x1, v1, v2, phase
     while batch[i] < BATCHES - 1 and begins + lasts > (batch[i] + 1) * width:
         cut = min(max((batch[i] + 1) * width - begins, gone), lasts)
-        add_segment(c, part, mode, begins + gone, x1, v1, v2, phase, cut - gone)
-        close_batch(c.mu, part, total[i], values[i, batch[i]])
+        add_segment(held[i], part, mode, begins + gone, x1, v1, v2, phase, cut - gone)
+        close_batch(held[i].mu, part, total[i], values[i, batch[i]])
         batch[i] += 1
         start = zero_vector(col.ROW)
         start[col.MODE] = mode
         start[col.X1], start[col.A_V1], start[col.A_V2], start[col.PHASE] = first
-        x1, v1, _, v2, phase = segment_state(c, start, cut)
+        x1, v1, _, v2, phase = segment_state(held[i], start, cut)
         gone = cut
         part[MAX_ABS_X1], part[T_MAX_ABS_X1] = abs(x1), begins + gone
-    add_segment(c, part, mode, begins + gone, x1, v1, v2, phase, lasts - gone)
+    add_segment(held[i], part, mode, begins + gone, x1, v1, v2, phase, lasts - gone)
     if row[col.KIND] == col.IMPACT or row[col.KIND] == col.STICK:
-        count_event(c, part, row)
+        count_event(held[i], part, row)
     for k in range(TOTALS):
         L[f.PART + k * f.STRIDE + i] = part[k]
     begin_segment(
