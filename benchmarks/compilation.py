@@ -1,9 +1,11 @@
-"""What compiling the kernels costs: all of them from nothing, and after edits; the peer is numba's own way.
+"""What compiling the kernels costs, beside another checkout: from nothing, by part, and after edits; Markdown tables.
 
-The peer compiles the same sources with `numba.njit` for every decorator: each caller holds a copy of its callees, with
-full optimisation and machine code to be called from Python for all. Both compile in one process, in turn; medians.
+    python -m benchmarks.compilation [CHECKOUT] [--runs 5] [--clones]
 
-    python -m benchmarks.compilation [--runs 5]
+The peer is a checkout of another revision, such as aea8472, which compiles in numba's own way: each caller holds a copy
+of its callees, with full optimisation, and all that a room compiled is stale when a file of it changes. Both are asked
+in turn, and every figure is a median. ``--clones`` times `make run` and `make test` of fresh clones too, with downloads
+as they come, and names the twenty slowest tests; nothing else may run beside that.
 """
 
 from __future__ import annotations
@@ -11,121 +13,212 @@ from __future__ import annotations
 import argparse
 import json
 import os
+import re
+import resource
 import shutil
 import statistics
 import subprocess
 import sys
 import tempfile
-from collections.abc import Iterable
+import time
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Any
 
-PACKAGE = Path(__file__).resolve().parent.parent / "vines"
+HERE = Path(__file__).resolve().parent.parent
 
 PROGRAM = """
 import json, sys, time
-from vines.kernels import expected
-import vines.kernels, numba
+import vines
 from numba.core import codegen
-
-if sys.argv[1] == "peer":
-    plain = numba.njit(error_model="numpy", nogil=True)
-    fused = numba.njit(error_model="numpy", nogil=True, fastmath={"contract", "nsz"})
-    inline = numba.njit(error_model="numpy", nogil=True, fastmath={"contract", "nsz"}, forceinline=True)
-    arrays = ("new_vector new_matrix new_cube zero_vector zero_matrix zero_cube integer_vector zero_integers "
-              "byte_vector complex_vector complex_matrix identity max_abs copy_values").split()
-    for name in arrays:
-        setattr(vines.kernels, name, plain(getattr(vines.kernels, name).py_func))
-    for name in ("njit", "linked_njit", "cold_njit", "entry_njit"):
-        setattr(vines.kernels, name, plain)
-    vines.kernels.loop_njit, vines.kernels.fused_njit = fused, inline
 
 modules, lines = [0], [0]
 optimise = codegen.CPUCodeLibrary._optimize_final_module
 
 def counted(library):
     modules[0] += 1
-    lines[0] += str(library._final_module).count("\\n") if sys.argv[2] == "count" else 0
+    lines[0] += str(library._final_module).count("\\n") if sys.argv[1] == "count" else 0
     optimise(library)
 
 codegen.CPUCodeLibrary._optimize_final_module = counted
-expected()
-from vines.dynamics import _warm_up as dynamics
-from vines.attractors import _warm_up as attractors
-from vines.orbits import _warm_up as orbits
+from vines.attractors import classify_many, settle
+from vines.dynamics import Scatter, ensemble, lyapunov_spectrum, simulate, tangent_map
+from vines.model import Params
+from vines.orbits import continue_orbit, find_orbit, follow_curve, symmetric_table
 
-parts = {"one run": dynamics.runs, "what one run settles to": attractors.one_run, "many runs": attractors.many_runs,
-         "scatter": dynamics.scatter, "orbits": orbits.orbits, "curves": orbits.curves}
+p, kept = Params(mu=0.01, A=0.015), {}
+
+def one_run():
+    run = simulate(Params(mu=0.1, A=0.3, Omega=1.2), periods=4)
+    run.measures(), run.sample(16), tangent_map(run), lyapunov_spectrum(run)
+
+def orbits():
+    find_orbit("LR", Params(mu=0.01, A=0.017))
+    symmetric_table(0.01, 0.017)
+    kept["branch"] = continue_orbit(find_orbit("LLR", Params(mu=0.01, A=0.0213)), "A", 0.0212)
+
+parts = {
+    "one run: flight, energies, samples, tangent map": one_run,
+    "what one run settles to": lambda: settle(p, settle=200),
+    "many runs in lanes": lambda: ensemble(p, periods=1, threads=1),
+    "many runs and what they settle to": lambda: classify_many(p, settle=200),
+    "scatter": lambda: ensemble(p, periods=1, scatter=Scatter(sigma_r=0.1), threads=1),
+    "orbits and their families": orbits,
+    "curves of bifurcations": lambda: follow_curve(
+        kept["branch"].bifurcations[0], box={"A": (0.02, 0.022), "mu": (0.0099, 0.0101)}
+    ),
+}
 seconds = {}
 for name, work in parts.items():
-    began = time.process_time()
+    began = time.process_time(), time.perf_counter()
     work()
-    seconds[name] = time.process_time() - began
+    seconds[name] = time.perf_counter() - began[1], time.process_time() - began[0]
 print(json.dumps({"seconds": seconds, "modules": modules[0], "lines": lines[0]}))
 """
 
 EDITS = {
-    "a docstring of dynamics": ("dynamics/_contact.py", '"""Return |re + i im|."""', '"""Return the modulus."""'),
+    "nothing": ("dynamics/_contact.py", "", ""),
+    "a docstring of dynamics": ("dynamics/_contact.py", '"""Return the certified step', '"""Return a certified step'),
     "a kernel of orbits": ("orbits/_equations.py", "share < 1e-3", "share < 1.1e-3"),
-    "dynamics/_contact.py": ("dynamics/_contact.py", "BEYOND = 1.125", "BEYOND = 1.126"),
+    "`_contact.py`": ("dynamics/_contact.py", "BEYOND = 1.125", "BEYOND = 1.126"),
 }
 
 
-def _compiled(way: str, cache: Path, package: Path, *, count: bool = False) -> dict:
-    environment = {**os.environ, "NUMBA_CACHE_DIR": str(cache), "PYTHONPATH": str(package.parent)}
-    done = subprocess.run(
-        [sys.executable, "-c", PROGRAM, way, "count" if count else ""],
-        env=environment,
-        capture_output=True,
-        text=True,
-        check=True,
+@dataclass(slots=True)
+class Checkout:
+    """A copy of the sources of a checkout, and what was measured with it: lists of (clock, processor) in seconds."""
+
+    name: str
+    origin: Path
+    place: Path
+    warm_up: list[tuple[float, float]] = field(default_factory=list)
+    parts: list[dict[str, tuple[float, float]]] = field(default_factory=list)
+    edits: dict[str, list[tuple[float, float]]] = field(default_factory=dict)
+    edited: dict[str, int] = field(default_factory=dict)
+    counts: tuple[int, int] = (0, 0)
+
+    def __post_init__(self) -> None:
+        for part in ("vines", "schemas", "pipelines"):
+            shutil.copytree(self.origin / part, self.place / part, ignore=shutil.ignore_patterns("__pycache__"))
+
+    def run(self, kernels: str, *words: str) -> tuple[str, tuple[float, float]]:
+        """Return what a Python process with these sources said, and its seconds by the clock and of processor."""
+        environment = os.environ | {
+            "NUMBA_CACHE_DIR": str(self.place / kernels),
+            "PYTHONPATH": str(self.place),
+            "VINES_ROOT": str(self.place),
+            "VINES_QUIET": "1",
+        }
+        before, began = resource.getrusage(resource.RUSAGE_CHILDREN), time.perf_counter()
+        done = subprocess.run(
+            [sys.executable, "-P", *words], env=environment, cwd=self.place, capture_output=True, text=True, check=False
+        )
+        clock, after = time.perf_counter() - began, resource.getrusage(resource.RUSAGE_CHILDREN)
+        if done.returncode:
+            raise SystemExit(f"{self.name}: {(done.stderr.strip() or 'no reason given').splitlines()[-1]}")
+        return done.stdout, (clock, after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime)
+
+    def once(self, k: int) -> None:
+        """Compile everything from nothing: as the command does, and part by part in one process; then after edits."""
+        self.warm_up.append(self.run(f"warm-up-{k}", "-m", "vines.cli", "warm-up")[1])
+        told, _ = self.run(f"parts-{k}", "-c", PROGRAM, "")
+        self.parts.append(json.loads(told.splitlines()[-1])["seconds"])
+        for edit, (path, old, new) in EDITS.items():
+            source = self.place / "vines" / path
+            text = source.read_text("utf-8")
+            if old not in text:
+                raise SystemExit(f"{self.name}: {path} does not contain {old!r} any more; choose another edit")
+            # A cache of its own for each edit, so that none finds what another has compiled.
+            shutil.copytree(self.place / f"parts-{k}", self.place / "edit")
+            source.write_text(text.replace(old, new, 1), "utf-8")
+            told, seconds = self.run("edit", "-c", PROGRAM, "")
+            source.write_text(text, "utf-8")
+            shutil.rmtree(self.place / "edit")
+            self.edits.setdefault(edit, []).append(seconds)
+            self.edited[edit] = json.loads(told.splitlines()[-1])["modules"]
+
+    def count(self) -> None:
+        """Count modules and lines of LLVM before its passes, which takes time of its own."""
+        found = json.loads(self.run("count", "-c", PROGRAM, "count")[0].splitlines()[-1])
+        self.counts = found["modules"], found["lines"]
+
+
+def cloned(checkout: Path) -> tuple[dict[str, tuple[float, float]], list[str]]:
+    """Return the seconds of `make run` and then `make test` in a fresh clone, and the slowest tests."""
+    found: dict[str, tuple[float, float]] = {}
+    slowest: list[str] = []
+    with tempfile.TemporaryDirectory() as folder:
+        subprocess.run(["git", "clone", "-q", str(checkout), folder], check=True)
+        environment = {name: value for name, value in os.environ.items() if not name.startswith(("VINES", "NUMBA"))}
+        for target in ("run", "test"):
+            before, began = resource.getrusage(resource.RUSAGE_CHILDREN), time.perf_counter()
+            command = ["make", target, "PYTEST_ARGS=--durations=20 -q"]
+            done = subprocess.run(command, cwd=folder, env=environment, capture_output=True, text=True, check=False)
+            after = resource.getrusage(resource.RUSAGE_CHILDREN)
+            processor = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
+            found[f"`make {target}` of a fresh clone"] = time.perf_counter() - began, processor
+            slowest = re.findall(r"^\s*[\d.]+s (?:call|setup|teardown) .*$", done.stdout, re.MULTILINE)
+    return found, slowest
+
+
+def _pair(seconds: Sequence[tuple[float, float]]) -> str:
+    clock, processor = (statistics.median(values) for values in zip(*seconds, strict=True))
+    return f"{clock:.1f} / {processor:.1f}"
+
+
+def rows_of(checkout: Checkout) -> dict[str, str]:
+    """Return what was measured with a checkout, by row of the table."""
+    rows = {"`vines warm-up` of everything": _pair(checkout.warm_up)}
+    for part in checkout.parts[0]:
+        rows[f"in one process: {part}"] = _pair([found[part] for found in checkout.parts])
+    rows["in one process: all"] = _pair(
+        [(sum(one for one, _ in found.values()), sum(two for _, two in found.values())) for found in checkout.parts]
     )
-    return json.loads(done.stdout.splitlines()[-1])
+    rows["modules compiled"], rows["lines of LLVM before its passes"] = (f"{count:,}" for count in checkout.counts)
+    for edit, seconds in checkout.edits.items():
+        rows[f"all of it after an edit of {edit}"] = f"{_pair(seconds)}, {checkout.edited[edit]} modules"
+    return rows
 
 
-def _table(rows: Iterable[tuple[str, ...]]) -> None:
-    for row in rows:
-        print("| " + " | ".join(row) + " |")
+def table(columns: Iterable[tuple[str, dict[str, str]]]) -> list[str]:
+    """Return a Markdown table of named columns."""
+    listed = list(columns)
+    lines = [
+        "| clock / processor, s | " + " | ".join(name for name, _ in listed) + " |",
+        "|---" * (1 + len(listed)) + "|",
+    ]
+    for row in listed[-1][1]:
+        lines.append(f"| {row} | " + " | ".join(rows.get(row, "") for _, rows in listed) + " |")
+    return lines
+
+
+def measured(origins: dict[str, Path], runs: int, say: Callable[[str], Any] = print) -> None:
+    """Measure checkouts in turn, and say the table."""
+    with tempfile.TemporaryDirectory() as folder:
+        checkouts = [Checkout(name, origin, Path(folder) / name) for name, origin in origins.items()]
+        for k in range(runs):
+            for checkout in checkouts:
+                checkout.once(k)
+        for checkout in checkouts:
+            checkout.count()
+        say("\n".join(table((each.name, rows_of(each)) for each in checkouts)))
 
 
 def main() -> None:
     """Print the tables."""
-    parser = argparse.ArgumentParser(description=__doc__)
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("checkout", nargs="?", type=Path, help="of the revision to compare with")
     parser.add_argument("--runs", type=int, default=5)
-    runs = parser.parse_args().runs
-    with tempfile.TemporaryDirectory() as name:
-        place = Path(name)
-        package = place / "sources" / "vines"
-        shutil.copytree(PACKAGE, package, ignore=shutil.ignore_patterns("__pycache__"))
-        results: dict[str, list[dict]] = {"vines": [], "peer": []}
-        for k in range(runs):
-            for way, found in results.items():
-                found.append(_compiled(way, place / f"{way}{k}", package))
-        counts = {way: _compiled(way, place / f"count-{way}", package, count=True) for way in results}
-        parts = list(results["vines"][0]["seconds"])
-        print(f"Processor seconds in one process, medians of {runs}.")
-        _table([("kernels for", "vines", "numba's own way", "ratio"), ("---",) * 4])
-        for part in [*parts, "all"]:
-            ours, theirs = (
-                statistics.median(sum(r["seconds"].values()) if part == "all" else r["seconds"][part] for r in found)
-                for found in results.values()
-            )
-            _table([(part, f"{ours:.1f}", f"{theirs:.1f}", f"{ours / theirs:.2f}")])
-        for what in ("modules", "lines"):
-            ours, theirs = counts["vines"][what], counts["peer"][what]
-            label = "modules" if what == "modules" else "lines of LLVM before its passes"
-            _table([(label, f"{ours:,}", f"{theirs:,}", f"{ours / theirs:.2f}")])
-        print("\nAfter an edit: processor seconds of all the work above, and modules compiled.")
-        cache = place / "vines0"
-        _table([("edit", "s", "modules"), ("---",) * 3])
-        for edit, (path, old, new) in {"nothing": ("model/_words.py", "", ""), **EDITS}.items():
-            source = package / path
-            text = source.read_text("utf-8")
-            if old not in text:
-                raise SystemExit(f"{path} does not contain {old!r} any more; choose another edit")
-            source.write_text(text.replace(old, new, 1), "utf-8")
-            done = _compiled("vines", cache, package)
-            _table([(edit, f"{sum(done['seconds'].values()):.1f}", str(done["modules"]))])
-            source.write_text(text, "utf-8")
+    parser.add_argument("--clones", action="store_true", help="`make run` and `make test` of fresh clones too")
+    asked = parser.parse_args()
+    origins = ({"before": asked.checkout.resolve()} if asked.checkout else {}) | {"now": HERE}
+    measured(origins, asked.runs)
+    if asked.clones:
+        found = {name: cloned(origin) for name, origin in origins.items()}
+        columns = ((name, {row: _pair([pair]) for row, pair in rows.items()}) for name, (rows, _) in found.items())
+        print("\n" + "\n".join(table(columns)))
+        print("\nThe twenty slowest tests now:\n\n```\n" + "\n".join(found["now"][1]) + "\n```")
 
 
 if __name__ == "__main__":

@@ -22,7 +22,9 @@ class _AfterImport:
         self._name = name
         self._then = then
 
-    def find_spec(self, name: str, path: Sequence[str] | None = None, target: ModuleType | None = None) -> object:
+    def find_spec(
+        self, name: str, path: Sequence[str] | None = None, target: ModuleType | None = None
+    ) -> ModuleSpec | None:
         """Find the module as others do, and see to it that loading it does one thing more."""
         del path, target
         if name != self._name:

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from scipy.integrate import solve_ivp
 
 from vines.dynamics import Scatter, ensemble, simulate
 from vines.dynamics._ensemble import _Runs
@@ -70,6 +71,52 @@ def test_a_second_harmonic_of_no_size_changes_no_energies(p: Params) -> None:
     assert other is not None
     for name in ("base_work", "damper_loss", "kinetic_1", "rms_x1", "max_abs_x1"):
         assert one[name] == pytest.approx(other[name], rel=1e-8)
+
+
+@pytest.mark.parametrize(
+    ("Omega", "lam", "A", "periods"),
+    [
+        (1.0, 0.0, 0.01, 3.0),
+        (1.0, 0.004, 0.01, 3.0),
+        (1.003, 0.001, 0.01, 3.0),
+        (0.5, 0.0, 0.02, 2.0),
+        (0.5, 0.004, 0.02, 2.0),
+        (0.499, 0.001, 0.02, 2.0),
+        (1.3, 0.012, 0.01, 3.0),
+        (1.1, 0.3, 60.0, 0.02),
+    ],
+)
+def test_energies_of_a_flight_under_both_harmonics_are_those_of_an_integrator(
+    Omega: float, lam: float, A: float, periods: float
+) -> None:
+    # At the resonance of the first harmonic, at that of the second, away from both, and where both responses are large.
+    p, share, ahead = Params(mu=0.01, A=A, Omega=Omega, lam=lam), 0.3, 0.7
+    scatter = Scatter(second=share, second_phase=ahead, seed=1)
+    run = ensemble(p, {"x1": [0.1], "v1": [0.02], "v2": [0.0]}, periods=periods, record="measures", scatter=scatter)
+
+    def motion(t: float, y: np.ndarray) -> list[float]:
+        x, v = y[:2]
+        e = A * (np.sin(Omega * t) + share * np.sin(2 * Omega * t + ahead))
+        e_dot = A * Omega * (np.cos(Omega * t) + 2 * share * np.cos(2 * Omega * t + ahead))
+        spring, slip = x - e, v - e_dot
+        return [v, -spring - lam * slip, x * x, v * v, -(spring + lam * slip) * e_dot, lam * slip * slip]
+
+    duration = periods * p.period
+    there = solve_ivp(
+        motion, (0.0, duration), [0.1, 0.02, 0, 0, 0, 0], method="DOP853", rtol=1e-13, atol=1e-15, dense_output=True
+    )
+    x, v, square, speed, work, lost = there.y[:, -1]
+    m = run.measures
+    assert m is not None
+    assert m["impacts_left"][0] + m["impacts_right"][0] == 0
+    assert run.final["x1"][0] == pytest.approx(x, abs=2e-11)
+    assert run.final["v1"][0] == pytest.approx(v, abs=2e-11)
+    assert m["rms_x1"][0] ** 2 * duration == pytest.approx(square, rel=1e-11)
+    assert 2 * m["kinetic_1"][0] * duration == pytest.approx(speed, rel=1e-11)
+    assert m["base_work"][0] == pytest.approx(work, rel=1e-11)
+    assert m["damper_loss"][0] == pytest.approx(lost, rel=1e-11, abs=1e-15)
+    densely = there.sol(np.linspace(0.0, duration, 20_001))[0]
+    assert m["max_abs_x1"][0] == pytest.approx(np.max(np.abs(densely)), rel=1e-7)
 
 
 def test_restitution_has_the_mean_and_spread_asked_for() -> None:

@@ -162,7 +162,7 @@ class _Runs:
         work = _Work(self, what)
         n = len(self.table)
         cores = threads_allowed() if self.threads is None else max(1, self.threads)
-        # Lanes idle at the end of a block, so on one core all is one, but where impacts would fill more memory than caches.
+        # Lanes idle at the end of a block, so on one core all is one; but impacts would fill more memory than caches.
         whole = cores == 1 and not what & lanes.WITH_IMPACTS
         size = min(BLOCK, n if whole else max(lanes.LANES, -(-n // (4 * cores))))
         blocks = [slice(k, min(k + size, n)) for k in range(0, n, size)]

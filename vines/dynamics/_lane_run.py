@@ -150,13 +150,13 @@ def run_block(
                     length = lengths[who] if run[i, STAGE] == 1.0 else first[who]
                     if run[i, STAGE] == 1.0:
                         open_record(c, L, record, i, length, 0.0, 0.0, s[0], s[1], s[2], s[3], s[4])
-                    if may_fly(c, state) and fill_lane(c, state, L, i, length):
+                    if may_fly(c, state) and fill_lane(held, state, L, i, length):
                         break
                 else:
                     who = int(run[i, WHO])
                     c = held[i]
                     length = lengths[who] if run[i, STAGE] == 1.0 else first[who]
-                    take_lane(c, L, i, state, length, run[i, PHASE0])
+                    take_lane(held, L, i, state, length, run[i, PHASE0])
                     segment[i, 0], segment[i, 1] = 0.0, L[f.SPEED + i]
                 flies = False
                 while True:
@@ -174,7 +174,7 @@ def run_block(
                         run[i, PHASE0] = phase
                         kept = lengths[who]
                         open_record(c, L, record, i, kept, since, state[col.S_MODE], x1, v1, x2, v2, phase)
-                        if may_fly(c, state) and fill_lane(c, state, L, i, lengths[who]):
+                        if may_fly(c, state) and fill_lane(held, state, L, i, lengths[who]):
                             flies = True
                             break
                         continue
@@ -184,7 +184,7 @@ def run_block(
                         x1, v1, x2, v2, phase, since = state_now(c, state, end)
                     if what and run[i, STAGE] == 1.0:
                         if happened and energies:
-                            end_segment(c, L, record, i, length, row[0])
+                            end_segment(held, L, record, i, length, row[0])
                         full = False
                         if happened and keeps:
                             copy_values(rows[i, waiting[i]], row[0])
@@ -196,7 +196,7 @@ def run_block(
                             last[col.V1], last[col.V2], last[col.A_V1], last[col.A_V2] = v1, v2, v1, v2
                             last[col.MODE] = state[col.S_MODE]
                             if energies:
-                                end_segment(c, L, record, i, length, last)
+                                end_segment(held, L, record, i, length, last)
                         if keeps and (full or ended):
                             filled = digest(c, record, i, length, rates, impacts, events, filled, who)
                         if filled >= 0 and code == col.COMPLETE and rates:
@@ -210,7 +210,7 @@ def run_block(
                             status[who] = OVERFLOW
                             return events.shape[0]
                     if not ended:
-                        if may_fly(c, state) and fill_lane(c, state, L, i, length):
+                        if may_fly(c, state) and fill_lane(held, state, L, i, length):
                             flies = True
                             break
                         continue
@@ -232,5 +232,5 @@ def run_block(
                 measure(L)
                 for i in range(LANES):
                     if L[f.MEND + i] > 0.0:
-                        mend(held[i], L, record, i, lengths[int(run[i, WHO])])
+                        mend(held, L, record, i, lengths[int(run[i, WHO])])
                 renew(L)

@@ -72,31 +72,32 @@ def part_of(L, i):
 
 
 @linked_njit
-def end_segment(c, L, record, i, length, row):
+def end_segment(held, L, record, i, length, row):
     """Add the segment that a row ends, cut where a part ends, and what its event costs; begin the next segment."""
     _, _, total, values, batch, segment, _, _ = record
     part = part_of(L, i)
-    start = zero_vector(col.ROW)
     mode, v2 = segment[i]
     x1, v1 = L[f.FROM_X + i], L[f.FROM_V + i]
     phase = advance_phase(math.atan2(L[f.FROM_SIN + i], L[f.FROM_COS + i]), 0.0)
-    start[col.MODE], start[col.X1], start[col.A_V1], start[col.A_V2] = mode, x1, v1, v2
-    start[col.PHASE] = phase
     lasts = row[col.TAU] - L[f.FROM_TAU + i]
     begins = row[col.TIME] - lasts
     width = length / BATCHES
     gone = 0.0
+    first = x1, v1, v2, phase
     while batch[i] < BATCHES - 1 and begins + lasts > (batch[i] + 1) * width:
         cut = min(max((batch[i] + 1) * width - begins, gone), lasts)
-        add_segment(c, part, mode, begins + gone, x1, v1, v2, phase, cut - gone)
-        close_batch(c.mu, part, total[i], values[i, batch[i]])
+        add_segment(held[i], part, mode, begins + gone, x1, v1, v2, phase, cut - gone)
+        close_batch(held[i].mu, part, total[i], values[i, batch[i]])
         batch[i] += 1
-        x1, v1, _, v2, phase = segment_state(c, start, cut)
+        start = zero_vector(col.ROW)
+        start[col.MODE] = mode
+        start[col.X1], start[col.A_V1], start[col.A_V2], start[col.PHASE] = first
+        x1, v1, _, v2, phase = segment_state(held[i], start, cut)
         gone = cut
         part[MAX_ABS_X1], part[T_MAX_ABS_X1] = abs(x1), begins + gone
-    add_segment(c, part, mode, begins + gone, x1, v1, v2, phase, lasts - gone)
+    add_segment(held[i], part, mode, begins + gone, x1, v1, v2, phase, lasts - gone)
     if row[col.KIND] == col.IMPACT or row[col.KIND] == col.STICK:
-        count_event(c, part, row)
+        count_event(held[i], part, row)
     for k in range(TOTALS):
         L[f.PART + k * f.STRIDE + i] = part[k]
     begin_segment(
@@ -191,27 +192,27 @@ def _peak_in_halves(L, i):
 
 
 @linked_njit
-def _mend_peak(c, L, i):
+def _mend_peak(held, L, i):
     """Search a flight, which the lanes could not, for its peak."""
     if _peak_in_halves(L, i):
         return
     lasts = L[f.FLIGHT + i] - L[f.FROM_TAU + i]
     phase = advance_phase(math.atan2(L[f.FROM_SIN + i], L[f.FROM_COS + i]), 0.0)
     x1, v1 = L[f.FROM_X + i], L[f.FROM_V + i]
-    L[LARGEST + i], when = largest_displacement(c, 0.0, x1, v1, phase, 0.0, lasts, L[LARGEST + i])
+    L[LARGEST + i], when = largest_displacement(held[i], 0.0, x1, v1, phase, 0.0, lasts, L[LARGEST + i])
     if when >= 0.0:
         L[WHEN_LARGEST + i] = L[f.LENGTH + i] - L[f.LEFT + i] - lasts + when
     L[f.MEND + i] = 0.0
 
 
 @linked_njit
-def _one_by_scalar(c, L, i):
+def _one_by_scalar(held, L, i):
     """Take the measures of a flight by the scalar functions."""
     part = part_of(L, i)
     lasts = L[f.FLIGHT + i] - L[f.FROM_TAU + i]
     phase = advance_phase(math.atan2(L[f.FROM_SIN + i], L[f.FROM_COS + i]), 0.0)
     begins = L[f.LENGTH + i] - L[f.LEFT + i] - lasts
-    add_segment(c, part, 0.0, begins, L[f.FROM_X + i], L[f.FROM_V + i], L[f.BEFORE2 + i], phase, lasts)
+    add_segment(held[i], part, 0.0, begins, L[f.FROM_X + i], L[f.FROM_V + i], L[f.BEFORE2 + i], phase, lasts)
     wall, closing = L[f.WALL + i], L[f.BEFORE1 + i] - L[f.BEFORE2 + i]
     if wall != 0.0:
         part[LOSS_LEFT if wall > 0.0 else LOSS_RIGHT] += L[f.LOSS + i] * closing * closing
@@ -222,26 +223,26 @@ def _one_by_scalar(c, L, i):
 
 
 @linked_njit
-def _measure_one(c, L, i):
+def _measure_one(held, L, i):
     _one_energies(L, i)
     if L[f.MEND + i] != 0.0:
-        _one_by_scalar(c, L, i)
+        _one_by_scalar(held, L, i)
         return
     _one_peak(L, i)
     if L[f.MEND + i] == MEND_PEAK:
-        _mend_peak(c, L, i)
+        _mend_peak(held, L, i)
 
 
 @linked_njit
-def _cut(c, L, record, i, length):
+def _cut(held, L, record, i, length):
     """Take the measures of a flight in which parts end, up to each of these ends and from the last one on."""
     end = _end_of(L, i)
     while end[5] < L[f.PART_ENDS + i]:
         ends = L[f.PART_ENDS + i]
         lasts = end[4] - L[f.FROM_TAU + i]
         x1, v1 = _end_at(L, i, min(max(lasts - (ends - end[5]), 0.0), lasts), ends)
-        _measure_one(c, L, i)
-        close_part(c.mu, L, record, i, part_of(L, i))
+        _measure_one(held, L, i)
+        close_part(held[i].mu, L, record, i, part_of(L, i))
         record[4][i] += 1
         for k in range(TOTALS):
             L[f.PART + k * f.STRIDE + i] = 0.0
@@ -249,14 +250,17 @@ def _cut(c, L, record, i, length):
         L[f.PART_ENDS + i] = _part_ends(record[4][i], length)
         _from_end(L, i, x1, v1)
         _set_end(L, i, end)
-    _measure_one(c, L, i)
+    _measure_one(held, L, i)
 
 
 @linked_njit
-def mend(c, L, record, i, length):
-    """Do for the impact of a lane what `measure` has left to do."""
+def mend(held, L, record, i, length):
+    """Do for the impact of a lane what `measure` has left to do; `held` are the constants of all lanes.
+
+    Where they are needed they are taken from there: each call that hands them on copies a hundred numbers.
+    """
     if L[f.MEND + i] == MEND_PEAK:
-        _mend_peak(c, L, i)
+        _mend_peak(held, L, i)
     else:
-        _cut(c, L, record, i, length)
+        _cut(held, L, record, i, length)
     L[f.MEND + i] = 0.0

@@ -22,8 +22,12 @@ LANE_LARGE = 256.0
 
 
 @linked_njit
-def fill_lane(c, state, L, i, length):
-    """Put a lane where the scalar state is, in flight; say whether it can run there."""
+def fill_lane(held, state, L, i, length):
+    """Put a lane where the scalar state is, in flight; say whether it can run there.
+
+    `held` are the constants of all lanes; a call that hands on those of one copies a hundred numbers.
+    """
+    c = held[i]
     wall = state[col.S_WALL]
     released = state[col.S_RELEASED] != 0.0
     x, v, phase = state[col.S_X1], state[col.S_V1], state[col.S_PHASE]
@@ -97,8 +101,9 @@ def _clock(omega, period, phase, phase0, roughly):
 
 
 @linked_njit
-def take_lane(c, L, i, state, length, phase0):
+def take_lane(held, L, i, state, length, phase0):
     """Put the scalar state where the flight of a lane began."""
+    c = held[i]
     tau = L[f.TAU + i]
     o = c.free
     xh, vh = L[f.X_FREE + i], L[f.V_FREE + i]
@@ -140,7 +145,7 @@ def _leaves(c, state):
 @njit
 def may_fly(c, state):
     """Say whether the scalar state is that of an ordinary flight."""
-    # The constants are a hundred numbers that a call hands on: where no sum is needed, none is made.
+    # Where no sum is needed no call is made, which would hand on all constants.
     return state[col.S_MODE] == 0.0 and (state[col.S_DECIDE] == 0.0 or _leaves(c, state))
 
 

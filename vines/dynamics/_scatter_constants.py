@@ -51,14 +51,18 @@ class Harmonic(NamedTuple):
     """What `Oscillator` holds of a forcing, for another one: G = g exp(i Omega t) with its own frequency.
 
     ``gr + i gi`` is g where the phase of the first harmonic is 0; ``er + i ei`` is 1/(i Omega - s); ``c2r … c6i`` the
-    sums in the derivatives of u; ``br + i bi`` gives the velocity of the base, Re[b G]. 0 where there is none.
+    sums in the derivatives of u; ``br + i bi`` gives the velocity of the base, Re[b G]. Where there is none
+    forcing and ``reach`` are 0.
     """
 
     Omega: float
     gr: float
     gi: float
+    dr: float
+    di: float
     er: float
     ei: float
+    reach: float
     c2r: float
     c2i: float
     c3r: float
@@ -92,7 +96,7 @@ class ScatterOscillator(NamedTuple):
     """One oscillator under both harmonics and a held force: x = held + Re u, u' = s u + G1 + G2.
 
     ``piece`` is what a whole time between two draws does; over it x leaves the chord between its ends by no more than
-    ``bend`` + ``sag`` |u|. ``reach`` is 0 away from the resonances of both harmonics.
+    ``bend`` + ``sag`` |u|.
     """
 
     first: Oscillator
@@ -102,7 +106,6 @@ class ScatterOscillator(NamedTuple):
     sag: float
     br: float
     bi: float
-    reach: float
 
 
 class ScatterConstants(NamedTuple):
@@ -139,15 +142,15 @@ class ScatterConstants(NamedTuple):
 
 @njit
 def _harmonic(o, A, Omega, lam, phase):
-    """Return what another forcing of the oscillator is, at frequency Omega, and its own reach."""
+    """Return what another forcing of the oscillator is, at frequency Omega."""
     p = oscillator(1.0 / o.stiffness, A, Omega, lam)
     g = complex(p.gr, p.gi) * complex(math.cos(phase), math.sin(phase))
     b = base_per_force(p, Omega, lam)
-    h = Harmonic(
-        Omega, g.real, g.imag, p.er, p.ei, p.c2r, p.c2i, p.c3r, p.c3i, p.c4r, p.c4i, p.c5r, p.c5i, p.c6r, p.c6i,
-        b.real, b.imag,
+    reach = p.reach if A > 0.0 else 0.0
+    return Harmonic(
+        Omega, g.real, g.imag, p.dr, p.di, p.er, p.ei, reach,
+        p.c2r, p.c2i, p.c3r, p.c3i, p.c4r, p.c4i, p.c5r, p.c5i, p.c6r, p.c6i, b.real, b.imag,
     )  # fmt: skip
-    return h, (p.reach if A > 0.0 else 0.0)
 
 
 @linked_njit
@@ -170,7 +173,7 @@ def added(s, omega, length):
 
 @linked_njit
 def _scattering(o, A, Omega, lam, phase, grid):
-    second, reach = _harmonic(o, A, 2.0 * Omega, lam, phase)
+    second = _harmonic(o, A, 2.0 * Omega, lam, phase)
     s = complex(-o.half, o.gamma)
     u = cmath.exp(s * grid)
     f1, f2 = cmath.exp(complex(0.0, Omega * grid)), cmath.exp(complex(0.0, 2.0 * Omega * grid))
@@ -183,7 +186,7 @@ def _scattering(o, A, Omega, lam, phase, grid):
     bend = sag * grid * (first + other) + 0.125 * grid * grid * (
         math.hypot(o.c2r, o.c2i) * first + math.hypot(second.c2r, second.c2i) * other
     )
-    return ScatterOscillator(o, second, piece, bend, sag, base.real, base.imag, max(o.reach, reach))
+    return ScatterOscillator(o, second, piece, bend, sag, base.real, base.imag)
 
 
 @linked_njit

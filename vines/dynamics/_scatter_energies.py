@@ -7,11 +7,12 @@ All are quadratic forms in y = (u, G1, G2), so the integrals of y_a y_b and of y
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 
 from vines.dynamics import _totals as entry
-from vines.dynamics._flight import derivatives, flight, modulus, turn
+from vines.dynamics._flight import derivatives, flight, modulus, slow_growth, turn
 from vines.dynamics._integrals import NODES, WEIGHTS, energies_between, peak_between, stays_below
 from vines.dynamics._scatter_constants import (
     AHEAD,
@@ -26,6 +27,7 @@ from vines.dynamics._scatter_constants import (
     ScatterOscillator,
 )
 from vines.dynamics._scatter_motion import HELD, INDEX, LEFT, end_of, redraw, sagging, under
+from vines.dynamics._sincos import sincos
 from vines.dynamics._totals import add_segment, base_at, event_loss, event_work, stored_energy, window_totals
 from vines.kernels import (
     cold_njit,
@@ -64,11 +66,31 @@ def _stays_below(o, Omega, now, end, left, best):
     bend = abs(re) + abs(im) + left * Omega * Omega * force
     if max(abs(held + ur), abs(end[6] + end[0])) + 0.125 * left * left * bend <= best:
         return True
-    if o.reach != 0.0:
-        return False
     ar, ai = pr * o.first.er - pi * o.first.ei, pr * o.first.ei + pi * o.first.er
     br, bi = qr * o.second.er - qi * o.second.ei, qr * o.second.ei + qi * o.second.er
-    return abs(held) + modulus(ur - ar - br, ui - ai - bi) + modulus(ar, ai) + modulus(br, bi) <= best
+    if o.first.reach == 0.0 and o.second.reach == 0.0:
+        return abs(held) + modulus(ur - ar - br, ui - ai - bi) + modulus(ar, ai) + modulus(br, bi) <= best
+    if o.second.reach == 0.0:
+        highest = _chord(o.first, (ur - br, ui - bi, pr, pi), _less(o.second, end[0], end[1], end[4], end[5]), left)
+        return abs(held) + modulus(br, bi) + highest <= best
+    if o.first.reach == 0.0:
+        highest = _chord(o.second, (ur - ar, ui - ai, qr, qi), _less(o.first, end[0], end[1], end[2], end[3]), left)
+        return abs(held) + modulus(ar, ai) + highest <= best
+    return False
+
+
+@fused_njit
+def _less(h, ur, ui, gr, gi):
+    """Return u less the steady response to a harmonic."""
+    return ur - (gr * h.er - gi * h.ei), ui - (gr * h.ei + gi * h.er)
+
+
+@fused_njit
+def _chord(h, start, end, left):
+    """Return a bound of |u| between two motions under a harmonic that turns nearly as u, as without scatter."""
+    ur, ui, gr, gi = start
+    rate = modulus(gr - (h.dr * ur - h.di * ui), gi - (h.dr * ui + h.di * ur))
+    return max(modulus(ur, ui), modulus(end[0], end[1])) + 0.125 * modulus(h.dr, h.di) * rate * left * left
 
 
 @fused_njit
@@ -81,9 +103,43 @@ def _remains(rate, length):
     return length * (1.0 - y * (1 / 2 - y * (1 / 6 - y * (1 / 24 - y * tail))))
 
 
+class Slow(NamedTuple):
+    """The detuning i Omega - s of a harmonic near resonance, the time up to which it is small, and its frequency."""
+
+    dr: float
+    di: float
+    reach: float
+    Omega: float
+
+
+@linked_njit
+def _nearly_steady(h, u, g, length):
+    """Return the integrals of u conj(G) and |u|^2 where u' = s u + G and u turns nearly as G.
+
+    By quadrature of u exp(-i Omega t), which hardly changes, as without scatter.
+    """
+    mixed, square, done = complex(0.0, 0.0), 0.0, 0.0
+    while True:
+        part = min(length - done, h.reach)
+        rate = g - complex(h.dr, h.di) * u
+        for k in range(8):
+            t = 0.5 * part * (1.0 + (NODES[k // 2] if k % 2 else -NODES[k // 2]))
+            weight = 0.5 * part * WEIGHTS[k // 2]
+            re, im = slow_growth(h, t)
+            y = u + rate * complex(re, im)
+            mixed += weight * y * g.conjugate()
+            square += weight * (y.real * y.real + y.imag * y.imag)
+        done += part
+        if not done < length:
+            return mixed, square
+        re, im = slow_growth(h, part)
+        sine, cosine = sincos(h.Omega * part)
+        u, g = (u + rate * complex(re, im)) * complex(cosine, sine), g * complex(cosine, sine)
+
+
 @linked_njit
 def _by_quadrature(o, Omega, motion, length, longest):
-    """Return the integrals of u conj(G1), u conj(G2) and |u|^2 near a resonance, by Gauss–Legendre in short parts."""
+    """Return the integrals of u conj(G1), u conj(G2) and |u|^2 by Gauss–Legendre in short parts, whatever is large."""
     one, two, square = complex(0.0, 0.0), complex(0.0, 0.0), 0.0
     parts = math.ceil(length / longest)
     for i in range(parts):
@@ -158,7 +214,7 @@ def _energies(c, o, stuck, start, end, v2, length):
     # Integrals with a conjugate: u conj(G1), u conj(G2), |u|^2, G1 conj(G2).
     p_p, q_q = _size(p0) * length, _size(q0) * length
     p_q = _turned(-share, p1 * q1.conjugate() - p0 * q0.conjugate())
-    if o.reach == 0.0:
+    if o.first.reach == 0.0 and o.second.reach == 0.0:
         u_p = (p_p + p_q.conjugate() - (u1 * p1.conjugate() - u0 * p0.conjugate())) * e1
         u_q = (q_q + p_q - (u1 * q1.conjugate() - u0 * q0.conjugate())) * e2
         a0, a1, b0, b1 = e1 * p0, e1 * p1, e2 * q0, e2 * q1
@@ -167,6 +223,21 @@ def _energies(c, o, stuck, start, end, v2, length):
         steady = _size(e1) * p_p + _size(e2) * q_q
         u_u = _size(z0) * _remains(2.0 * o.first.half, length) + steady
         u_u += 2.0 * (cross + e1 * e2.conjugate() * p_q).real
+    elif o.second.reach == 0.0:
+        # Less the steady response to the second harmonic, u turns nearly as the first does.
+        slow = Slow(o.first.dr, o.first.di, o.first.reach, c.Omega)
+        y0, y1 = u0 - e2 * q0, u1 - e2 * q1
+        y_p, y_y = _nearly_steady(slow, y0, p0, length)
+        y_q = (p_q - (y1 * q1.conjugate() - y0 * q0.conjugate())) * e2
+        u_p, u_q = y_p + e2 * p_q.conjugate(), y_q + q_q * e2
+        u_u = y_y + 2.0 * (e2.conjugate() * y_q).real + _size(e2) * q_q
+    elif o.first.reach == 0.0:
+        slow = Slow(o.second.dr, o.second.di, o.second.reach, 2.0 * c.Omega)
+        y0, y1 = u0 - e1 * p0, u1 - e1 * p1
+        y_q, y_y = _nearly_steady(slow, y0, q0, length)
+        y_p = (p_q.conjugate() - (y1 * p1.conjugate() - y0 * p0.conjugate())) * e1
+        u_p, u_q = y_p + p_p * e1, y_q + e1 * p_q
+        u_u = y_y + 2.0 * (e1.conjugate() * y_p).real + _size(e1) * p_p
     else:
         u_p, u_q, u_u = _by_quadrature(o, c.Omega, start, length, 0.5 * c.window)
 

@@ -6,7 +6,6 @@ motion does, `turn`, and what is certain of it, is as without scatter; a flight 
 
 from __future__ import annotations
 
-import cmath
 import math
 
 from vines.dynamics._advance import advance, begin, law_of
@@ -22,12 +21,13 @@ from vines.dynamics._flight import (
     modulus,
     pull,
     sixth,
+    slow_growth,
     terms,
     turn,
 )
 from vines.dynamics._impact_law import impact_law_kernel
 from vines.dynamics._random import fill_normals, normal
-from vines.dynamics._scatter_constants import AHEAD, DRAWS, FIRST, Piece, ScatterConstants, ScatterOscillator, added
+from vines.dynamics._scatter_constants import AHEAD, DRAWS, FIRST, Piece, ScatterConstants, ScatterOscillator
 from vines.dynamics._sincos import sincos
 from vines.dynamics._sticking import UNRESOLVED, holds_for, next_release, release_within
 from vines.dynamics._window import write_end
@@ -70,12 +70,13 @@ def _flight(c, o, x, v, phase, t):
     return ur, (pr + qr - o.first.half * ur - v) * o.first.inverse, pr, pi, qr, qi, held, left, index
 
 
-@linked_njit
-def _factors(half, gamma, Omega, tau):
-    """Return the factor of u and what both harmonics add to it, also at resonance, as six reals."""
-    s = complex(-half, gamma)
-    e, b1, b2 = cmath.exp(s * tau), added(s, Omega, tau), added(s, 2.0 * Omega, tau)
-    return e.real, e.imag, b1.real, b1.imag, b2.real, b2.imag
+@fused_njit
+def _gained(h, er, ei, fr, fi, tau):
+    """Return what a harmonic adds to u in a time over which u itself turns by e and the harmonic by f."""
+    if abs(tau) <= h.reach:
+        re, im = slow_growth(h, tau)
+        return fr * re - fi * im, fr * im + fi * re
+    return (fr - er) * h.er - (fi - ei) * h.ei, (fr - er) * h.ei + (fi - ei) * h.er
 
 
 @turn.register(ScatterOscillator)
@@ -83,15 +84,12 @@ def _factors(half, gamma, Omega, tau):
 def _turn(o, Omega, ur, ui, pr, pi, qr, qi, held, left, index, tau):
     fi, fr = sincos(Omega * tau)
     ti, tr = 2.0 * fi * fr, 1.0 - 2.0 * fi * fi
-    if o.reach == 0.0:
-        size = decay(o.first.half * tau)
-        ei, er = sincos(o.first.gamma * tau)
-        er *= size
-        ei *= size
-        br, bi = (fr - er) * o.first.er - (fi - ei) * o.first.ei, (fr - er) * o.first.ei + (fi - ei) * o.first.er
-        dr, di = (tr - er) * o.second.er - (ti - ei) * o.second.ei, (tr - er) * o.second.ei + (ti - ei) * o.second.er
-    else:
-        er, ei, br, bi, dr, di = _factors(o.first.half, o.first.gamma, Omega, tau)
+    size = decay(o.first.half * tau)
+    ei, er = sincos(o.first.gamma * tau)
+    er *= size
+    ei *= size
+    br, bi = _gained(o.first, er, ei, fr, fi, tau)
+    dr, di = _gained(o.second, er, ei, tr, ti, tau)
     piece = Piece(er, ei, fr, fi, br, bi, tr, ti, dr, di)
     return _by_factors(piece, ur, ui, pr, pi, qr, qi, held, left - tau, index)
 
