@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -23,14 +24,21 @@ def command(run: Path, ring_downs: tuple[Path, ...], as_json: bool) -> None:
 
     The verdict is agree, pattern_only, disagree or undecidable, with the reason. E_n = |measured - model|/(2 u) of
     impact phase, max|x1| and K2/K1 is at most 1 where they agree. Also writes RUN/derived/comparison.json. Exit code 1
-    unless the verdict is agree. Parameters calibrated on other runs need a pipeline: see docs/rig.md.
+    unless the verdict is agree. Of a folder of runs all with the ball are, a line each. Parameters calibrated on other runs need a pipeline: see docs/rig.md.
 
     \b
     vines rig compare campaign/runs/01_up
     """  # noqa: D301
-    from vines.stages import compare_run, compile_for
+    from vines.stages import compare_run, compile_for, each_of, is_campaign
 
+    several = is_campaign(run)
     compile_for("compare", lambda line: click.echo(line, err=True))
+    if several:
+        one = partial(compare_run, ring_downs=ring_downs, study=the_study())
+        rows = [made.rows[0] if made else lost_row(name, why) for name, made, why in each_of(run, one, the_study())]
+        rows = [{"verdict": "undecidable", **row} for row in rows]
+        show_runs(rows, ["run_id", "verdict", "pattern", "branch", "reason"], as_json)
+        raise click.exceptions.Exit(0 if all(row["verdict"] == "agree" for row in rows) else 1)
     made = compare_run(run, ring_downs, study=the_study())
     if as_json:
         click.echo(made.file.read_text("utf-8"), nl=False)

@@ -24,7 +24,7 @@ def command(folder: Path, log_rate: float) -> None:
     """Read the run folder FOLDER, or all in it, in SI units on one clock; nothing in it is changed.
 
     Refused, with the reason: no unit, sign, rate or sensitivity, too many clipped samples, clocks that can't be
-    aligned, channels that contradict each other.
+    aligned, channels that contradict each other. The other runs are kept; exit code 1 if one was refused.
 
     \b
     vines rig ingest my_run
@@ -33,11 +33,15 @@ def command(folder: Path, log_rate: float) -> None:
     """  # noqa: D301
     from vines.stages import ingest_folder
 
-    name, runs, summary = ingest_folder(folder, log_rate=log_rate, study=the_study())
-    count = f"{len(runs)} run{'s' if len(runs) > 1 else ''}"
-    if summary is None:
-        click.echo(f"{folder}: nothing to do, its {count} are ingested already and unchanged (pipeline {name})")
-        return
-    click.echo(f"{folder}: {count} ingested; raw files kept byte for byte (SHA256SUMS)")
-    click.echo(f"  vines view {name}.ingest                 look at them")
-    click.echo(f"  vines query \"select * from rig_channels where pipeline = '{name}'\"")
+    found = ingest_folder(folder, log_rate=log_rate, study=the_study())
+    good = len(found.runs) - len(found.refused)
+    count = f"{good} run{'s' if good != 1 else ''}"
+    if found.summary is None:
+        click.echo(f"{folder}: nothing to do, its {count} are ingested already and unchanged (pipeline {found.name})")
+    else:
+        click.echo(f"{folder}: {count} ingested; raw files kept byte for byte (SHA256SUMS)")
+        click.echo(f"  vines view {found.name}.ingest                 look at them")
+        click.echo(f"  vines query \"select * from rig_channels where pipeline = '{found.name}'\"")
+    for name, reason in found.refused.items():
+        click.secho(f"{name} refused: {reason}", fg="red")
+    raise click.exceptions.Exit(1 if found.refused else 0)

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
+from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -27,19 +28,51 @@ def command(run: Path, ring_downs: tuple[Path, ...], as_json: bool) -> None:
 
     Ring-downs are those that run.json names, else the nearest before and after, among the run folders beside RUN.
     Writes RUN/derived/reconstruction.json and RUN/derived/rig_impacts.parquet. Exit code 1 if a gate or check fails.
+    Of a folder of runs all with the ball are, a line each; what is wrong with one leaves the others.
 
     \b
     vines rig reconstruct campaign/runs/01_up
     vines rig reconstruct my_run --ringdown free_1 --ringdown free_2
     """  # noqa: D301
-    from vines.stages import reconstruct_run
+    from vines.stages import each_of, is_campaign, reconstruct_run
 
+    if is_campaign(run):
+        one = partial(reconstruct_run, ring_downs=ring_downs, study=the_study())
+        rows = [made.row if made else lost_row(name, why) for name, made, why in each_of(run, one, the_study())]
+        show_runs(rows, ["run_id", "pattern", "accepted", "r", "failed"], as_json)
+        raise click.exceptions.Exit(0 if all(row["accepted"] for row in rows) else 1)
     made = reconstruct_run(run, ring_downs, study=the_study())
     if as_json:
         click.echo(made.files[0].read_text("utf-8"), nl=False)
     else:
         _show(made)
     raise click.exceptions.Exit(0 if made.found.accepted else 1)
+
+
+def lost_row(name: str, reason: str) -> dict[str, Any]:
+    """Return what is said of a run that cannot be used."""
+    return {"run_id": name, "status": "failed", "reason": reason, "accepted": False}
+
+
+def show_runs(rows: list[dict[str, Any]], columns: list[str], as_json: bool) -> None:
+    """Show a row for each of several runs, and the reasons of those that cannot be used."""
+    import msgspec
+
+    from vines.cli._layout import print_rows
+
+    if as_json:
+        click.echo(msgspec.json.format(msgspec.json.encode(rows, enc_hook=float), indent=1).decode())
+        return
+    shown = []
+    for row in rows:
+        cells = [row.get(name) for name in columns]
+        shown.append(
+            ["" if cell is None else f"{cell:.5g}" if isinstance(cell, float) else str(cell) for cell in cells]
+        )
+    print_rows(columns, shown, wrap=-1)
+    for row in rows:
+        if row.get("status") == "failed":
+            click.secho(f"{row['run_id']} failed: {row['reason']}", fg="red")
 
 
 def _show(made: Derived) -> None:

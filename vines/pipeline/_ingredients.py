@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Mapping
+import os
+from collections import Counter
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from pathlib import Path
@@ -105,7 +107,7 @@ def gather(stage: Stage, inputs: Mapping[str, str], origin: str, code: CodeDiges
         "carry": carry,
         "inputs": [[need, inputs[need]] for need in stage.needs],
         "tables": {name: schema.digest(name) for name in spec.tables},
-        "files": {path.name: _digest(path) for path in files},
+        "files": {name: _digest(path) for name, path in _named(files, root)},
         "code": {"digest": code.digest(*bodies), "modules": code.modules_of_all(bodies)},
     }
     if stage.zipped:
@@ -117,6 +119,14 @@ def gather(stage: Stage, inputs: Mapping[str, str], origin: str, code: CodeDiges
     if spec.logs:
         form["messages"] = _digest(shipped("schemas") / "vines.v1.binpb")
     return Ingredients(form, tuple(files))
+
+
+def _named(files: Sequence[Path], root: Path) -> list[tuple[str, Path]]:
+    """Return files with their names, and by their paths where several have one name: run folders are alike."""
+    counts = Counter(path.name for path in files)
+    return [
+        (path.name if counts[path.name] == 1 else Path(os.path.relpath(path, root)).as_posix(), path) for path in files
+    ]
 
 
 def what_changed(before: Mapping[str, Any], now: Mapping[str, Any]) -> str:
@@ -213,3 +223,5 @@ def _digest(path: Path) -> str:
         return hashlib.sha256(path.read_bytes()).hexdigest()
     except FileNotFoundError:
         raise FileMissingError(f"{path}: there is no such file, and a stage needs it") from None
+    except OSError as error:
+        raise FileMissingError(f"{path}: it cannot be read, and a stage needs it: {error.strerror}") from None

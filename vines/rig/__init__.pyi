@@ -2,10 +2,11 @@ from .ingest import Ingested as Ingested
 from .ingest import channel_facts as channel_facts
 from .ingest import draw_file as draw_file
 from .ingest import find_runs as find_runs
+from .ingest import init_campaign as init_campaign
+from .ingest import init_run as init_run
 from .ingest import read_folder as read_folder
 from .ingest import read_run as read_run
 from .ingest import spark as spark
-from .ingest import write_template as write_template
 from .quantities import QUANTITIES as QUANTITIES
 from .quantities import Finding as Finding
 from .quantities import Reconstruction as Reconstruction

@@ -46,5 +46,7 @@ from .reports._report import report as report
 from .rig._by_hand import Compared as Compared
 from .rig._by_hand import Derived as Derived
 from .rig._by_hand import compare_run as compare_run
+from .rig._by_hand import each_of as each_of
+from .rig._by_hand import is_campaign as is_campaign
 from .rig._by_hand import reconstruct_run as reconstruct_run
 from .rig._running import ingest_folder as ingest_folder

@@ -9,7 +9,7 @@ import pytest
 
 from vines.errors import FileMissingError, RigError, StoreError
 from vines.places import shipped
-from vines.rig import read_folder, read_run, write_template
+from vines.rig import init_run, read_folder, read_run
 from vines.rig.formats import RawChannel
 from vines.rig.ingest._calibrate import calibrate
 from vines.rig.ingest._run_form import schemas
@@ -180,10 +180,10 @@ def test_schemas_follow_the_types():
 
 
 def test_template_says_what_is_missing(tmp_path):
-    written = write_template(tmp_path / "new")
+    written = init_run(tmp_path / "new").files
     assert [path.name for path in written] == ["run.json", "channels.tsv", "README.md"]
     with pytest.raises(StoreError, match="exists already"):
-        write_template(tmp_path / "new")
+        init_run(tmp_path / "new")
     with pytest.raises(RigError, match=r"run\.json"):
         read_folder(tmp_path / "new")
 

@@ -8,8 +8,8 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from vines.errors import FileMissingError, RigError
-from vines.rig import ROLES, find_runs, read_folder, write_template
-from vines.rig.ingest._run_folder import channels_text
+from vines.rig import ROLES, find_runs, init_run, read_folder
+from vines.rig.ingest import channels_text
 from vines.rig.ingest._run_form import ChannelRow, RunForm, Stated
 
 NAMES = st.from_regex(r"[A-Za-z0-9][A-Za-z0-9_.-]{0,12}", fullmatch=True)
@@ -82,7 +82,7 @@ def test_what_is_written_is_read(tmp_path, form, rows, comment):
 
 
 def test_a_template_that_is_not_filled_in_lists_what_is_null(tmp_path):
-    write_template(tmp_path / "new")
+    init_run(tmp_path / "new")
     with pytest.raises(RigError) as caught:
         read_folder(tmp_path / "new")
     said = str(caught.value)

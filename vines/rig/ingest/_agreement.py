@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -22,7 +23,7 @@ _REACHED = (0.5, 1.5)
 """Measured over commanded base amplitude: shakers sag by a fifth, and don't overshoot by half."""
 
 
-def check_agreement(run: RunInfo, channels: Sequence[Sampled]) -> tuple[str, ...]:
+def check_agreement(run: RunInfo, channels: Sequence[Sampled], measured: Collection[str] = ()) -> tuple[str, ...]:
     """Compare displacement with acceleration and the base with its command; return what was compared, in words.
 
     Parameters
@@ -31,6 +32,8 @@ def check_agreement(run: RunInfo, channels: Sequence[Sampled]) -> tuple[str, ...
         With the command.
     channels : sequence of Sampled
         On the clock of the run.
+    measured : collection of str
+        Commands that were taken from the recording itself (f_cmd, E_cmd), which it cannot be laid beside.
 
     Raises
     ------
@@ -42,7 +45,7 @@ def check_agreement(run: RunInfo, channels: Sequence[Sampled]) -> tuple[str, ...
     ringdown = run.protocol == "ringdown"
     frequency = next((tone.f for _, tone in base if tone.clear), None) if not ringdown else None
     if not ringdown:
-        said += _check_command(run, base)
+        said += _check_command(replace(run, **dict.fromkeys(measured)), base)
     for pair in (base if not ringdown else [], _tones(channels, ("lo_disp", "lo_acc"), frequency)):
         for k, (one, a) in enumerate(pair):
             for other, b in pair[k + 1 :]:
@@ -80,7 +83,11 @@ def _check_command(run: RunInfo, base: list[tuple[Sampled, Tone]]) -> list[str]:
                     f"{channel.where}: the base moves by {E:.3g} m, {E / run.E_cmd:.3g} times E_cmd = {run.E_cmd:.3g}: "
                     "a unit, a sensitivity or the command is wrong"
                 )
-    return [f"{channel.name} against the command" for channel, _ in base]
+    commands = [name for name in ("f_cmd", "E_cmd") if getattr(run, name) is not None]
+    if not commands:
+        return ["no command beside the base, for f_cmd and E_cmd were taken from the recording"] if base else []
+    missing = "" if len(commands) == 2 else f" ({commands[0]} alone)"
+    return [f"{channel.name} against the command{missing}" for channel, _ in base]
 
 
 def _compare(one: Sampled, a: Tone, other: Sampled, b: Tone) -> list[str]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from vines.errors import RigError
@@ -15,7 +15,8 @@ from vines.rig.ingest._calibrate import U_CORNER, Calibrated, calibrate
 from vines.rig.ingest._clock import Clock, align_clocks
 from vines.rig.ingest._overrule import Overruling
 from vines.rig.ingest._run_folder import RunFolder, check_sums, raw_sums, read_folder, run_info
-from vines.rig.ingest._run_form import ChannelRow, RunForm
+from vines.rig.ingest._run_form import RECORDING, ChannelRow, RunForm
+from vines.rig.ingest._run_json import holding
 from vines.rig.ingest._sampling import check_starts
 from vines.rig.recording import ROLES, Recording, Sampled
 
@@ -46,6 +47,8 @@ class Ingested:
         What of its file was overruled for each channel, with the reasons.
     remarks : mapping of str to str
         What was found in reading each channel and has to be known.
+    folder : RunFolder or None
+        Its run folder, where it was read from one.
     """
 
     recording: Recording
@@ -57,6 +60,7 @@ class Ingested:
     read_as: Mapping[str, str] = field(default_factory=dict)
     overruled: Mapping[str, str] = field(default_factory=dict)
     remarks: Mapping[str, str] = field(default_factory=dict)
+    folder: RunFolder | None = None
 
 
 def read_run(path: Path) -> Ingested:
@@ -79,7 +83,7 @@ def read_run(path: Path) -> Ingested:
     check_sums(folder, sums)
     with _named(folder.form.run_id):
         files = {name: _read(folder, name) for name in dict.fromkeys(row.file for row in folder.rows)}
-    return assemble(folder.form, folder.rows, files, sums)
+    return replace(assemble(folder.form, folder.rows, files, sums), folder=folder)
 
 
 def _read(folder: RunFolder, name: str) -> RawFile:
@@ -142,7 +146,8 @@ def _assemble(
         raise RigError("no channel measures the oscillator (roles lo_disp, lo_acc)")
     if info.protocol != "ringdown" and not any(channel.role.startswith("base") for channel in channels):
         raise RigError("no channel measures the base (base_disp, base_acc); a command is no measurement")
-    compared = check_agreement(info, channels)
+    measured = [key for key, note in holding(form).items() if note.by.startswith(RECORDING)]
+    compared = check_agreement(info, channels, [key for key in measured if key in ("f_cmd", "E_cmd")])
     together = hashlib.sha256(
         "".join(f"{value}  {name}\n" for name, value in sorted(sums.items())).encode()
     ).hexdigest()

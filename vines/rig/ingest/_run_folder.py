@@ -1,46 +1,41 @@
-"""A run folder in the manner of BIDS: ``run.json``, ``channels.tsv``, ``raw/`` untouched, ``derived/``."""
+"""A run folder in the manner of BIDS: ``run.json``, ``channels.tsv``, ``raw/`` untouched, ``derived/``.
+
+Run folders that lie in one folder with a ``rig.json`` are a campaign: what that and a ``channels.tsv`` beside it say
+holds for all of them.
+"""
 
 from __future__ import annotations
 
-import csv
+import fnmatch
 import hashlib
-import json
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+import os
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
 
-import msgspec
-
-from vines.errors import FileMissingError, RigError, nearest
-from vines.rig.ingest._overrule import Overruling
-from vines.rig.ingest._run_form import ChannelRow, RunForm, Stated
-from vines.rig.recording import ROLES, RunInfo, Uncertain
+from vines.errors import FileMissingError, RigError
+from vines.rig.ingest._channel_table import Cells, check_rows, laid_over, read_cells, row_of, spread_all
+from vines.rig.ingest._run_form import ChannelRow, Proposal, RunForm
+from vines.rig.ingest._run_json import stated_run
+from vines.rig.recording import RunInfo, Uncertain
 
 __all__ = [
+    "CAMPAIGN",
     "SUMS",
     "RunFolder",
-    "channels_text",
-    "check_rows",
     "check_sums",
     "find_runs",
     "raw_sums",
     "read_folder",
     "run_info",
+    "stated_files",
 ]
 
 SUMS = "SHA256SUMS"
 """File beside ``raw/`` with the SHA-256 of each raw file, in the form that ``sha256sum --check`` reads."""
 
-_WHY = {
-    "unit": "no unit: write the unit of the numbers in the file",
-    "sign": "no sign: write +1 if the signal rises for motion to the right, the direction of x1, else -1",
-    "fs": "no sampling rate: write fs in Hz, or file if the file states it",
-    "sensitivity": "no sensitivity: write that of the calibration sheet, or scaled if the file holds mechanical units",
-    "u_sensitivity": "no uncertainty of the sensitivity: write the relative standard uncertainty of the calibration",
-    "range": "no range: write the largest value that the recorder can hold, so that clipping is seen",
-    "group_delay": "no group delay: write that of sensor, conditioner and filters, 0 if it is negligible",
-}
+CAMPAIGN = "rig.json"
+"""File beside run folders with what they share."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,19 +47,37 @@ class RunFolder:
     path : Path
         The folder.
     form : RunForm
-        ``run.json``.
+        What ``run.json`` says, with what it takes from its campaign.
     rows : tuple of ChannelRow
-        ``channels.tsv``.
+        What ``channels.tsv`` says, likewise.
+    stated : tuple of Path
+        The files that say so.
+    came_from : mapping of str to str
+        Where the entries of `form` stand; without a campaign what ``vines rig init`` filled in.
+    overruled : tuple of str
+        What of ``rig.json`` the run overrules, with the reasons.
+    cells_from, cells_overruled : mapping
+        The same of the cells of each channel, by its name.
     """
 
     path: Path
     form: RunForm
     rows: tuple[ChannelRow, ...]
+    stated: tuple[Path, ...] = ()
+    came_from: Mapping[str, str] = field(default_factory=dict)
+    overruled: tuple[str, ...] = ()
+    cells_from: Mapping[str, Mapping[str, str]] = field(default_factory=dict)
+    cells_overruled: Mapping[str, str] = field(default_factory=dict)
 
     @property
     def info(self) -> RunInfo:
         """The run as the rest of the room knows it."""
         return run_info(self.form)
+
+    @property
+    def inherits(self) -> bool:
+        """Whether it belongs to a campaign."""
+        return any(path.name == CAMPAIGN for path in self.stated)
 
     @property
     def raw_files(self) -> tuple[Path, ...]:
@@ -107,6 +120,8 @@ def run_info(form: RunForm) -> RunInfo:
 def find_runs(folder: Path) -> tuple[Path, ...]:
     """Return the run folders at or directly below a folder, sorted by name.
 
+    A folder with ``raw/`` or ``channels.tsv`` counts: where its ``run.json`` is missing, that is said of this run.
+
     Raises
     ------
     FileMissingError
@@ -114,7 +129,7 @@ def find_runs(folder: Path) -> tuple[Path, ...]:
     """
     if (folder / "run.json").is_file():
         return (folder,)
-    found = tuple(sorted(path.parent for path in folder.glob("*/run.json")))
+    found = tuple(sorted(path for path in folder.glob("*/") if _is_run(path)))
     if not found:
         raise FileMissingError(
             f"{folder}: no run folder and none in it: there is no run.json; 'vines rig init DIR' makes a template"
@@ -122,8 +137,12 @@ def find_runs(folder: Path) -> tuple[Path, ...]:
     return found
 
 
+def _is_run(path: Path) -> bool:
+    return (path / "run.json").exists() or (path / "channels.tsv").exists() or (path / "raw").is_dir()
+
+
 def read_folder(folder: Path) -> RunFolder:
-    """Read ``run.json`` and ``channels.tsv``.
+    """Read ``run.json`` and ``channels.tsv``, with what they take from the two forms of the campaign, beside the run.
 
     Raises
     ------
@@ -132,178 +151,92 @@ def read_folder(folder: Path) -> RunFolder:
     RigError
         If they don't say what they must; one line.
     """
-    for name in ("run.json", "channels.tsv"):
-        if not (folder / name).is_file():
-            raise FileMissingError(f"{folder / name} is missing; 'vines rig init DIR' makes a template")
-    found = RunFolder(folder, _read_run(folder / "run.json"), _read_channels(folder / "channels.tsv"))
+    told, table = folder / "run.json", folder / "channels.tsv"
+    above = folder.absolute().parent
+    shared = above / CAMPAIGN if (above / CAMPAIGN).is_file() else None
+    base = above / table.name if shared and (above / table.name).is_file() else None
+    if not told.is_file():
+        raise FileMissingError(f"{told} is missing; 'vines rig init DIR' makes a template")
+    if not table.is_file() and base is None:
+        beside = "" if shared is None else f", and so is {above / table.name}"
+        raise FileMissingError(f"{table} is missing{beside}; 'vines rig init DIR' makes a template")
+    run = stated_run(told, shared)
+    own = read_cells(table) if table.is_file() else ()
+    if base is None:
+        cells, cells_from, notes = spread_all(own), {}, {}
+    else:
+        cells, cells_from, notes = laid_over(own, read_cells(base), run.form.overrule)
+    where = str(table if base is None or own else base)
+    if not cells:
+        raise RigError(f"{where}: no channels; it needs one row a channel")
+    rows = tuple(row_of(_with_file(row, folder)) for row in cells)
+    cells_from = {row.name: _proposed(row, dict(cells_from.get(row.name, {})), run.form.proposed) for row in cells}
+    check_rows(rows, where)
+    stated = tuple(path for path in (told, table if own else None, shared, base) if path is not None)
+    found = RunFolder(folder, run.form, rows, stated, run.came_from, run.overruled, cells_from, notes)
     for path in found.raw_files:
         if not path.resolve().is_relative_to((folder / "raw").resolve()):
-            raise RigError(f"{folder / 'channels.tsv'}: file {path.name!r} is not below raw/; raw files are kept there")
+            raise RigError(f"{where}: file {path.name!r} is not below raw/; raw files are kept there")
         if not path.is_file():
-            raise FileMissingError(f"{path} is missing; {folder / 'channels.tsv'} names it")
+            raise FileMissingError(f"{path} is missing; {where} names it")
     return found
 
 
-def _read_run(path: Path) -> RunForm:
-    try:
-        form = json.loads(path.read_text("utf-8"))
-        if not isinstance(form, dict):
-            raise RigError(f"{path}: it is not an object {{...}}")
-        given = {key: value for key, value in form.items() if not key.startswith("_")}
-        unknown = sorted(set(given) - {field.name for field in msgspec.structs.fields(RunForm)})
-        if unknown:
-            known = [field.name for field in msgspec.structs.fields(RunForm)]
-            raise RigError(
-                f"{path}: unknown key {unknown[0]!r}: {nearest(unknown[0], known)}; anything else goes under more"
-            )
-        if empty := _empty(given):
-            raise RigError(f"{path}: still null: {', '.join(empty)}; README.md of 'vines rig init' says what each is")
-        run = _with_forces(msgspec.convert(given, RunForm))
-    except (json.JSONDecodeError, UnicodeDecodeError) as broken:
-        raise RigError(f"{path} is not JSON: {broken}") from None
-    except msgspec.ValidationError as unfit:
-        raise RigError(f"{path}: {unfit}") from None
-    for name, value in (("M", run.M.value), ("m", run.m.value), ("b", run.b.value)):
-        if not value > 0:
-            raise RigError(f"{path}: {name} is {value:g}, allowed is {name} > 0")
-    return run
+def stated_files(folder: Path) -> tuple[Path, ...]:
+    """Return every file that a run folder consists of and that can be read, whether the run can or not."""
+    above = folder.absolute().parent
+    forms = [folder / "run.json", folder / "channels.tsv", folder / SUMS]
+    forms += [above / CAMPAIGN, above / "channels.tsv"] if (above / CAMPAIGN).is_file() else []
+    files = [*forms, *sorted((folder / "raw").rglob("*"))]
+    return tuple(path for path in files if path.is_file() and os.access(path, os.R_OK))
 
 
-def _with_forces(run: RunForm) -> RunForm:
-    """Return a run whose friction and tilt, under more, are numbers with uncertainties, or not there if null."""
-    more = dict(run.more)
-    for name in ("friction", "tilt"):
-        stated = more.get(name)
-        if stated is None or (isinstance(stated, Mapping) and all(part is None for part in stated.values())):
-            more.pop(name, None)
-            continue
-        try:
-            msgspec.convert(stated, Stated)
-        except msgspec.ValidationError as unfit:
-            wanted = '{"value": ..., "u": ...} in m/s^2, or null if it was not measured'
-            raise msgspec.ValidationError(f"more.{name}: {unfit}; allowed is {wanted}") from None
-    return msgspec.structs.replace(run, more=more)
+def _proposed(row: Cells, came_from: dict[str, str], notes: Mapping[str, Proposal]) -> dict[str, str]:
+    """Return where the cells of a row come from, with those that ``vines rig init`` filled in."""
+    for key, text in row.cells.items():
+        note = notes.get(f"{row.name}.{key}")
+        if note is not None and note.value == text:
+            came_from[key] = f"proposed by {note.by}"
+    return came_from
 
 
-def _empty(form: Mapping[str, Any]) -> list[str]:
-    """Return the keys that are null and must not be."""
-    command = ("f_cmd", "E_cmd")
-    found = []
-    for key, value in form.items():
-        if value is None and key in command and form.get("protocol") != "ringdown":
-            found.append(f"{key} (null for protocol ringdown only)")
-        elif value is None and key not in (*command, "E_meas"):
-            found.append(key)
-        elif key in ("M", "m", "b", "E_meas") and isinstance(value, Mapping):
-            found += [f"{key}.{part}" for part, number in value.items() if number is None]
-    return found
+def _with_file(row: Cells, folder: Path) -> Cells:
+    """Return a row whose file is one of the run, where it names it by a pattern."""
+    pattern = row.cells.get("file", "")
+    if not any(sign in pattern for sign in "*?["):
+        return row
+    raw = folder / "raw"
+    names = sorted(path.relative_to(raw).as_posix() for path in raw.rglob("*") if path.is_file())
+    beside = {name for name in names if name.endswith("_index") or name.removesuffix(".json") in set(names) - {name}}
+    held = [name for name in names if name not in beside]
+    fits = [name for name in held if fnmatch.fnmatchcase(name, pattern)]
+    if not fits:
+        has = f"there is {', '.join(held)}" if held else "it is empty"
+        raise FileMissingError(f"{raw}: no file fits {pattern!r}, by which {row.where} names it; {has}")
+    if len(fits) > 1:
+        raise RigError(
+            f"{raw}: {len(fits)} files fit {pattern!r}, by which {row.where} names one: {', '.join(fits)}; "
+            "write a row with its file into channels.tsv of the run"
+        )
+    return Cells({**row.cells, "file": fits[0]}, row.where)
 
 
-def _read_channels(path: Path) -> tuple[ChannelRow, ...]:
-    try:
-        lines = path.read_text("utf-8-sig").splitlines()
-    except UnicodeDecodeError as broken:
-        raise RigError(f"{path} is not UTF-8: {broken}") from None
-    kept = [(number, line) for number, line in enumerate(lines, 1) if line.strip() and not line.startswith("#")]
-    if len(kept) < 2:
-        raise RigError(f"{path}: no channels; it needs a row of column names and one row a channel")
-    cells = list(csv.reader((line for _, line in kept), delimiter="\t"))
-    head = [name.strip() for name in cells[0]]
-    known = [field.name for field in msgspec.structs.fields(ChannelRow)]
-    for name in head:
-        if name not in known:
-            hint = "" if "\t" in kept[0][1] else "; columns are parted by tabs"
-            raise RigError(f"{path}: unknown column {name!r}: {nearest(name, known)}{hint}")
-    rows = []
-    for (number, _), row in zip(kept[1:], cells[1:], strict=True):
-        if len(row) > len(head):
-            raise RigError(f"{path} line {number}: {len(row)} cells, but {len(head)} columns")
-        given = {key: text.strip() for key, text in zip(head, row, strict=False) if text.strip() not in ("", "n/a")}
-        rows.append(_channel(given, f"{path} line {number} ({given.get('name', '?')})"))
-    check_rows(rows, str(path))
-    return tuple(rows)
-
-
-def _channel(given: Mapping[str, str], where: str) -> ChannelRow:
-    """Return a row of the table, its numbers read."""
-    for name, why in _WHY.items():
-        if name not in given:
-            raise RigError(f"{where}: {why}")
-    form: dict[str, Any] = dict(given)
-    for name in (
-        "sensitivity",
-        "u_sensitivity",
-        "scale",
-        "offset",
-        "fs",
-        "t0",
-        "range",
-        "group_delay",
-        "u_delay",
-        "high_pass",
-        "anti_alias",
-    ):
-        if name in form and form[name] not in ("scaled", "file"):
-            try:
-                form[name] = float(form[name])
-            except ValueError:
-                raise RigError(f"{where}: {name} is {form[name]!r}, which is no number") from None
-    try:
-        Overruling(form.get("overrule", ""))
-    except RigError as unfit:
-        raise RigError(f"{where}: {unfit}") from None
-    if "bits" in form and form["bits"].isdigit():
-        form["bits"] = int(form["bits"])
-    if form["sign"] == "1":
-        form["sign"] = "+1"
-    try:
-        return msgspec.convert(form, ChannelRow)
-    except msgspec.ValidationError as unfit:
-        raise RigError(f"{where}: {unfit}") from None
-
-
-def check_rows(rows: Sequence[ChannelRow], where: str) -> None:
-    """Refuse channels that contradict themselves or each other.
+def raw_sums(folder: RunFolder) -> dict[str, str]:
+    """Return the SHA-256 of each raw file by its path in the run folder.
 
     Raises
     ------
     RigError
-        One line.
+        If one cannot be read.
     """
-    names = [row.name for row in rows]
-    for name in names:
-        if names.count(name) > 1:
-            raise RigError(f"{where}: two channels are called {name!r}; names must differ")
-    for row in rows:
-        quantity, _ = ROLES[row.role]
-        if row.quantity != quantity:
-            raise RigError(f"{where}: {row.name}: role {row.role} is a {quantity}, but quantity is {row.quantity}")
-        if not row.scale:
-            raise RigError(f"{where}: {row.name}: scale is 0: write what one count is, or nothing")
-        if row.sensitivity != "scaled" and not row.sensitivity_unit:
-            raise RigError(f"{where}: {row.name}: no sensitivity unit: write it, such as mV/g or V/mm")
-
-
-def channels_text(rows: Sequence[ChannelRow]) -> str:
-    """Return the text of ``channels.tsv``."""
-    names = [field.name for field in msgspec.structs.fields(ChannelRow)]
-    lines = ["\t".join(names)]
-    for row in rows:
-        values = (getattr(row, name) for name in names)
-        lines.append("\t".join("n/a" if value in (None, "") else _cell(value) for value in values))
-    return "\n".join(lines) + "\n"
-
-
-def _cell(value: object) -> str:
-    return repr(value) if isinstance(value, float) else str(value)
-
-
-def raw_sums(folder: RunFolder) -> dict[str, str]:
-    """Return the SHA-256 of each raw file by its path in the run folder."""
     sums = {}
     for path in (*folder.raw_files, *folder.sidecars):
-        with path.open("rb") as stream:
-            sums[path.relative_to(folder.path).as_posix()] = hashlib.file_digest(stream, "sha256").hexdigest()
+        try:
+            with path.open("rb") as stream:
+                digest = hashlib.file_digest(stream, "sha256").hexdigest()
+        except OSError as error:
+            raise RigError(f"run {folder.form.run_id}: {path} cannot be read: {error.strerror}") from None
+        sums[path.relative_to(folder.path).as_posix()] = digest
     return sums
 
 

@@ -1,4 +1,4 @@
-"""What ``run.json`` and ``channels.tsv`` may say, as types, from which the JSON Schemas in ``schemas/rig`` are made."""
+"""What ``run.json``, ``rig.json`` and ``channels.tsv`` may say, as types; JSON Schemas in ``schemas/rig`` follow."""
 
 from __future__ import annotations
 
@@ -7,7 +7,10 @@ from typing import Annotated, Any, Literal
 import msgspec
 from msgspec import Meta
 
-__all__ = ["ChannelRow", "RunForm", "Stated", "schemas"]
+__all__ = ["RECORDING", "CampaignForm", "ChannelRow", "Proposal", "RunForm", "Stated", "schemas"]
+
+RECORDING = "recording "
+"""How the source of a proposal begins that was taken from the recording itself, and so cannot test it."""
 
 _Positive = Meta(gt=0)
 _NotNegative = Meta(ge=0)
@@ -18,6 +21,13 @@ class Stated(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
     value: float
     u: Annotated[float, _NotNegative]
+
+
+class Proposal(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """A value that ``vines rig init`` filled in; once another stands in its place it is none any more."""
+
+    value: Any
+    by: str
 
 
 class RunForm(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
@@ -52,6 +62,27 @@ class RunForm(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=T
     licence: Annotated[str, Meta(description="Under which the data may be used")] = ""
     doi: Annotated[str, Meta(description="Of the data set")] = ""
     more: Annotated[dict[str, Any], Meta(description="Anything else; kept, not used")] = {}
+    overrule: Annotated[
+        dict[str, str],
+        Meta(
+            description="Why this run differs from rig.json or channels.tsv of the campaign, by KEY or CHANNEL.COLUMN"
+        ),
+    ] = {}
+    proposed: Annotated[
+        dict[str, Proposal], Meta(description="What 'vines rig init' filled in, and from what; nothing to fill in")
+    ] = {}
+
+
+_OF_A_RUN = ("run_id", "start_utc", "overrule")
+CampaignForm = msgspec.defstruct(
+    "CampaignForm",
+    [(each.name, each.type | None, None) for each in msgspec.structs.fields(RunForm) if each.name not in _OF_A_RUN],
+    frozen=True,
+    forbid_unknown_fields=True,
+    kw_only=True,
+    namespace={"__doc__": "What all runs of a campaign share, ``rig.json``; each may be left to the runs."},
+)
+"""``rig.json``: what ``run.json`` may say, any of it."""
 
 
 class ChannelRow(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
@@ -121,10 +152,10 @@ class ChannelRow(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_onl
 def schemas() -> dict[str, str]:
     """Return the text of each file in ``schemas/rig``, by its name."""
     texts = {}
-    for name, kind in (("run", RunForm), ("channels", ChannelRow)):
+    for name, kind in (("run", RunForm), ("rig", CampaignForm), ("channels", ChannelRow)):
         form: dict[str, Any] = {"$schema": "https://json-schema.org/draft/2020-12/schema", **msgspec.json.schema(kind)}
-        if kind is RunForm:
-            form["$defs"]["RunForm"]["patternProperties"] = {"^_": {}}
+        if kind is not ChannelRow:
+            form["$defs"][kind.__name__]["patternProperties"] = {"^_": {}}
         texts[f"{name}.schema.json"] = msgspec.json.format(msgspec.json.encode(form), indent=2).decode() + "\n"
     return texts
 

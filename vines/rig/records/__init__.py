@@ -4,7 +4,7 @@ from vines.rig.records._comparison_rows import comparison_rows, cycle_rows, row_
 from vines.rig.records._keep import load_reconstruction, save_reconstruction
 from vines.rig.records._log import write_log
 from vines.rig.records._reconstruction_rows import failed_row, impact_columns, reconstruction_row
-from vines.rig.records._tables import channel_rows, run_row
+from vines.rig.records._tables import channel_rows, refused_row, run_row
 
 __all__ = [
     "channel_rows",
@@ -14,6 +14,7 @@ __all__ = [
     "impact_columns",
     "load_reconstruction",
     "reconstruction_row",
+    "refused_row",
     "row_id",
     "run_row",
     "save_reconstruction",

@@ -56,9 +56,12 @@ def reconstruction_row(found: Reconstruction, ring_downs: Sequence[str]) -> dict
     return row
 
 
-def failed_row(run: RunInfo, ring_downs: Sequence[str], reason: str) -> dict[str, Any]:
-    """Return the row of a run that cannot be reconstructed."""
-    return {**_head(run, ring_downs), "status": "failed", "reason": reason, "accepted": False, "holds": False}
+def failed_row(
+    run_id: str, start_utc: str | None, reason: str, run: RunInfo | None = None, ring_downs: Sequence[str] = ()
+) -> dict[str, Any]:
+    """Return the row of a run that cannot be reconstructed, or not even read if `run` is left out."""
+    head = {"point_id": run_id, "run_id": run_id, "start_utc": start_utc} if run is None else _head(run, ring_downs)
+    return {**head, "status": "failed", "reason": reason, "accepted": False, "holds": False}
 
 
 def _head(run: RunInfo, ring_downs: Sequence[str]) -> dict[str, Any]:

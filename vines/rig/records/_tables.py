@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -9,7 +10,7 @@ import numpy as np
 from vines.rig.ingest import Ingested
 from vines.rig.recording import Sampled
 
-__all__ = ["channel_rows", "run_row"]
+__all__ = ["channel_rows", "refused_row", "run_row"]
 
 
 def run_row(run: Ingested) -> dict[str, Any]:
@@ -21,6 +22,7 @@ def run_row(run: Ingested) -> dict[str, Any]:
         "run_id": info.run_id,
         "start_utc": info.start_utc,
         "protocol": info.protocol,
+        "status": "ok",
         "ball": info.ball,
         "f_cmd": info.f_cmd,
         "E_cmd": info.E_cmd,
@@ -37,7 +39,32 @@ def run_row(run: Ingested) -> dict[str, Any]:
         "ringdown": " ".join(info.ringdown),
         "channels": len(run.recording.channels),
         "compared": "; ".join(run.compared),
+        "came_from": _grouped(run.folder.came_from) if run.folder else "",
+        "overruled": "; ".join(run.folder.overruled) if run.folder else "",
         "sha256": run.recording.sha256,
+    }
+
+
+def refused_row(run_id: str, reason: str, told: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the row of a run that cannot be read in ``rig_runs``.
+
+    Parameters
+    ----------
+    run_id : str
+        By which it is known.
+    reason : str
+        Why not, in one line.
+    told : mapping
+        Entries of its ``run.json``, as far as that can be read.
+    """
+    start, protocol = told.get("start_utc"), told.get("protocol")
+    return {
+        "point_id": run_id,
+        "run_id": run_id,
+        "status": "failed",
+        "reason": reason,
+        "start_utc": start if isinstance(start, str) else None,
+        "protocol": protocol if isinstance(protocol, str) else None,
     }
 
 
@@ -71,12 +98,29 @@ def channel_rows(run: Ingested) -> list[dict[str, Any]]:
                 "samples": len(channel.values),
                 "clipped": run.clipped[name],
                 "read_as": run.read_as[name],
-                "overruled": run.overruled[name],
+                "came_from": _grouped(run.folder.cells_from.get(name, {})) if run.folder else "",
+                "overruled": "; ".join(filter(None, (_campaign_said(run, name), run.overruled[name]))),
                 "remarks": run.remarks[name],
                 **_range(channel),
             }
         )
     return rows
+
+
+def _campaign_said(run: Ingested, name: str) -> str:
+    return run.folder.cells_overruled.get(name, "") if run.folder else ""
+
+
+def _grouped(came_from: Mapping[str, str]) -> str:
+    """Return where entries come from, by source.
+
+    Examples
+    --------
+    >>> _grouped({"M": "rig.json", "f_cmd": "run.json", "b": "rig.json"})
+    'rig.json: M, b; run.json: f_cmd'
+    """
+    sources = dict.fromkeys(came_from.values())
+    return "; ".join(f"{each}: {', '.join(key for key, of in came_from.items() if of == each)}" for each in sources)
 
 
 def _range(channel: Sampled) -> dict[str, float]:

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from vines.errors import ParameterError
+from vines.errors import ParameterError, VinesError
 from vines.model import Params
 from vines.rig.quantities import Reconstruction
 from vines.rig.verdict._match import candidates, word_of
@@ -166,11 +166,22 @@ def compare_all(
     calibration : Calibration
         Without runs in it where fewer than four are at hand.
     """
-    measured = tuple(spread(partial(compare, catalogue=catalogue, seed=seed), runs))
+    measured = tuple(spread(partial(_compare_one, catalogue=catalogue, seed=seed), runs))
     if len(runs) < 4:
         return measured, (), Calibration()
     found = calibrate(measured[::2])
     if not found.runs:
         return measured, (), found
-    again = partial(compare, catalogue=catalogue, calibration=found, seed=seed)
+    again = partial(_compare_one, catalogue=catalogue, calibration=found, seed=seed)
     return measured, tuple(spread(again, runs[1::2])), found
+
+
+def _compare_one(
+    run: Reconstruction, catalogue: Sequence[Mapping[str, Any]], seed: int, calibration: Calibration | None = None
+) -> Comparison:
+    """Compare a run among others; where that cannot be done it is undecidable, and the others go on."""
+    try:
+        return compare(run, catalogue, calibration=calibration, seed=seed)
+    except (VinesError, ArithmeticError, ValueError) as error:
+        basis, why = "measured" if calibration is None else "calibrated", " ".join(str(error).split())
+        return Comparison(run, measured_params(run), basis, (), "undecidable", f"it could not be compared: {why}")

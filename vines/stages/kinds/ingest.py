@@ -26,13 +26,10 @@ def _run_files(options: IngestOptions, root: Path) -> tuple[Path, ...]:
     """Return every file of the run folders, because the result depends on their contents."""
     if not options.folder:
         return ()
-    from vines.rig import find_runs, read_folder
+    from vines.rig import find_runs
+    from vines.rig.ingest import stated_files
 
-    files: list[Path] = []
-    for path in find_runs(root / options.folder):
-        folder = read_folder(path)
-        files += [path / "run.json", path / "channels.tsv", *folder.raw_files, *folder.sidecars]
-    return tuple(files)
+    return tuple(dict.fromkeys(file for path in find_runs(root / options.folder) for file in stated_files(path)))
 
 
 def _readers(options: object) -> tuple[str, ...]:

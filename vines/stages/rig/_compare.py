@@ -65,5 +65,5 @@ def _lost(stage: Input) -> list[dict[str, Any]]:
             "reason": f"not reconstructed: {row['reason']}",
         }
         for row in stage.table().to_pylist()
-        if row["status"] == "failed"
+        if row["status"] == "failed" and row["protocol"] != "ringdown"
     ]

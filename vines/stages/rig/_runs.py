@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 from vines.errors import RigError
 from vines.pipeline import Input
@@ -20,9 +21,10 @@ from vines.rig import (
     save_reconstruction,
 )
 from vines.rig.ingest import raw_sums
+from vines.stages.rig._refused import reason_of
 from vines.store import key_of
 
-__all__ = ["Work", "free_decay", "kept_runs", "make", "ring_downs_of", "wanted"]
+__all__ = ["Work", "free_decay", "kept_runs", "make", "refused_runs", "ring_downs_of", "wanted"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,21 +67,42 @@ def kept_runs(inputs: Mapping[str, Input]) -> dict[str, tuple[Path, RunInfo]]:
     return found
 
 
-def ring_downs_of(runs: Mapping[str, tuple[Path, RunInfo]]) -> dict[str, tuple[str, ...]]:
-    """Return for each run with the ball the names of the ring-downs that belong to it.
+def refused_runs(inputs: Mapping[str, Input]) -> list[dict[str, Any]]:
+    """Return the rows of ``rig_runs`` of runs that stages of kind ``ingest`` could not read, but for ring-downs."""
+    rows = [row for stage in inputs.values() for row in stage.table("rig_runs").to_pylist()]
+    return [row for row in rows if row["status"] == "failed" and row["protocol"] != "ringdown"]
 
-    Raises
-    ------
-    RigError
-        If a run has none.
+
+def ring_downs_of(
+    runs: Mapping[str, tuple[Path, RunInfo]], usable: Collection[str]
+) -> tuple[dict[str, tuple[str, ...]], dict[str, str]]:
+    """Return for each run with the ball the names of the ring-downs that belong to it, and why some have none.
+
+    Parameters
+    ----------
+    runs : mapping
+        As `kept_runs` gives them.
+    usable : collection of str
+        Ring-downs that gave omega0 and lam; a run that names another has none.
     """
-    known = [info for _, info in runs.values()]
-    return {name: match_ring_downs(info, known) for name, (_, info) in runs.items() if info.protocol != "ringdown"}
+    known = [info for name, (_, info) in runs.items() if name in usable]
+    found, lost = {}, {}
+    for name, (_, info) in runs.items():
+        if info.protocol == "ringdown":
+            continue
+        try:
+            found[name] = match_ring_downs(info, known)
+        except RigError as missing:
+            lost[name] = str(missing)
+    return found, lost
 
 
-def free_decay(folder: Path) -> RingDown:
-    """Return omega0 and lam of the ring-down in a run folder."""
-    return ring_down(read_run(folder).recording)
+def free_decay(folder: Path) -> RingDown | str:
+    """Return omega0 and lam of the ring-down in a run folder, or why there are none."""
+    try:
+        return ring_down(read_run(folder).recording)
+    except Exception as error:
+        return reason_of(error)
 
 
 def wanted(folder: Path, ring_downs: Sequence[RingDown], seed: int, code: str, cache: Path) -> Work:
@@ -102,8 +125,8 @@ def wanted(folder: Path, ring_downs: Sequence[RingDown], seed: int, code: str, c
     form = {
         "code": code,
         "seed": seed,
-        "files": {**raw_sums(held), "run": (folder / "run.json").read_text("utf-8")},
-        "channels": (folder / "channels.tsv").read_text("utf-8-sig"),
+        "files": raw_sums(held),
+        "stated": [path.read_text("utf-8-sig") for path in held.stated],
         "ring_downs": [repr(one) for one in ring_downs],
     }
     return Work(folder, tuple(ring_downs), seed, cache / "rig" / f"{key_of(form)[:32]}.npz")
@@ -115,8 +138,9 @@ def make(work: Work) -> str:
         return ""
     try:
         found = reconstruct(read_run(work.folder).recording, work.ring_downs, seed=work.seed)
-    except RigError as refused:
-        return str(refused)
+    except Exception as error:
+        # Whatever one run makes the methods stumble over is its own; the campaign goes on.
+        return reason_of(error)
     work.kept.parent.mkdir(parents=True, exist_ok=True)
     partial = work.kept.with_suffix(".part")
     save_reconstruction(found, partial)
