@@ -385,3 +385,15 @@ def test_rewriter_that_keeps_the_name_of_vines_gets_no_description_made_anew(sma
     for key in TIMES:
         table = getattr(back, key)
         same(table, small[key][: table.num_rows])
+
+
+@pytest.mark.parametrize("tail", [bytes([opcode, *bytes(8)]) for opcode in range(1, 16)], ids=lambda each: str(each[0]))
+def test_bytes_of_a_cut_message_that_look_like_a_record_cost_nothing_else(small, log, tmp_path, tail):
+    """Found by hypothesis: the last bytes before a cut, inside a number, were the head of a record without content."""
+    data = rewritten(log.read_bytes(), chunking=False, crcs=False)
+    whole = [place for place, opcode, _ in records_of(data) if opcode == Opcode.MESSAGE][60]
+    file = tmp_path / "cut.mcap"
+    file.write_bytes(data[: whole + 60] + tail)
+    back = recovered(file)
+    assert sum(getattr(back, key).num_rows for key in TIMES) > 10
+    assert back.remarks[-1].endswith("of the messages have no checksum: they are unverified")

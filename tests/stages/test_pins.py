@@ -20,6 +20,7 @@ KEY = "0" * 64
 STRANGE = {
     "empty": "",
     "another form": "[]",
+    "nothing in it": "{}",
     "nested deeply": "[" * 100_000,
     "no text": b"\xff\xfe{",
     "a number for a pin": json.dumps({"up": 3}),

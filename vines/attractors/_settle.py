@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 from vines.attractors import _verdict as v
 from vines.attractors._attractor import Attractor
@@ -18,7 +19,7 @@ from vines.attractors._waiting import next_wait
 from vines.domains import Named, Number, Parameters, stated
 from vines.dynamics.kernels import constants, pass_over, room_of, shift_time, table_of
 from vines.dynamics.kernels import rows as col
-from vines.dynamics.runs import EVENTS_PER_PERIOD, impacts_of, measures_from, start_of
+from vines.dynamics.runs import EVENTS_PER_PERIOD, impacts_of, measures_from, slices, start_of
 from vines.errors import StateError
 
 __all__ = ["APART", "NUDGE", "ROUNDS", "settle", "settle_from"]
@@ -167,6 +168,18 @@ def settle_from(
     return _settled(p, begin, t, Patience(settle, record, patience, watch, tolerance, max_impacts_per_period, largest_p), lyapunov, errors)
 
 
+def _passed_over(
+    c: Any, state: npt.NDArray[np.float64], stop: float, period: float, cap: int, work: npt.NDArray[np.float64]
+) -> int:
+    """Run on to `stop` as `pass_over` does, in slices between which Python hears Ctrl-C."""
+    code = 0
+    for end in slices(0.0, stop, period):
+        code = pass_over(c, state, end, cap, work)
+        if code:
+            break
+    return code
+
+
 def _settled(
     p: Any, begin: tuple[float, float, float, float, float], t: float, how: Patience, lyapunov: bool, errors: bool
 ) -> Attractor:
@@ -185,7 +198,7 @@ def _settled(
     sides, hits = np.empty(0, dtype=np.int8), np.empty((0, layout.width + 1))
     wait, spare, ran, nudged = float(how.settle), float(how.patience), 0.0, math.nan
     for turn in range(ROUNDS + 1):
-        waited = np.array([pass_over(c, state, wait * p.period, how.cap, work)])
+        waited = np.array([_passed_over(c, state, wait * p.period, p.period, how.cap, work)])
         shift_time(state, wait * p.period)
         left = np.array([[spare, math.isnan(nudged)]]) if turn < ROUNDS else np.zeros((1, 2))
         sides, hits = look_at_block(

@@ -249,7 +249,10 @@ def threads_allowed() -> int:
 
 
 def each_thread(work: Callable[[slice], object], blocks: Iterable[slice], cores: int) -> None:
-    """Do the work of every block on so many threads; kernels release the interpreter's lock."""
+    """Do the work of every block on so many threads; kernels release the interpreter's lock.
+
+    After Ctrl-C no block begins, and nobody waits for those that have begun.
+    """
     blocks = list(blocks)
     if cores == 1 or len(blocks) <= 1:
         for block in blocks:
@@ -257,9 +260,12 @@ def each_thread(work: Callable[[slice], object], blocks: Iterable[slice], cores:
         return
     # The first block alone compiles or loads the kernel, once.
     work(blocks[0])
-    with ThreadPoolExecutor(cores) as pool:
+    pool = ThreadPoolExecutor(cores)
+    try:
         for _ in pool.map(work, blocks[1:]):
             pass
+    finally:
+        pool.shutdown(wait=False, cancel_futures=True)
 
 
 class _Work:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
@@ -12,6 +13,7 @@ from vines.domains import Number, Parameters, Whole, stated
 from vines.dynamics import _advance as col
 from vines.dynamics._advance import begin
 from vines.dynamics._room import constants, room_of, start_of
+from vines.dynamics._slices import slices
 from vines.dynamics._trajectory import Trajectory
 from vines.dynamics._window import run_window
 
@@ -24,9 +26,9 @@ STATUS = {col.COMPLETE: "complete", col.EVENT_CAP: "impact_cap", col.STEP_LIMIT:
 
 
 def record(
-    c: Any, state: npt.NDArray[np.float64], stop: float, cap: int, expected: int, width: int = col.ROW
+    c: Any, state: npt.NDArray[np.float64], stops: Iterable[float], cap: int, expected: int, width: int = col.ROW
 ) -> tuple[npt.NDArray[np.float64], str]:
-    """Run on to `stop` with every row kept, whatever their number, and a last row for the end.
+    """Run on to the last of `stops` with every row kept, whatever their number, and a last row for the end.
 
     Returns
     -------
@@ -35,7 +37,15 @@ def record(
     """
     rows = np.empty((max(expected, 16), width))
     begin(c, state, rows)
-    rows, count, code = run_window(c, state, stop, cap, rows, 1)
+    count, code = 1, col.COMPLETE
+    for stop in stops:
+        try:
+            rows, count, code = run_window(c, state, stop, cap, rows, count)
+        except SystemError as error:
+            # What a signal raised while numba handed the rows over; it goes on as if nothing had been.
+            raise (error.__cause__ or error) from None
+        if code != col.COMPLETE:
+            break
     return rows[: count + 1].copy(), STATUS[code]
 
 
@@ -94,5 +104,6 @@ def simulate(
     state = np.zeros(layout.state)
     room.begin(c, state, *at, float(t))
     stop = t + periods * p.period
-    rows, status = record(c, state, stop, max_impacts_per_period, int(4 * periods) + layout.rows, layout.width)
+    stops = slices(t, stop, p.period)
+    rows, status = record(c, state, stops, max_impacts_per_period, int(4 * periods) + layout.rows, layout.width)
     return (room.trajectory or Trajectory)(p, float(phi), float(t), float(rows[-1, col.TIME]), status, rows)

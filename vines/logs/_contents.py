@@ -121,17 +121,18 @@ def _filling(data: bytes, indexed: Sequence[np.ndarray]) -> Places | None:
     begins = np.zeros(len(data) + 1, bool)
     begins[-1] = True
     for starts in indexed:
-        if not len(starts) or int(starts.max()) + 31 > len(data):
+        last = int(starts.max()) if len(starts) else len(data)
+        if last + 31 > len(data):
             return None
         at = starts.astype(np.int64)
-        opcode, length, number = _HEAD.unpack_from(data, int(at[0]))
-        if opcode != _MESSAGE or not 22 <= length <= len(data) - 9 - at.max() or (number, length) in places:
+        first = int(at[0])
+        opcode, length, number = _HEAD.unpack_from(data, first)
+        if opcode != _MESSAGE or not 22 <= length <= len(data) - 9 - last or (number, length) in places:
             return None
-        # The 11 bytes of opcode, length and channel as two numbers that overlap.
-        for offset in (0, 3):
-            heads = np.ndarray(len(data) - 10, "<u8", data, offset, strides=(1,))[at]
-            if (heads != heads[0]).any():
-                return None
+        # Opcode, length and channel of all of them.
+        heads = np.ndarray(len(data) - 10, "V11", data, strides=(1,))[at]
+        if heads.tobytes() != data[first : first + 11] * len(at):
+            return None
         places[number, length] = at
         begins[at] = True
     # Each ends where another begins, and together they are as long as the chunk: so one follows the other from 0 on.

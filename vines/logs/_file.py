@@ -13,6 +13,7 @@ import zlib
 from collections import Counter, deque
 from collections.abc import Iterable, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
+from itertools import accumulate
 from typing import BinaryIO
 
 from mcap import records
@@ -154,22 +155,19 @@ class LogFile:
         self._counts.update(made.counts)
         for number, content in made.contents.items():
             self._contents[number].update(content)
-        offset, written = self._record(record)
-        index_offsets = {number: self._put(index) for number, index in made.indexes.items()}
-        self._repeat(
-            Opcode.CHUNK_INDEX,
-            records.ChunkIndex(
-                chunk_length=len(written),
-                chunk_start_offset=offset,
-                compression=record.compression,
-                compressed_size=len(record.data),
-                message_start_time=first,
-                message_end_time=last,
-                message_index_length=sum(map(len, made.indexes.values())),
-                message_index_offsets=index_offsets,
-                uncompressed_size=record.uncompressed_size,
-            ),
-        )
+        # Packed here and written at once: there are many, and records of mcap are put together field by field.
+        name = record.compression.encode()
+        sizes = (record.uncompressed_size, record.uncompressed_crc, len(name), name, len(record.data))
+        body = struct.pack(f"<QQQII{len(name)}sQ", first, last, *sizes)
+        head = struct.pack("<BQ", Opcode.CHUNK, len(body) + len(record.data)) + body
+        length = len(head) + len(record.data)
+        offset = self._put(b"".join((head, record.data, *made.indexes.values())))
+        ends = [offset + length + end for end in accumulate(map(len, made.indexes.values()), initial=0)]
+        places = b"".join(struct.pack("<HQ", *each) for each in zip(made.indexes, ends, strict=False))
+        sizes = (ends[-1] - ends[0], len(name), name, len(record.data), record.uncompressed_size)
+        index = struct.pack("<QQQQI", first, last, offset, length, len(places)) + places
+        index += struct.pack(f"<QI{len(name)}sQQ", *sizes)
+        self._repeated[Opcode.CHUNK_INDEX].append(struct.pack("<BQ", Opcode.CHUNK_INDEX, len(index)) + index)
 
     def finish(self) -> None:
         """Write the end of the data section, the summary and the footer, each with its checksum."""

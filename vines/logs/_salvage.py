@@ -58,6 +58,8 @@ class Salvage:
         Bytes of the file.
     chunks : set of bytes
         Digests of the chunks that were taken.
+    taken : int
+        Byte after the last record from which something was taken.
     """
 
     profile: str = ""
@@ -69,11 +71,15 @@ class Salvage:
     ended: bool = False
     size: int = 0
     chunks: set[bytes] = field(default_factory=set)
+    taken: int = 0
 
     @property
     def only_cut(self) -> bool:
-        """Whether a cut explains all that is wrong: up to it, record follows record from the beginning."""
-        return not self.ended and all(end == self.size for _, end, _ in self.lost)
+        """Whether a cut explains all that is wrong: up to it, record follows record from the beginning.
+
+        What was cut off may hold bytes that look like records, from which nothing can be taken.
+        """
+        return not self.ended and all(start >= self.taken for start, _, _ in self.lost)
 
 
 _KINDS = {
@@ -82,6 +88,7 @@ _KINDS = {
     Opcode.SCHEMA: records.Schema,
     Opcode.CHANNEL: records.Channel,
 }
+_TAKEN = frozenset({*_KINDS, Opcode.HEADER, Opcode.CHUNK, Opcode.MESSAGE})
 _NAMES: dict[int, str] = {
     Opcode.METADATA: "a metadata record",
     Opcode.ATTACHMENT: "an attachment",
@@ -114,6 +121,8 @@ def salvage(data: bytes, unpacker: Unpacker) -> Salvage:
         opcode, end = step
         try:
             _take(found, opcode, data[at + 9 : end], unpacker)
+            if opcode in _TAKEN:
+                found.taken = end
         except BROKEN as broken:
             found.lost.append((at, end, f"{_NAMES.get(Opcode(opcode), 'a record')} ({line_of(broken)})"))
         at = end
@@ -185,6 +194,8 @@ def _take(found: Salvage, opcode: int, body: bytes, unpacker: Unpacker) -> None:
             raise ValueError("a message record is shorter than its header")
         found.loose.append(struct.pack("<BQ", opcode, len(body)) + body)
     elif opcode == Opcode.DATA_END:
+        if len(body) != 4:
+            raise ValueError("the end of the data is another")
         found.ended = True
 
 

@@ -230,6 +230,8 @@ class Store:
         try:
             pins = read_object(path)
             checks = {stage: _form_of(stage, pin).pop("check", None) for stage, pin in pins.items()}
+            if not pins:
+                raise ValueError("it names no stage")
         except (FileNotFoundError, NotADirectoryError):
             return {}
         except OSError as error:
@@ -281,6 +283,9 @@ class Store:
         return sorted(path.name.removesuffix(_PINS) for path in self.pipelines.glob(f"[!.]*{_PINS}"))
 
     def _write_pins(self, pipeline: str, pins: Mapping[str, dict[str, Any]]) -> None:
+        if not pins:
+            self._pin_file(pipeline).unlink(missing_ok=True)
+            return
         sealed = {stage: {**pin, "check": _check(pipeline, stage, pin)} for stage, pin in pins.items()}
         write_text(self._pin_file(pipeline), json.dumps(sealed, indent=1, sort_keys=True) + "\n")
 

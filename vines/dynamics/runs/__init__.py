@@ -11,6 +11,7 @@ from vines.dynamics._ensemble import (
 from vines.dynamics._measures import measures_from
 from vines.dynamics._room import start_of
 from vines.dynamics._simulate import EVENTS_PER_PERIOD, STATUS
+from vines.dynamics._slices import slices
 from vines.dynamics._start import LARGEST
 from vines.dynamics._trajectory import IMPACT, impacts_of
 from vines.dynamics._warm_up import timed
@@ -26,6 +27,7 @@ __all__ = [
     "measures_from",
     "measures_of",
     "parameter_table",
+    "slices",
     "start_of",
     "start_table",
     "threads_allowed",

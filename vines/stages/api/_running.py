@@ -124,8 +124,8 @@ def _run_part(
     except OSError as error:
         if not is_of_the_machine(error):
             raise
-        place = error.filename or store.data
-        raise StoreError(f"{place}: {error.strerror}; what is finished is kept, the next run goes on") from error
+        what = f"{error.filename or store.data}: {error.strerror}"
+        raise StoreError(f"{what}; once that is mended, the next run goes on from what is finished") from error
     return [replace(outcome, name=part.prefix + outcome.name) for outcome in summary.stages]
 
 
