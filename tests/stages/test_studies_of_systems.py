@@ -37,12 +37,12 @@ def test_all_lengths_and_the_forcing_times_a_size_are_the_same_motion():
 
 
 def test_a_ball_that_rests_in_the_longer_cavity_is_never_hit_unless_the_rig_is_tilted():
-    p = Parallel(mu=(0.012, 0.008), beta=(0.97, 1.358), A=0.0239)
+    p = Parallel(mu=(0.012, 0.008), beta=(1.05, 1.365), A=0.0245)
     tilted = Parallel(mu=p.mu, beta=p.beta, A=p.A, G=0.0037)
     moving, name = reduction(p, v2=[0.1, -0.3])
     assert name == "1:1|1:1"
     resting, trapped = reduction(p, v2=[0.0, 0.0])
-    assert trapped.endswith("|0:0")
+    assert "|0:0" in trapped
     assert resting > 2 * moving
     assert reduction(tilted, v2=[0.0, 0.0]) == (pytest.approx(moving, abs=2e-3), name)
 

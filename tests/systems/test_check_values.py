@@ -1,4 +1,4 @@
-"""The check values of the family, made by other programs, beside ours: the table of docs/systems.md is held line by line."""
+"""The check values of the family, made by other programs, beside ours: the table of docs/systems.md line by line."""
 
 import math
 import re
