@@ -121,6 +121,7 @@ def test_panels_of_designs_have_bands_widths_and_a_map_with_its_best_place():
     assert one.get_linestyle() != two.get_linestyle()
     assert widths.get_ylabel() == r"least worst reduction of $\max|x_1|$"
     assert widths.get_xlim() == (1.0, 8.0)
+    assert [text.get_text() for text in widths.get_legend().get_texts()] == ["one"]
     assert (plan.get_xlabel(), plan.get_ylabel()) == (
         r"mass ratio 1  $\mu_{1}$",
         r"length of the cavity 2  $\beta_{2}$",
@@ -134,6 +135,6 @@ def test_panels_of_designs_have_bands_widths_and_a_map_with_its_best_place():
     assert [text.get_text() for text in legend.get_texts()] == [
         "one cavity: 0.400",
         "two: 0.300",
-        "best to worst of the attractors found",
+        "from the best attractor to the worst",
         "best design",
     ]

@@ -142,7 +142,7 @@ def _panel(cell: DesignsCell, found: Mapping[str, Designs], options: DesignsOpti
     from vines.figures import BandCurve, BandPanel, DesignMap, FactorPanel
 
     low, high = options.span
-    colours = {name: place for place, name in enumerate(options.sets)}
+    colours = {name: place for place, name in enumerate(cell.of)}
     if cell.show == "factor":
         widths = {name: _widths(found[name], high / low) for name in cell.of}
         curves = [
@@ -176,7 +176,7 @@ def _panel(cell: DesignsCell, found: Mapping[str, Designs], options: DesignsOpti
                 x=designs.over * best.size,
                 least=designs.least[best.place],
                 worst=designs.worst[best.place],
-                label=f"{name}: {best.worst:.3f}",
+                label=f"{name}: worst {best.worst:.3f}",
                 colour=colours[name],
             )
         )
