@@ -63,7 +63,12 @@ class RunOn:
 
 
 def run_on(
-    table: Callable[[npt.NDArray[np.int64]], Any], states: Floats, period: Floats, record: float, patience: float, cap: int
+    table: Callable[[npt.NDArray[np.int64]], Any],
+    states: Floats,
+    period: Floats,
+    record: float,
+    patience: float,
+    cap: int,
 ) -> RunOn:
     """Let runs go on from the ends of their windows until the errors of what these measured mean something.
 

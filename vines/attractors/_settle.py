@@ -34,7 +34,12 @@ APART = 1e-9
 """Difference in velocity with which equal balls start."""
 
 
-@stated(p=Parameters(), t=Number(least=-1e12, most=1e12), phi=Number(least=-1e12, most=1e12), apart=Number(least=0, most=1e-3))
+@stated(
+    p=Parameters(),
+    t=Number(least=-1e12, most=1e12),
+    phi=Number(least=-1e12, most=1e12),
+    apart=Number(least=0, most=1e-3),
+)
 def settle(
     p: Any,
     *,
@@ -113,7 +118,14 @@ def settle(
     for group in getattr(p, "alike", ()):
         v2[np.array(group) - 1] += apart * np.arange(len(group))
     begin = (x1, v1, x2, v2, phase)
-    return _settled(p, begin, t, Patience(settle, record, patience, watch, tolerance, max_impacts_per_period, largest_p), lyapunov, errors)
+    return _settled(
+        p,
+        begin,
+        t,
+        Patience(settle, record, patience, watch, tolerance, max_impacts_per_period, largest_p),
+        lyapunov,
+        errors,
+    )
 
 
 @stated(p=Parameters(), start=Named(Number()))
@@ -164,7 +176,14 @@ def settle_from(
     t = float(start.get("t", 0.0))
     at = {name: value for name, value in start.items() if name not in ("t", "phase")}
     begin = start_of(p, at, 0.0, start["phase"])
-    return _settled(p, begin, t, Patience(settle, record, patience, watch, tolerance, max_impacts_per_period, largest_p), lyapunov, errors)
+    return _settled(
+        p,
+        begin,
+        t,
+        Patience(settle, record, patience, watch, tolerance, max_impacts_per_period, largest_p),
+        lyapunov,
+        errors,
+    )
 
 
 def _settled(

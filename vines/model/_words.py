@@ -82,7 +82,9 @@ class Word:
                 raise ParameterError(f"{shown(text)} is not a word: {hint}")
             letters, p = match[1], int(match[2] or 1) if len(match[2] or "") < 6 else _LONGEST + 1
             if len(impacts(letters)) > _LONGEST or p > _LONGEST:
-                raise ParameterError(f"{shown(text)} is too long a word; allowed are {_LONGEST} impacts over {_LONGEST}T")
+                raise ParameterError(
+                    f"{shown(text)} is too long a word; allowed are {_LONGEST} impacts over {_LONGEST}T"
+                )
         object.__setattr__(self, "letters", min(rotated(letters)))
         object.__setattr__(self, "p", p)
 

@@ -9,8 +9,8 @@ import numpy as np
 import numpy.typing as npt
 
 from vines.domains import Parameters, stated
-from vines.errors import ParameterError
 from vines.dynamics.kernels import constants
+from vines.errors import ParameterError
 from vines.model import Params, Word
 from vines.orbits._assemble import assemble
 from vines.orbits._closed_form import family_of, impact_states, refuse_resonance, speeds
@@ -24,6 +24,9 @@ from vines.orbits._seeds import base_word, doubled_times, harvested_times, rando
 from vines.orbits._values import marks_of, unit_of
 
 __all__ = ["Orbits", "all_orbits"]
+
+LONGEST = 64
+"""Most impacts of a word that is searched for: seconds go with the third power of their number."""
 
 Floats = npt.NDArray[np.float64]
 
@@ -96,6 +99,11 @@ def all_orbits(word: str | Word, p: Any) -> Orbits:
     """
     word = whole_word(word, p)
     refuse_resonance(p)
+    if len(word) > LONGEST:
+        raise ParameterError(
+            f"{len(word)} impacts are too many for a search, allowed are {LONGEST}; give find_orbit the times of a "
+            "simulation as guess"
+        )
     if not isinstance(p, Params):
         return _searched(word, p)
     if word.n == 0 or word.m == 0:

@@ -95,8 +95,8 @@ def compare_rows(
 def compare_within_errors(comparison: Comparison, stored: Mapping[str, Any], again: Mapping[str, Any]) -> None:
     """Compare rows of points that are not periodic: regime and parameters, and the measures within their errors.
 
-    Both rows are samples of the motion, so four standard errors are those of their difference; where one of them tells no
-    error nothing can be said of the measure.
+    Both rows are samples of the motion, so four standard errors are those of their difference; where one of them tells
+    no error nothing can be said of the measure.
     """
     for name in (*PARAMETER_NAMES, *START_NAMES):
         comparison.number(name, stored[name], again[name], TOLERANCE * (1 + abs(stored[name] or 0.0)))
