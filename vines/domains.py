@@ -304,16 +304,20 @@ def stated(
         unknown = set(domains) - set(signature.parameters)
         assert not unknown, f"{function.__name__} has no {', '.join(sorted(unknown))}"
 
+        positional = [
+            each.name
+            for each in signature.parameters.values()
+            if each.kind in (inspect.Parameter.POSITIONAL_ONLY, inspect.Parameter.POSITIONAL_OR_KEYWORD)
+        ]
+
         @functools.wraps(function)
         def checked(*args: _Arguments.args, **kwargs: _Arguments.kwargs) -> _Result:
             # What Python itself says of arguments that do not fit is said by the call.
-            try:
-                given = signature.bind(*args, **kwargs).arguments
-            except TypeError:
-                given = {}
-            for name, domain in domains.items():
-                if name in given:
-                    domain.check(name, given[name], ParameterError if isinstance(domain, Parameters) else error)
+            for given in (zip(positional, args, strict=False), kwargs.items()):
+                for name, value in given:
+                    if name in domains:
+                        domain = domains[name]
+                        domain.check(name, value, ParameterError if isinstance(domain, Parameters) else error)
             return function(*args, **kwargs)
 
         return checked

@@ -27,7 +27,7 @@ MEASURES = 3
 PARTS = 8
 """Parts of a window, by which it is shifted along the motion."""
 
-WINDOWS = 13
+WINDOWS = 9
 """Windows that a run goes on for at first."""
 
 LEAST_FREEDOM = 8.0

@@ -13,7 +13,7 @@ from vines.attractors._attractor import Attractor
 from vines.attractors._look import look_at_block
 from vines.attractors._naming import attractor_from, word_of
 from vines.attractors._patience import Patience
-from vines.attractors._staying import note_conserving, watch_on
+from vines.attractors._staying import REGULAR, note_conserving, watch_on
 from vines.attractors._waiting import next_wait
 from vines.domains import Named, Number, Parameters, stated
 from vines.dynamics.kernels import constants, pass_over, room_of, shift_time, table_of
@@ -83,7 +83,7 @@ def settle(
     lyapunov : bool
         Whether to give exponents; they are worked out anyhow where the regime depends on them.
     errors : bool
-        Whether a run that never repeats is watched on, for 13 times `record` and up to `patience` periods, until what
+        Whether a run that never repeats is watched on, for nine times `record` and up to `patience` periods, until what
         it measured has standard errors; where its chaos ends on the way it is looked at again from there.
     max_impacts_per_period : int
         Cap on events in one forcing period; when it is passed the regime is ``unsettled``, status ``impact_cap``.
@@ -224,8 +224,9 @@ def _settled(
         shift_time(state, how.window * p.period)
         ran += wait + how.window
         if verdict[v.NEXT] == v.STAYS:
-            note_conserving(verdicts, np.array([room.conserves(p)]))
-            if not errors or turn == ROUNDS:
+            if verdict[v.SETTLED] > 0.0 and room.conserves(p):
+                note_conserving(verdicts, np.ones(1, dtype=bool))
+            if not errors or turn == ROUNDS or verdict[v.REGIME] in REGULAR:
                 break
             m = measures_from(p, totals[0])
             measured = np.array([[m.kinetic_ratio, m.max_abs_x1, m.rms_x1]])

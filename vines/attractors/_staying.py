@@ -14,7 +14,10 @@ from vines.attractors._look import is_regular_block
 from vines.attractors._patience import Patience
 from vines.dynamics.kernels import rows as col
 
-__all__ = ["note_conserving", "watch_on"]
+__all__ = ["REGULAR", "note_conserving", "watch_on"]
+
+REGULAR = (v.PERIODIC, v.NO_IMPACT)
+"""Regimes of runs that need not be watched on."""
 
 SURE = 5.0
 """Standard errors by which a window must differ from what came after it for the motion to have become another one."""
