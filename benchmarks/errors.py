@@ -2,7 +2,7 @@
 
 Run with ``python -m benchmarks.errors``. Of each point that chaos of most starts ends in, every run gives measures with
 their standard errors, by `vines.classify_many` with its defaults. z is the difference of a measure to the mean over the
-starts, over its own error. docs/dynamics.md has the table; tests/attractors/test_errors.py demands of it what is claimed.
+starts, over its own error. docs/dynamics.md has the table; tests/attractors/test_errors.py demands what is claimed.
 """
 
 from __future__ import annotations

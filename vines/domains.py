@@ -8,7 +8,7 @@ from __future__ import annotations
 import functools
 import inspect
 import math
-from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import Any, ParamSpec, Protocol, TypeVar
 
@@ -210,7 +210,8 @@ class Numbers:
         if given is None or not self.least <= len(given) <= self.most:
             few = f"{self.least}" if self.least == self.most else f"{self.least} to {self.most}"
             raise error(f"{name} is {shown(value)}; give a list of {few} numbers")
-        if getattr(value, "dtype", None) is not None and value.dtype.kind in "fiu" and isinstance(self.each, Number):
+        kind = getattr(value, "dtype", None)
+        if kind is not None and kind.kind in "fiu" and isinstance(self.each, Number):
             # The extremes stand for the rest; nan is one of them if there is any.
             given = [value.min(), value.max()] if len(given) else []
         for number in given:
@@ -264,7 +265,7 @@ class Named:
             self.each.check(f"{name}[{shown(key)}]", one, error)
 
 
-def listed(value: Any) -> Sequence[Any] | None:
+def listed(value: Any) -> Any:
     """Return the members of a list, tuple or array of one dimension, None for anything else."""
     if isinstance(value, str | bytes | Mapping) or not isinstance(value, Iterable):
         return None
@@ -303,16 +304,20 @@ def stated(
         unknown = set(domains) - set(signature.parameters)
         assert not unknown, f"{function.__name__} has no {', '.join(sorted(unknown))}"
 
+        positional = [
+            each.name
+            for each in signature.parameters.values()
+            if each.kind in (inspect.Parameter.POSITIONAL_ONLY, inspect.Parameter.POSITIONAL_OR_KEYWORD)
+        ]
+
         @functools.wraps(function)
         def checked(*args: _Arguments.args, **kwargs: _Arguments.kwargs) -> _Result:
             # What Python itself says of arguments that do not fit is said by the call.
-            try:
-                given = signature.bind(*args, **kwargs).arguments
-            except TypeError:
-                given = {}
-            for name, domain in domains.items():
-                if name in given:
-                    domain.check(name, given[name], ParameterError if isinstance(domain, Parameters) else error)
+            for given in (zip(positional, args, strict=False), kwargs.items()):
+                for name, value in given:
+                    if name in domains:
+                        domain = domains[name]
+                        domain.check(name, value, ParameterError if isinstance(domain, Parameters) else error)
             return function(*args, **kwargs)
 
         return checked

@@ -32,8 +32,7 @@ def test_the_scatter_of_windows_is_that_between_independent_ones(memory: float) 
     found, scatter, freedom = errors_of(_series(memory, 400, PARTS * WINDOWS, 2), PARTS, duration[:400])
     assert np.isfinite(found).all()
     assert np.sqrt(np.mean(scatter**2, axis=0)) == pytest.approx(true, rel=0.12)
-    # A tenth of all errors would be off by half, were there four degrees of freedom.
-    assert np.median(freedom) == pytest.approx({0.0: 21.0, 3.0: 15.0, 12.0: 8.5}[memory], rel=0.2)
+    assert np.median(freedom) == pytest.approx({0.0: 14.5, 3.0: 11.0, 12.0: 7.0}[memory], rel=0.2)
 
 
 def test_the_largest_of_windows_is_taken_over_the_window() -> None:

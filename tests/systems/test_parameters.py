@@ -90,7 +90,7 @@ def test_si_units_by_hand():
         (lambda: Parallel(mu=(0.01,) * 9, A=0.1), "mu has 9 values"),
         (lambda: Parallel(mu="ab", A=0.1), "mu is 'ab'; give a number for each ball"),
         (lambda: Parallel(mu=(0.01, 0.01), beta=(1, 1, 1), A=0.1), "beta has 3 values for 2 balls"),
-        (lambda: Parallel(mu=(0.01, -1), A=0.1), "mu_2 is -1, allowed is mu_2 >= 0: mu is the mass ratio m/M"),
+        (lambda: Parallel(mu=(0.01, -1), A=0.1), "mu_2 is -1, allowed is 0 <= mu_2 <= 1e+06: mu is the mass ratio m/M"),
         (lambda: Parallel.of({"A": 0.1, "mu_1": 0.1, "mu_3": 0.1}), "mu is given for the balls [1, 3]"),
         (lambda: Parallel.of({"mu_1": 0.1}), "A is missing"),
         (lambda: ImpactPair.of({"B": 0.1, "C": 0.1}), "unknown parameter 'C'"),

@@ -112,7 +112,7 @@ class Attractor:
 
     @property
     def escape_rate(self) -> float:
-        """Largest rate, per forcing period, at which chaos may be left: a greater one would have shown in 19 of 20 runs.
+        """Largest rate, per forcing period, at which chaos may be left: a greater one would show in 19 of 20 runs.
 
         From a time watched without an escape, -ln(.05)/watched (docs/dynamics.md); nan if not chaotic.
         """
@@ -131,7 +131,7 @@ class Attractor:
         if self.multipliers is not None:
             said.append(f"largest multiplier {self.max_multiplier:.6g}")
         if self.regime == "chaotic" and self.settled:
-            said.append(f"watched for {self.watched:g} periods, left at a rate <= {self.escape_rate:.2g} a period (95 %)")
+            said.append(f"watched for {self.watched:g} periods, left with <= {self.escape_rate:.2g} a period (95 %)")
         if np.isfinite(self.lyapunov):
             said.append(f"Lyapunov exponent {self.lyapunov:.3g} ± {self.lyapunov_error:.1g}")
         return f"{self._kind()} at {self.params}: {', '.join(said)}" + (f"; {self.reason}" if self.reason else "")

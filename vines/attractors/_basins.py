@@ -72,7 +72,14 @@ class Basins:
         return share, share_error(share, 1.0 / float(np.sum(self.weight**2)))
 
 
-@stated(p=Parameters(any_system=False), others=Named(Number(), optional=True), refine=Whole(least=0, most=12), settle=Number(least=0), patience=Number(least=0), watch=Number(least=16))
+@stated(
+    p=Parameters(any_system=False),
+    others=Named(Number(), optional=True),
+    refine=Whole(least=0, most=12),
+    settle=Number(least=0),
+    patience=Number(least=0),
+    watch=Number(least=16),
+)
 def basins(
     p: Params,
     x: tuple[str, Sequence[float] | Floats],

@@ -27,7 +27,7 @@ MEASURES = 3
 PARTS = 8
 """Parts of a window, by which it is shifted along the motion."""
 
-WINDOWS = 13
+WINDOWS = 9
 """Windows that a run goes on for at first."""
 
 LEAST_FREEDOM = 8.0
@@ -63,7 +63,12 @@ class RunOn:
 
 
 def run_on(
-    table: Callable[[npt.NDArray[np.int64]], Any], states: Floats, period: Floats, record: float, patience: float, cap: int
+    table: Callable[[npt.NDArray[np.int64]], Any],
+    states: Floats,
+    period: Floats,
+    record: float,
+    patience: float,
+    cap: int,
 ) -> RunOn:
     """Let runs go on from the ends of their windows until the errors of what these measured mean something.
 

@@ -14,7 +14,7 @@ from vines.attractors._attractor import Attractor
 from vines.attractors._look import look_at_block
 from vines.attractors._naming import attractor_from, word_of
 from vines.attractors._patience import Patience
-from vines.attractors._staying import note_conserving, watch_on
+from vines.attractors._staying import REGULAR, note_conserving, watch_on
 from vines.attractors._waiting import next_wait
 from vines.domains import Named, Number, Parameters, stated
 from vines.dynamics.kernels import constants, pass_over, room_of, shift_time, table_of
@@ -35,7 +35,12 @@ APART = 1e-9
 """Difference in velocity with which equal balls start."""
 
 
-@stated(p=Parameters(), t=Number(least=-1e12, most=1e12), phi=Number(least=-1e12, most=1e12), apart=Number(least=0, most=1e-3))
+@stated(
+    p=Parameters(),
+    t=Number(least=-1e12, most=1e12),
+    phi=Number(least=-1e12, most=1e12),
+    apart=Number(least=0, most=1e-3),
+)
 def settle(
     p: Any,
     *,
@@ -79,7 +84,7 @@ def settle(
     lyapunov : bool
         Whether to give exponents; they are worked out anyhow where the regime depends on them.
     errors : bool
-        Whether a run that never repeats is watched on, for 13 times `record` and up to `patience` periods, until what
+        Whether a run that never repeats is watched on, for nine times `record` and up to `patience` periods, until what
         it measured has standard errors; where its chaos ends on the way it is looked at again from there.
     max_impacts_per_period : int
         Cap on events in one forcing period; when it is passed the regime is ``unsettled``, status ``impact_cap``.
@@ -114,7 +119,14 @@ def settle(
     for group in getattr(p, "together", ()):
         v2[np.array(group) - 1] += apart * np.arange(len(group))
     begin = (x1, v1, x2, v2, phase)
-    return _settled(p, begin, t, Patience(settle, record, patience, watch, tolerance, max_impacts_per_period, largest_p), lyapunov, errors)
+    return _settled(
+        p,
+        begin,
+        t,
+        Patience(settle, record, patience, watch, tolerance, max_impacts_per_period, largest_p),
+        lyapunov,
+        errors,
+    )
 
 
 @stated(p=Parameters(), start=Named(Number()))
@@ -165,7 +177,14 @@ def settle_from(
     t = float(start.get("t", 0.0))
     at = {name: value for name, value in start.items() if name not in ("t", "phase")}
     begin = start_of(p, at, 0.0, start["phase"])
-    return _settled(p, begin, t, Patience(settle, record, patience, watch, tolerance, max_impacts_per_period, largest_p), lyapunov, errors)
+    return _settled(
+        p,
+        begin,
+        t,
+        Patience(settle, record, patience, watch, tolerance, max_impacts_per_period, largest_p),
+        lyapunov,
+        errors,
+    )
 
 
 def _passed_over(
@@ -218,8 +237,9 @@ def _settled(
         shift_time(state, how.window * p.period)
         ran += wait + how.window
         if verdict[v.NEXT] == v.STAYS:
-            note_conserving(verdicts, np.array([room.conserves(p)]))
-            if not errors or turn == ROUNDS:
+            if verdict[v.SETTLED] > 0.0 and room.conserves(p):
+                note_conserving(verdicts, np.ones(1, dtype=bool))
+            if not errors or turn == ROUNDS or verdict[v.REGIME] in REGULAR:
                 break
             m = measures_from(p, totals[0])
             measured = np.array([[m.kinetic_ratio, m.max_abs_x1, m.rms_x1]])

@@ -1,4 +1,4 @@
-"""What is done once with a run that is taken as it is: its errors, for how long it was watched, and whether it ended."""
+"""What is done with a run that is taken as it is: its errors, how long it was watched, and whether its motion lasts."""
 
 from __future__ import annotations
 
@@ -14,7 +14,10 @@ from vines.attractors._look import is_regular_block
 from vines.attractors._patience import Patience
 from vines.dynamics.kernels import rows as col
 
-__all__ = ["note_conserving", "watch_on"]
+__all__ = ["REGULAR", "note_conserving", "watch_on"]
+
+REGULAR = (v.PERIODIC, v.NO_IMPACT)
+"""Regimes of runs that need not be watched on."""
 
 SURE = 5.0
 """Standard errors by which a window must differ from what came after it for the motion to have become another one."""
@@ -42,7 +45,7 @@ def watch_on(
     verdicts: Floats,
     how: Patience,
 ) -> npt.NDArray[np.bool_]:
-    """Watch runs whose motion never repeated on from the ends of their windows, and note the errors of what they measured.
+    """Watch runs whose motion never repeated on from the ends of their windows, and note the errors of their measures.
 
     Parameters
     ----------
@@ -61,8 +64,8 @@ def watch_on(
     Returns
     -------
     ndarray of bool, shape (n,)
-        Which runs have become regular, or of other means than in their windows: what was seen there was a transient, and
-        they are to be looked at again from where they are.
+        Which runs have become regular, or of other means than in their windows: what was seen there was a transient,
+        and they are to be looked at again from where they are.
     """
     ended = np.zeros(len(verdicts), dtype=bool)
     regime = verdicts[:, v.REGIME]
@@ -75,7 +78,8 @@ def watch_on(
     moved = states[rows]
     found: RunOn = run_on(lambda some: table(rows[some]), moved, period[rows], how.window, how.patience, how.cap)
     states[rows] = moved
-    verdicts[np.ix_(rows, (v.KINETIC_RATIO_ERROR, v.MAX_ABS_X1_ERROR, v.RMS_X1_ERROR))] = found.errors
+    for k, column in enumerate((v.KINETIC_RATIO_ERROR, v.MAX_ABS_X1_ERROR, v.RMS_X1_ERROR)):
+        verdicts[rows, column] = found.errors[:, k]
     watched = verdicts[rows, v.RECORDED] + found.periods
     beyond = watched > verdicts[rows, v.WATCHED]
     verdicts[rows, v.WATCHED] = np.fmax(verdicts[rows, v.WATCHED], watched)

@@ -81,7 +81,7 @@ _TEXTS = {
     DRIFTS: "no impact while recorded, but the ball drifts towards a wall",
     RESTS: "the ball is nearly at rest: no impact for the last {value:.4g} forcing periods",
     RINGS: "the oscillator is still {value:.2g} from its steady motion",
-    DECAYS: "disturbances decay, but no repetition shows yet, of p <= {value:.0f} forcing periods; largest_p is for longer ones",
+    DECAYS: "disturbances decay, but no repetition of p <= {value:.0f} periods shows yet; largest_p is for longer ones",
     COMES: "still comes to a periodic orbit: {value:.6g} of the distance is left each period",
     STAYS_NEAR: "near a periodic orbit, neither settled on it nor clearly leaving it",
     LEAVES: "leaves an unstable periodic orbit",
@@ -89,7 +89,7 @@ _TEXTS = {
     CAPPED: "more events in a forcing period than the cap allows",
     CAPPED_LATER: "more events in a forcing period than allowed while running on",
     CONSERVES: "nothing is lost, by damping or in impacts: there is no attractor",
-    LONGER: "repeats after p = {value:.0f} forcing periods, p <= {other:.0f} was looked for; largest_p = {value:.0f} names it",
+    LONGER: "repeats after p = {value:.0f} periods, p <= {other:.0f} was looked for; largest_p = {value:.0f} names it",
     REMEMBERS: "no standard errors: the motion remembers longer than {value:.4g} forcing periods can tell",
 }
 

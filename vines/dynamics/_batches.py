@@ -1,10 +1,10 @@
 """Standard errors from inside a run: totals of equal parts of the recorded time, and what their scatter says.
 
-The error of a mean over n parts is their scatter over the root of n if they are independent. Whether they are is asked of
-the parts themselves, by the initial monotone sequence of their correlations (Geyer 1992); where they are not the recorded
-time holds too few memories of the motion for any estimate from inside it, and the error is nan. So it is where a part is
-shorter than twice what the oscillator remembers. An error from so few parts is uncertain itself: it is the standard
-deviation of Student's law, which is wider (docs/dynamics.md).
+The error of a mean over n parts is their scatter over the root of n if they are independent. Whether they are is asked
+of the parts themselves, by the initial monotone sequence of their correlations (Geyer 1992); where they are not the
+recorded time holds too few memories of the motion for any estimate from inside it, and the error is nan. So it is where
+a part is shorter than twice what the oscillator remembers. An error from so few parts is uncertain itself: it is the
+standard deviation of Student's law, which is wider (docs/dynamics.md).
 """
 
 from __future__ import annotations
@@ -22,7 +22,16 @@ from vines.dynamics._totals import (
 )
 from vines.kernels import linked_njit, new_vector
 
-__all__ = ["BATCHES", "GROWTHS", "PART", "close_batch", "error_of_mean", "errors_of_rates", "spread_of_mean", "standard_errors"]
+__all__ = [
+    "BATCHES",
+    "GROWTHS",
+    "PART",
+    "close_batch",
+    "error_of_mean",
+    "errors_of_rates",
+    "spread_of_mean",
+    "standard_errors",
+]
 
 BATCHES = 8
 """Equal parts of the recorded time: flights are cut where one ends, so they cost."""
@@ -37,7 +46,7 @@ LEAST_FREEDOM = 6.0
 """Fewest degrees of freedom of an error; eight parts without any correlation have seven."""
 
 MEMORIES = 4.0
-"""Least length of a part in units of 1/lam, twice the memory of the oscillator: eight parts do not show a longer one."""
+"""Least length of a part in units of 1/lam, twice the memory of the oscillator: eight parts show no longer one."""
 
 ALIKE = 1e-8
 """Relative scatter of parts that is no scatter: those of a periodic motion, whatever they say of correlation."""

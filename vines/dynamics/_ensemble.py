@@ -170,7 +170,14 @@ class _Runs:
         return work.result()
 
 
-@stated(periods=Number(above=0), settle=Number(least=0), record=Choice(RECORDS), scatter=Of("Scatter", optional=True), threads=Whole(optional=True), max_impacts_per_period=Whole(most=MOST_EVENTS))
+@stated(
+    periods=Number(above=0),
+    settle=Number(least=0),
+    record=Choice(RECORDS),
+    scatter=Of("Scatter", optional=True),
+    threads=Whole(optional=True),
+    max_impacts_per_period=Whole(most=MOST_EVENTS),
+)
 def ensemble(
     params: Params | Sequence[Params] | Mapping[str, npt.ArrayLike],
     starts: Mapping[str, npt.ArrayLike] | None = None,

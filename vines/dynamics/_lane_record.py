@@ -36,8 +36,8 @@ DEPTH = 16
 def new_record(lanes, what_rows, what_totals, what_growth):
     """Return room for the records of all lanes, as a tuple of arrays.
 
-    Rows and how many wait; totals, what errors are taken of by batch, number of the running batch, mode and ball of the running
-    segment; disturbances and their growth by batch.
+    Rows and how many wait; totals, what errors are taken of by batch, number of the running batch, mode and ball of the
+    running segment; disturbances and their growth by batch.
     """
     k = lanes if what_rows else 0
     n = lanes if what_totals else 0

@@ -29,8 +29,8 @@ MOST_TRIES = 8.0
 """Moves of a flight that were not certified before the scalar kernel takes it."""
 
 FORGOTTEN = 300.0
-"""Decay of a flight's free part, as its logarithm, before the scalar kernel takes the flight: it goes back to its start,
-and from twice as far no double comes back."""
+"""Decay of a flight's free part, as its logarithm, before the scalar kernel takes the flight: that goes back to the
+start, and from twice as far no double comes back."""
 
 LOOSER = 1.05
 """The lanes' test for a merge is looser than `merges`, which then decides: both kernels merge at the same impact."""

@@ -44,7 +44,13 @@ class Mapped(NamedTuple):
     jacobian: npt.NDArray[np.float64]
 
 
-@stated(p=Parameters(any_system=False), side=Whole(least=-1, most=1), side_next=Whole(least=-1, most=1), state=Numbers(Number(least=-1e12, most=1e12), least=5, most=5), phi=Number(least=-1e12, most=1e12))
+@stated(
+    p=Parameters(any_system=False),
+    side=Whole(least=-1, most=1),
+    side_next=Whole(least=-1, most=1),
+    state=Numbers(Number(least=-1e12, most=1e12), least=5, most=5),
+    phi=Number(least=-1e12, most=1e12),
+)
 def impact_map(
     p: Params, side: int, side_next: int, state: Sequence[float] | npt.NDArray[np.float64], phi: float = 0.0
 ) -> Mapped:

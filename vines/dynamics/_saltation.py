@@ -72,7 +72,14 @@ def jacobian_kernel(mu, A, Omega, r, lam, x1, v1, v2, phase, tau):
     return J, x1n, v1n, v2p
 
 
-@stated(p=Parameters(any_system=False), side=Whole(least=-1, most=1), side_next=Whole(least=-1, most=1), before=Numbers(Number(least=-1e6, most=1e6), least=4, most=4), phase=Number(least=-1e12, most=1e12), tau=Number(above=0, most=1e6))
+@stated(
+    p=Parameters(any_system=False),
+    side=Whole(least=-1, most=1),
+    side_next=Whole(least=-1, most=1),
+    before=Numbers(Number(least=-1e6, most=1e6), least=4, most=4),
+    phase=Number(least=-1e12, most=1e12),
+    tau=Number(above=0, most=1e6),
+)
 def jacobian(
     p: Params,
     side: int,

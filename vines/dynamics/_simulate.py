@@ -49,7 +49,13 @@ def record(
     return rows[: count + 1].copy(), STATUS[code]
 
 
-@stated(p=Parameters(), t=Number(least=-1e12, most=1e12), phi=Number(least=-1e12, most=1e12), periods=Number(above=0), max_impacts_per_period=Whole(most=MOST_EVENTS))
+@stated(
+    p=Parameters(),
+    t=Number(least=-1e12, most=1e12),
+    phi=Number(least=-1e12, most=1e12),
+    periods=Number(above=0),
+    max_impacts_per_period=Whole(most=MOST_EVENTS),
+)
 def simulate(
     p: Any,
     *,

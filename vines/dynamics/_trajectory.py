@@ -208,7 +208,11 @@ class Trajectory:
         totals = window_totals(constants(self.params), self.rows, len(self.rows), start, self.t_end)
         return measures_from(self.params, totals)
 
-    @stated(n=Whole(least=0, most=MOST_SAMPLES, optional=True), times=Numbers(most=MOST_SAMPLES, optional=True), per_period=Whole(most=MOST_SAMPLES, optional=True))
+    @stated(
+        n=Whole(least=0, most=MOST_SAMPLES, optional=True),
+        times=Numbers(most=MOST_SAMPLES, optional=True),
+        per_period=Whole(most=MOST_SAMPLES, optional=True),
+    )
     def sample(
         self,
         n: int | None = None,

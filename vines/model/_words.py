@@ -89,7 +89,9 @@ class Word:
                 raise ParameterError(f"{shown(text)} is not a word: {hint}")
             letters, p = match[1], int(match[2] or 1) if len(match[2] or "") < 6 else _LONGEST + 1
             if len(impacts(letters)) > _LONGEST or p > _LONGEST:
-                raise ParameterError(f"{shown(text)} is too long a word; allowed are {_LONGEST} impacts over {_LONGEST}T")
+                raise ParameterError(
+                    f"{shown(text)} is too long a word; allowed are {_LONGEST} impacts over {_LONGEST}T"
+                )
             if STICKS in letters:
                 _refuse_split_chatter(text, letters)
         object.__setattr__(self, "letters", min(rotated(letters)))

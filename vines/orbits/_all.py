@@ -9,8 +9,8 @@ import numpy as np
 import numpy.typing as npt
 
 from vines.domains import Parameters, stated
-from vines.errors import ParameterError
 from vines.dynamics.kernels import constants
+from vines.errors import ParameterError
 from vines.model import Params, Word
 from vines.orbits._assemble import assemble
 from vines.orbits._closed_form import family_of, impact_states, refuse_resonance, speeds
@@ -25,6 +25,9 @@ from vines.orbits._sticking_search import search_sticking
 from vines.orbits._values import marks_of, unit_of
 
 __all__ = ["Orbits", "all_orbits"]
+
+LONGEST = 64
+"""Most impacts of a word that is searched for: seconds go with the third power of their number."""
 
 Floats = npt.NDArray[np.float64]
 
@@ -102,6 +105,11 @@ def all_orbits(word: str | Word, p: Any) -> Orbits:
         found, how = search_sticking(sticking_word(word, p), p)
         return Orbits(_in_order(found), complete=word.n == 0 or word.m == 0, remark=how, nearest=np.inf)
     refuse_resonance(p)
+    if len(word) > LONGEST:
+        raise ParameterError(
+            f"{len(word)} impacts are too many for a search, allowed are {LONGEST}; give find_orbit the times of a "
+            "simulation as guess"
+        )
     if not isinstance(p, Params):
         return _searched(word, p)
     if word.n == 0 or word.m == 0:

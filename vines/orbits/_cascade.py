@@ -21,7 +21,17 @@ _SAME = 1e-9
 """Relative difference of parameter values at which a family that ends does so at a branching point found before."""
 
 
-@stated(ParameterError, orbit=Of("Orbit", how="as vines.find_orbit returns it"), parameter=Name(), stop=Number(), depth=Whole(least=0, most=24), within=Pair(optional=True), at=Numbers(), step=Number(above=0, most=1), max_points=Whole(most=1_000_000))
+@stated(
+    ParameterError,
+    orbit=Of("Orbit", how="as vines.find_orbit returns it"),
+    parameter=Name(),
+    stop=Number(),
+    depth=Whole(least=0, most=24),
+    within=Pair(optional=True),
+    at=Numbers(),
+    step=Number(above=0, most=1),
+    max_points=Whole(most=1_000_000),
+)
 def follow_cascade(
     orbit: Orbit,
     parameter: str,

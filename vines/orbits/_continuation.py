@@ -39,7 +39,16 @@ _TOLERANCE = 1e-14
 """Of the root of a defining equation, as a fraction of the step in which it lies."""
 
 
-@stated(ParameterError, orbit=Of("Orbit", how="as vines.find_orbit returns it"), parameter=Name(), stop=Number(), within=Pair(optional=True), at=Numbers(), step=Number(above=0, most=1), max_points=Whole(most=1_000_000))
+@stated(
+    ParameterError,
+    orbit=Of("Orbit", how="as vines.find_orbit returns it"),
+    parameter=Name(),
+    stop=Number(),
+    within=Pair(optional=True),
+    at=Numbers(),
+    step=Number(above=0, most=1),
+    max_points=Whole(most=1_000_000),
+)
 def continue_orbit(
     orbit: Orbit,
     parameter: str,

@@ -44,7 +44,16 @@ class Families(list[Branch]):
         self.complete = complete
 
 
-@stated(ParameterError, p=Parameters(any_system=False), parameter=Name(), within=Interval(), seeds=Numbers(least=1), depth=Whole(least=0, most=24), at=Numbers(), step=Number(above=0, most=1))
+@stated(
+    ParameterError,
+    p=Parameters(any_system=False),
+    parameter=Name(),
+    within=Interval(),
+    seeds=Numbers(least=1),
+    depth=Whole(least=0, most=24),
+    at=Numbers(),
+    step=Number(above=0, most=1),
+)
 def follow_families(
     word: str | Word,
     p: Params,

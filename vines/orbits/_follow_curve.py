@@ -46,7 +46,14 @@ _FIRST = 4
 """Points before which a curve is not looked at for having closed."""
 
 
-@stated(ParameterError, bifurcation=Of("Bifurcation", how="one of Branch.bifurcations"), parameters=Names(2), box=Named(Interval(), least=2), step=Number(above=0, most=1), max_points=Whole(most=1_000_000))
+@stated(
+    ParameterError,
+    bifurcation=Of("Bifurcation", how="one of Branch.bifurcations"),
+    parameters=Names(2),
+    box=Named(Interval(), least=2),
+    step=Number(above=0, most=1),
+    max_points=Whole(most=1_000_000),
+)
 def follow_curve(
     bifurcation: Bifurcation,
     parameters: tuple[str, str] = ("A", "mu"),

@@ -61,7 +61,13 @@ class Optimum:
         return f"<Optimum {self.objective} = {self.value:.9g}, held by {held}: {self.orbit}>"
 
 
-@stated(ParameterError, p=Parameters(any_system=False), objective=Name(), over=Named(Interval(), least=1), largest_multiplier=Number(above=0, most=1))
+@stated(
+    ParameterError,
+    p=Parameters(any_system=False),
+    objective=Name(),
+    over=Named(Interval(), least=1),
+    largest_multiplier=Number(above=0, most=1),
+)
 def optimise(
     word: str | Word,
     objective: str,

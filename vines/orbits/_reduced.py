@@ -15,8 +15,8 @@ import numpy as np
 import numpy.typing as npt
 
 from vines.domains import Number, Parameters, stated
-from vines.errors import ParameterError
 from vines.dynamics.kernels import impact_law, reversing
+from vines.errors import ParameterError
 from vines.model import Params
 
 __all__ = ["Reduced", "manifold_amplitude", "manifold_range", "reduced_orbits", "reduced_range"]

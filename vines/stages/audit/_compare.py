@@ -97,8 +97,8 @@ def compare_within_errors(
 ) -> None:
     """Compare rows of points that are not periodic: regime, the columns `names`, and the measures within their errors.
 
-    Both rows are samples of the motion, so four standard errors are those of their difference; where one of them tells no
-    error nothing can be said of the measure.
+    Both rows are samples of the motion, so four standard errors are those of their difference; where one of them tells
+    no error nothing can be said of the measure.
     """
     for name in names:
         comparison.number(name, stored[name], again[name], TOLERANCE * (1 + abs(stored[name] or 0.0)))

@@ -38,8 +38,8 @@ LargestP = (
         Meta(
             ge=1,
             le=4096,
-            description="Largest number of forcing periods over which a repetition is looked for, as if 32 if left out; "
-            "at least twice as many are recorded",
+            description="Largest number of forcing periods over which a repetition is looked for, as if 32 if left "
+            "out; at least twice as many are recorded",
         ),
     ]
     | msgspec.UnsetType
