@@ -1,4 +1,4 @@
-"""Curves of systems beside the VI-NES in pipelines, and the chart of the harvester: as it is shipped, with fewer points."""
+"""Curves of systems beside the VI-NES in pipelines, and the chart of the harvester on fewer points."""
 
 import math
 import re
@@ -12,6 +12,8 @@ from vines.errors import VinesError
 from vines.orbits import find_orbit
 from vines.stages import load_pipeline, run
 from vines.systems import Harvest, ImpactPair
+
+pytestmark = pytest.mark.long(20)
 
 BALLS = """
 title = "balls"
@@ -63,7 +65,6 @@ def rows(table, where):
     return vines.query(f"select * from {table} where {where}").to_pylist()
 
 
-@pytest.mark.long(60)
 def test_curves_are_in_the_tables_of_the_system(harvester):
     points = rows("impact_pair_curves", "stage = 'one_zero_fold' and special is null order by point")
     # at the other end the bounces reach the upper end

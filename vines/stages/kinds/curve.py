@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
 import msgspec
 from msgspec import Meta
@@ -53,9 +53,10 @@ def _fits(stage: Stage, pipeline: Pipeline) -> None:
     del pipeline
     check_axes(stage, 2, "a curve is followed in two parameters", "give vary.X and vary.Y")
     system = stage.kind.system
+    options: Any = stage.options
     varied = [axis.name for axis in stage.axes]
     for name in read_system(system, min(most_balls(system), 1)).mirror.broken_by:
-        if stage.options.type == "symmetry_breaking" and (name in varied or stage.params.get(name, 0) != 0):
+        if options.type == "symmetry_breaking" and (name in varied or stage.params.get(name, 0) != 0):
             raise DeclarationError(f"there is no symmetry to break unless {name} = 0; give that and vary others")
 
 
