@@ -164,6 +164,18 @@ def test_curves_of_two_balls_satisfy_their_equations(kind, stop):
     check(curve)
 
 
+@pytest.mark.full
+def test_a_curve_of_two_balls_ends_where_they_hit_together():
+    orbit = find_orbit("L1L2R1R2", Parallel(mu=(0.01, 0.01), beta=(1.0, 1.4), A=0.03))
+    curve = follow_curve(
+        met(orbit, "A", 0.08, "symmetry_breaking"), ("A", "r_2"), box={"A": (0.004, 0.2), "r_2": (0.2, 1)}
+    )
+    assert set(curve.ends) == {"box", "tie"}
+    [tie] = curve.special
+    assert abs(tie.orbit.flight_times).min() < 1e-12
+    assert Flown(tie.orbit, half=True).closing(tie.orbit) < 1e-12
+
+
 def test_what_has_no_curve_is_refused_in_one_line(level, tilted):
     breaking = met(level, "B", 0.8, "symmetry_breaking")
     doubling = met(tilted, "B", 1.0, "period_doubling")

@@ -19,7 +19,7 @@ from vines.orbits._curve_equations import CurveEquations
 from vines.orbits._curve_problem import CurveProblem
 from vines.orbits._joined import is_joint, left_family
 from vines.orbits._problem import Point, ZeroSet
-from vines.orbits._special import END, Special, special_functions
+from vines.orbits._special import END, TIE, Special, special_functions
 
 __all__ = ["follow_curve"]
 
@@ -30,7 +30,7 @@ _TURN = 0.2
 _REACH = 4.0
 _TOLERANCE = 1e-13
 """Of a special point, as a fraction of the step in which it lies."""
-_ENDS = (END, "resonance_1_1", "resonance_1_2", "double_grazing", "degenerate_grazing")
+_ENDS = (END, TIE, "resonance_1_1", "resonance_1_2", "double_grazing", "degenerate_grazing")
 """Special points beyond which the equations describe something else."""
 _RANK = 1e-10
 """Least singular value of the equations relative to the largest: below it they do not depend on the parameters."""

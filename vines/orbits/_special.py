@@ -15,12 +15,15 @@ from vines.orbits._curve_equations import CurveEquations
 from vines.orbits._joined import unfolded
 from vines.orbits._problem import Point
 
-__all__ = ["END", "RESONANCES", "Special", "special_functions"]
+__all__ = ["END", "RESONANCES", "TIE", "Special", "special_functions"]
 
 Multipliers = npt.NDArray[np.complex128]
 
 END = "grazing"
 """The special point at which the orbits of the curve cease to be admissible."""
+
+TIE = "tie"
+"""That at which two balls hit together."""
 
 RESONANCES = {"resonance_1_1": 1.0, "resonance_1_2": -1.0, "resonance_1_3": -0.5, "resonance_1_4": 0.0}
 """Cosine of the angle of the critical pair at the strong resonances."""
@@ -108,11 +111,17 @@ def special_functions(problem: CurveEquations) -> tuple[Special, ...]:
     def small_curvature(point: Point) -> bool:
         return abs(curvature(point)) < 1.0
 
+    def between(point: Point) -> float:
+        return float(np.min(point.orbit.flight_times))
+
+    # Balls whose impacts have changed places are no orbit of the word.
+    ties = (Special(TIE, between, _always),) if any(problem.word.balls) else ()
     fold = Special(f"{kind}_fold" if kind == "grazing" else f"fold_{flip}", one, _always)
     if kind == "grazing":
         if not problem.touches:
-            return ()
+            return ties
         return (
+            *ties,
             fold,
             Special(f"grazing_{flip}", minus_one, _always),
             Special("grazing_neimark_sacker", pairs, on_circle),
@@ -122,6 +131,7 @@ def special_functions(problem: CurveEquations) -> tuple[Special, ...]:
     end = Special(END, grazing_margin, _always)
     if kind == "fold":
         return (
+            *ties,
             Special("resonance_1_1", one, _always),
             Special(f"fold_{flip}", minus_one, _always),
             Special("fold_neimark_sacker", pairs, on_circle),
@@ -129,6 +139,7 @@ def special_functions(problem: CurveEquations) -> tuple[Special, ...]:
         )
     if kind == "neimark_sacker":
         return (
+            *ties,
             *(
                 Special(name, lambda point, value=value: cosine(point) - value, _always)
                 for name, value in RESONANCES.items()
@@ -138,6 +149,7 @@ def special_functions(problem: CurveEquations) -> tuple[Special, ...]:
             end,
         )
     return (
+        *ties,
         fold,
         Special("resonance_1_2", minus_one, _always),
         Special(f"{flip}_neimark_sacker", pairs, on_circle),
