@@ -33,14 +33,16 @@ class ChainProblem:
         Gives the word and the parameters that stay fixed.
     parameter : str
         Name of the parameter that varies.
+    symmetric : bool, optional
+        Whether the family is to be kept symmetric; by default if the orbit is.
     """
 
-    def __init__(self, orbit: Orbit, parameter: str) -> None:
+    def __init__(self, orbit: Orbit, parameter: str, symmetric: bool | None = None) -> None:
         self.word = orbit.word
         self.parameter = parameter
         self._fixed = orbit.params
         self._side = marks_of(orbit.word)
-        n = len(orbit.word) // 2 if orbit.symmetric else len(orbit.word)
+        n = len(orbit.word) // 2 if (orbit.symmetric if symmetric is None else symmetric) else len(orbit.word)
         value = orbit.params.as_dict()[parameter]
         self.start = np.append(orbit.t[:n] * frequency_of(orbit.params), value)
 
