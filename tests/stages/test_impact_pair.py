@@ -9,7 +9,7 @@ import pytest
 import vines
 from vines.errors import VinesError
 from vines.logs import read
-from vines.stages import load_pipeline, run
+from vines.stages import load_pipeline, run, verify
 
 PAIR = """
 title = "a pair"
@@ -76,6 +76,11 @@ def test_tables_hold_the_check_values(pair):
     kept = read(log)
     assert kept.system == "impact_pair"
     assert (kept.parameters, kept.impacts.num_rows) == ({"B": 0.65, "G": 0.05, "r": 0.5}, 6)
+    found = verify("pair", recompute=60)
+    assert found.good, [line.first for line in found.lines if line.first]
+    again = {line.name: line.checked for line in found.lines if line.group == "recomputed"}
+    assert {f"impact_pair_{name}" for name in ("points", "impacts", "orbits", "bifurcations")} < set(again)
+    assert all(again.values())
     first = vines.query('select * from "pair.points" where B = 0.6').to_pylist()[0]
     assert (first["name"], first["word"], first["ties"]) == ("1:1", "LR", 0)
     assert math.isclose(first["impact_power"], 0.197859747453, abs_tol=1e-11)

@@ -1,11 +1,14 @@
 """Balls in parallel cavities in pipelines: lists, links, columns of each ball, words and the check values."""
 
 import numpy as np
+import pyarrow as pa
 import pytest
 
 import vines
 from vines.logs import read
-from vines.stages import run
+from vines.stages import run, verify
+from vines.stages.audit._physics import defects
+from vines.stages.audit._rows import Rows
 
 SPLIT = """
 title = "one mass over two cavities"
@@ -53,6 +56,17 @@ params = { mu = [0.01, 0.01], beta = [1.0, 0.5], V = 2.0 }
 """
 
 
+def tampered(name, column):
+    """Return the checks that fail where the first row of a stored table is changed."""
+    table = vines.table(name)
+    first = table[column][0].as_py()
+    changed = [-1.0 - abs(each) for each in first] if isinstance(first, list) else -1.0 - abs(first)
+    values = pa.array([changed, *table[column][1:].to_pylist()], table.schema.field(column).type)
+    at = table.column_names.index(column)
+    found = list(defects(name, Rows(table.set_column(at, table.schema.field(column), values))))
+    return {each.name for each in found if each.values[0] > each.allowed}
+
+
 @pytest.mark.long(60)
 def test_a_transient_of_one_ball_is_that_of_the_vi_nes_and_two_share_the_loss(project, monkeypatch):
     monkeypatch.setenv("VINES_ROOT", str(project.root))
@@ -65,6 +79,10 @@ def test_a_transient_of_one_ball_is_that_of_the_vi_nes_and_two_share_the_loss(pr
     assert one["impacts"] == single["impacts"] == 54
     for name in ("impact_share", "damper_share", "left_share", "ball_share", "t_tenth"):
         assert one[name] == pytest.approx(single[name], abs=1e-9)
+    found = verify("decays", recompute=20)
+    assert found.good, [line.first for line in found.lines if line.first]
+    again = [(line.name, line.checked) for line in found.lines if line.group == "recomputed"]
+    assert dict(again) == {"transients": 1, "parallel_transients": 2}
     assert one["energy"] * one["impact_share"] == pytest.approx(0.718833300114, abs=1e-10)
     assert two["impact_share"] + two["damper_share"] + two["left_share"] == pytest.approx(1.0, abs=1e-12)
 
@@ -103,5 +121,24 @@ def test_tables_hold_the_check_values_ball_by_ball(project, monkeypatch):
     orbits = vines.query("select * from parallel_orbits where A = 0.03").to_pylist()
     assert orbits[0]["stable"]
     assert orbits[0]["kinetic_ratio_2"] == pytest.approx(0.103992311198, abs=1e-10)
+    found = verify("split", recompute=60)
+    assert found.good, [line.first for line in found.lines if line.first]
+    again = {line.name: line.checked for line in found.lines if line.group == "recomputed"}
+    assert set(again) == {f"parallel_{name}" for name in ("points", "impacts", "orbits")}
+    assert all(again.values())
+    checked = {line.name: line.checked for line in found.lines if line.group == "parallel_orbits"}
+    (count,) = vines.query("select count(*) as n from parallel_orbits").to_pylist()
+    assert checked["energy balance"] == checked["multiplier product"] == count["n"] > 2
+    for name, column, wrong in (
+        ("impacts", "w_dot", "impact law"),
+        ("impacts", "x2", "contact"),
+        ("impacts", "v1", "momentum"),
+        ("points", "base_work", "energy balance"),
+        ("points", "impact_power_2", "balls"),
+        ("points", "x1_locked", "yardsticks"),
+        ("orbits", "multipliers_re", "multiplier product"),
+        ("orbits", "mu_1", "parameters"),
+    ):
+        assert wrong in tampered(f"parallel_{name}", column), (name, column)
     both = vines.query("select distinct system, name from all_points union select system, name from all_orbits")
     assert both.to_pylist() == [{"system": "parallel", "name": "1:1|1:1"}]

@@ -274,13 +274,14 @@ def failed(table):
 
 
 def test_chaotic_rows_are_compared_within_four_standard_errors():
-    stored = dict.fromkeys(("mu", "A", "Omega", "r", "lam", "x1", "v1", "x2", "v2", "phase"), 0.1)
+    given = ("mu", "A", "Omega", "r", "lam", "x1", "v1", "x2", "v2", "phase")
+    stored = dict.fromkeys(given, 0.1)
     stored |= {"regime": "chaotic", "settled": True, "status": "ok"}
     for name in ("kinetic_ratio", "max_abs_x1", "rms_x1", "lyapunov"):
         stored |= {name: 1.0, f"{name}_error": 0.01}
     for off, good in ((0.056, True), (0.057, False)):
         comparison = Comparison()
-        compare_within_errors(comparison, stored, {**stored, "rms_x1": 1.0 + off})
+        compare_within_errors(comparison, stored, {**stored, "rms_x1": 1.0 + off}, names=given)
         assert (comparison.wrong == "") is good
 
 

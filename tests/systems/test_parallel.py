@@ -237,6 +237,10 @@ def test_orbits_are_found_and_followed():
     assert orbit.w_dot == pytest.approx([1.14640548516, 1.43204181301, -1.14640548516, -1.43204181301], abs=1e-10)
     assert ratios(orbit.measures) == pytest.approx([0.066644811441, 0.103992311198], abs=1e-11)
     assert abs(orbit.measures.balance) < 1e-13
+    start = orbit.start()
+    run = vines.simulate(TWO, **start, periods=1 + 1e-9)
+    assert run.impacts["t"] - start["t"] == pytest.approx([*(orbit.t[1:] - orbit.t[0]), TWO.period], abs=1e-11)
+    assert run.impacts["w_dot"] == pytest.approx(np.roll(orbit.w_dot, -1), abs=1e-11)
     branch = vines.continue_orbit(orbit, "beta_2", 1.3)
     last = branch.orbits[-1]
     assert last.params.beta == (1.0, 1.3)

@@ -5,9 +5,10 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
+import numpy.typing as npt
 
 from vines.attractors import _verdict as v
 from vines.attractors._attractor import Attractor
@@ -19,8 +20,9 @@ from vines.dynamics.kernels import constants, pass_over, room_of, shift_time, ta
 from vines.dynamics.kernels import rows as col
 from vines.dynamics.runs import EVENTS_PER_PERIOD, impacts_of, start_of
 from vines.errors import StateError
+from vines.model import Word
 
-__all__ = ["APART", "NUDGE", "ROUNDS", "Patience", "settle", "settle_from"]
+__all__ = ["APART", "NUDGE", "ROUNDS", "Patience", "Settled", "parted", "settle", "settle_from", "settled"]
 
 ROUNDS = 8
 """How often a run may be taken on because it had not arrived."""
@@ -132,11 +134,9 @@ def settle(
     >>> found.regime, found.name, found.word, found.symmetric
     ('periodic', '2:1', 'LLR', False)
     """
-    x1, v1, x2, v2, phase = start_of(p, start, t, phi)
-    for group in getattr(p, "together", ()):
-        v2[np.array(group) - 1] += apart * np.arange(len(group))
-    begin = (x1, v1, x2, v2, phase)
-    return _settled(p, begin, t, Patience(settle, record, patience, watch, tolerance, max_impacts_per_period), lyapunov)
+    begin = parted(p, start_of(p, start, t, phi), apart)
+    found = settled(p, begin, Patience(settle, record, patience, watch, tolerance, max_impacts_per_period))
+    return attractor_from(p, *found, t, lyapunov)
 
 
 def settle_from(
@@ -182,12 +182,29 @@ def settle_from(
     t = float(start.get("t", 0.0))
     at = {name: value for name, value in start.items() if name not in ("t", "phase")}
     begin = start_of(p, at, 0.0, start["phase"])
-    return _settled(p, begin, t, Patience(settle, record, patience, watch, tolerance, max_impacts_per_period), lyapunov)
+    found = settled(p, begin, Patience(settle, record, patience, watch, tolerance, max_impacts_per_period))
+    return attractor_from(p, *found, t, lyapunov)
 
 
-def _settled(
-    p: Any, begin: tuple[float, float, float, float, float], t: float, how: Patience, lyapunov: bool
-) -> Attractor:
+class Settled(NamedTuple):
+    """A run at its end: verdict, totals of the window, word if it repeats, and recorded impacts."""
+
+    verdict: npt.NDArray[np.float64]
+    totals: npt.NDArray[np.float64]
+    word: Word | None
+    hits: npt.NDArray[np.void]
+
+
+def parted(p: Any, begin: tuple[Any, Any, Any, Any, float], apart: float) -> tuple[Any, Any, Any, Any, float]:
+    """Return a start in which balls of one length and restitution differ in velocity."""
+    x1, v1, x2, v2, phase = begin
+    for group in getattr(p, "together", ()):
+        v2[np.array(group) - 1] += apart * np.arange(len(group))
+    return x1, v1, x2, v2, phase
+
+
+def settled(p: Any, begin: tuple[Any, Any, Any, Any, float], how: Patience) -> Settled:
+    """Run from a start, as kernels hold it, until it is decided what it settles to."""
     c, room = constants(p), room_of(p)
     layout = room.layout(p)
     states = np.zeros((1, layout.state))
@@ -223,4 +240,4 @@ def _settled(
             spare -= wait
     verdict[v.NUDGED], verdict[v.PERIODS] = nudged, ran - how.record
     word = word_of(sides, int(verdict[v.P]), p) if len(sides) else None
-    return attractor_from(p, verdict, totals[0], word, impacts_of(hits, layout.width > col.ROW), t, lyapunov)
+    return Settled(verdict, totals[0], word, impacts_of(hits, layout.width > col.ROW))

@@ -10,7 +10,7 @@ from vines.dynamics._flight import derivatives, fifth, forced_fifth, modulus, pu
 from vines.dynamics._steps import leaving_step, only_root, safe_step, taylor_root
 from vines.kernels import by_type, fused_njit, loop_njit
 
-__all__ = ["holds_for", "merges", "next_release", "release_within"]
+__all__ = ["UNRESOLVED", "holds_for", "merges", "next_release", "release_within"]
 
 OMITTED = 1e-16
 """Largest change of the common velocity that a merge may leave out."""

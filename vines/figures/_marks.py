@@ -17,6 +17,7 @@ MARKS = {
     "fold": ("D", "fold"),
     "neimark_sacker": ("^", "Neimark–Sacker"),
     "grazing": ("v", "grazing"),
+    "tie": ("*", "two balls hit together"),
     "pair_turns_real": ("|", "a pair of multipliers turns real"),
 }
 """Symbol and name of each type."""

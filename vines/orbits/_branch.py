@@ -22,7 +22,7 @@ class Bifurcation:
     Attributes
     ----------
     type : str
-        fold, symmetry_breaking, period_doubling, neimark_sacker or grazing; in `Branch.events` pair_turns_real.
+        fold, symmetry_breaking, period_doubling, neimark_sacker, grazing or tie; in `Branch.events` pair_turns_real.
     parameter : str
         The parameter in which the branch was followed.
     value : float

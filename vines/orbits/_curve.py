@@ -65,7 +65,7 @@ class Curve:
         admissible), ``tie``, ``double_grazing``, ``degenerate_grazing``, ``resonance_1_1`` or ``resonance_1_2`` (of a
         Neimark-Sacker curve, whose pair turns real), ``closed``, ``points`` (as many as were allowed), ``domain``
         (next to where the system, or its steady response, does not exist), ``rounding`` (the equations are left with
-        fewer than six digits), ``lost``.
+        fewer than nine digits), ``lost``.
     """
 
     type: str

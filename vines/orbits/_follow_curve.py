@@ -14,12 +14,13 @@ from vines.model import Params
 from vines.orbits._arclength import Chord, Walk
 from vines.orbits._branch import Bifurcation
 from vines.orbits._chain_curve import ChainCurve
+from vines.orbits._conditions import TIE
 from vines.orbits._curve import Curve, SpecialPoint
 from vines.orbits._curve_equations import CurveEquations
 from vines.orbits._curve_problem import CurveProblem
 from vines.orbits._joined import is_joint, left_family
 from vines.orbits._problem import Point, ZeroSet
-from vines.orbits._special import END, TIE, Special, special_functions
+from vines.orbits._special import END, Special, special_functions
 
 __all__ = ["follow_curve"]
 
@@ -35,7 +36,7 @@ _ENDS = (END, TIE, "resonance_1_1", "resonance_1_2", "double_grazing", "degenera
 _RANK = 1e-10
 """Least singular value of the equations relative to the largest: below it they do not depend on the parameters."""
 
-_ROUNDING = 1e-6
+_ROUNDING = 1e-9
 """Residual beyond which the equations have lost their digits: next to a resonance they are small differences."""
 
 _SOUND = 1e-11

@@ -14,7 +14,7 @@ from vines.dynamics import Measures
 from vines.dynamics.kernels import after_impact, room_of
 from vines.dynamics.runs import IMPACT
 from vines.html import html_table
-from vines.model import V1, V2, Word
+from vines.model import V1, V2, X2, Word
 
 __all__ = ["Orbit", "short_hash"]
 
@@ -168,8 +168,20 @@ class Orbit:
             The coordinates of the system (x1, v1, x2, v2) and t: arguments of `vines.simulate`.
         """
         (x1, _, x2, _), (v1, v2) = self.states[0].tolist(), self._after()[0].tolist()
-        at = room_of(self.params).leave(self.params, (x1, v1, x2, v2), float(self.phase[0]))
+        at = room_of(self.params).leave(self.params, (x1, v1, x2, v2), float(self.phase[0]), self._balls())
         return {**at, "t": float(self.t[0])}
+
+    def _balls(self) -> list[float]:
+        """Return what a row of an event has behind x1 … v2 where balls have numbers, just after the first impact."""
+        numbers, after, G = np.maximum(self.word.balls, 1), self._after(), getattr(self.params, "G", 0.0)
+        found = [float(numbers[0]), 0.0, 0.0]
+        for ball in range(1, getattr(self.params, "balls", 0) + 1):
+            # Its last impact is that of the repetition before, but of the ball that hits first.
+            k = 0 if numbers[0] == ball else int(np.flatnonzero(numbers == ball)[-1])
+            since = self.t[0] + self.period - self.t[k] if k else 0.0
+            v2 = after[k, 1]
+            found += [float(self.states[k, X2] + since * (v2 - 0.5 * G * since)), float(v2 - G * since)]
+        return found
 
     def __str__(self) -> str:
         kind = [

@@ -9,21 +9,18 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from vines.orbits._conditions import grazing_margin
+from vines.orbits._conditions import TIE, grazing_margin, tie_margin
 from vines.orbits._criticality import branching_curvature
 from vines.orbits._curve_equations import CurveEquations
 from vines.orbits._joined import unfolded
 from vines.orbits._problem import Point
 
-__all__ = ["END", "RESONANCES", "TIE", "Special", "special_functions"]
+__all__ = ["END", "RESONANCES", "Special", "special_functions"]
 
 Multipliers = npt.NDArray[np.complex128]
 
 END = "grazing"
 """The special point at which the orbits of the curve cease to be admissible."""
-
-TIE = "tie"
-"""That at which two balls hit together."""
 
 RESONANCES = {"resonance_1_1": 1.0, "resonance_1_2": -1.0, "resonance_1_3": -0.5, "resonance_1_4": 0.0}
 """Cosine of the angle of the critical pair at the strong resonances."""
@@ -111,11 +108,7 @@ def special_functions(problem: CurveEquations) -> tuple[Special, ...]:
     def small_curvature(point: Point) -> bool:
         return abs(curvature(point)) < 1.0
 
-    def between(point: Point) -> float:
-        return float(np.min(point.orbit.flight_times))
-
-    # Balls whose impacts have changed places are no orbit of the word.
-    ties = (Special(TIE, between, _always),) if any(problem.word.balls) else ()
+    ties = (Special(TIE, tie_margin, _always),) if any(problem.word.balls) else ()
     fold = Special(f"{kind}_fold" if kind == "grazing" else f"fold_{flip}", one, _always)
     if kind == "grazing":
         if not problem.touches:

@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from vines.dynamics import no_ball
 from vines.errors import OrbitNotFound
 from vines.model import X1
 from vines.orbits._branch import Bifurcation
-from vines.orbits._family import GeneralProblem
 from vines.orbits._general import origin, refine
-from vines.orbits._joined import BRANCHING, is_joint, left_family, mirror_image, unfolded
+from vines.orbits._joined import BRANCHING, family_through, is_joint, left_family, mirror_image, unfolded
 from vines.orbits._orbit import Orbit
+from vines.orbits._problem import Problem
 
 __all__ = ["switch_branch"]
 
@@ -63,7 +65,7 @@ def switch_branch(bifurcation: Bifurcation) -> list[Orbit]:
         )
     if is_joint(bifurcation):
         return [left_family(bifurcation)]
-    problem = GeneralProblem(unfolded(bifurcation.type, bifurcation.orbit), bifurcation.parameter, symmetric=False)
+    problem = family_through(unfolded(bifurcation.type, bifurcation.orbit), bifurcation.parameter, symmetric=False)
     for step in _STEPS:
         orbit = _step_off(problem, step)
         if orbit is not None:
@@ -80,7 +82,7 @@ def _pair(orbit: Orbit) -> list[Orbit]:
     return sorted(pair, key=lambda one: float(one.states[:, X1].mean()), reverse=True)
 
 
-def _step_off(problem: GeneralProblem, step: float) -> Orbit | None:
+def _step_off(problem: Problem, step: float) -> Orbit | None:
     """Return the orbit at this distance along the null vector from where the problem starts, or None.
 
     The old family has no component along the null vector that joins it to the new one, so that a prescribed component
@@ -108,6 +110,10 @@ def _step_off(problem: GeneralProblem, step: float) -> Orbit | None:
         orbit = refine(here.word, here.params, here)
     except OrbitNotFound:
         return None
-    # Residuals are sums of parts as large as the steady motion without the ball.
-    allowed = _RESIDUAL * (1.0 + no_ball(orbit.params))
+    allowed = _RESIDUAL * (1.0 + _size(orbit.params))
     return orbit if orbit.residual <= allowed and origin(orbit) is None and not orbit.symmetric else None
+
+
+def _size(p: Any) -> float:
+    """Return the size of the parts of which residuals are sums: the steady motion of the frame without the balls."""
+    return p.B if "x1_no_ball" in p.system.without else no_ball(p)

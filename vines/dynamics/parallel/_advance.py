@@ -9,6 +9,8 @@ from vines.dynamics._advance import (
     EVENT_CAP,
     RELEASE,
     S_CLEAR,
+    S_DECIDE,
+    S_MODE,
     S_PERIOD_START,
     S_PHASE,
     S_T,
@@ -31,6 +33,7 @@ from vines.dynamics._sticking import merges, release_within
 from vines.dynamics.parallel._constants import ParallelConstants, frame_with, riding
 from vines.dynamics.parallel._contacts import first_hits
 from vines.dynamics.parallel._layout import (
+    B_BETA,
     B_DECIDE,
     B_MODE,
     B_RELEASED,
@@ -41,7 +44,7 @@ from vines.dynamics.parallel._layout import (
     B_X2,
     at,
 )
-from vines.dynamics.parallel._rows import modes_of, place_balls, write
+from vines.dynamics.parallel._rows import count_riding, place_balls, write
 from vines.dynamics.parallel._strike import PASSES, strike, strike_alone
 from vines.kernels import entry_njit, fused_njit, linked_njit, loop_njit
 
@@ -60,10 +63,12 @@ def set_balls(c, state, x1, v1, x2, v2, phase, t):
         if abs(w) >= beta - SNAP * (beta + abs(x1) + abs(x2[i])):
             side = 1 if w > 0.0 else -1
         approaching = side * (v1 - v2[i]) > 0.0
+        state[at(i, B_BETA)] = beta
         state[at(i, B_X2)] = x1 - side * beta if side != 0 else x2[i]
         state[at(i, B_V2)] = v2[i]
         state[at(i, B_WALL)] = 0.0 if approaching else side
-        state[at(i, B_DECIDE)] = 0.0 if approaching or side == 0 else 1.0
+        if side != 0 and not approaching:
+            state[at(i, B_DECIDE)] = state[S_DECIDE] = 1.0
 
 
 @begin.register(ParallelConstants)
@@ -90,10 +95,12 @@ def _merge(c, o, motion, modes, state, rows, count):
         for k in range(len(c.mu)):
             if state[at(k, B_MODE)] != 0.0:
                 state[at(k, B_V2)] = common
-        state[at(i, B_X2)] = state[S_X1] - wall * c.beta[i]
+        count_riding(c.mu, state)
+        state[at(i, B_X2)] = state[S_X1] - wall * state[at(i, B_BETA)]
         write(c.mu, rows[count], state, STICK, wall, 0.0, i, v1, v2, 0.0, modes)
         state[at(i, B_RUN)] = 0.0
         return count + 1
+    state[S_DECIDE] = 0.0
     return count
 
 
@@ -107,6 +114,7 @@ def _let_go(c, side, state, tau, rows, count):
             state[at(i, B_MODE)], state[at(i, B_WALL)] = 0.0, side
             # Contact may be lost at once, with a push away from the wall that is not zero.
             state[at(i, B_RELEASED)] = 0.0 if side * j >= 0.0 else 1.0
+    state[S_MODE] = 0.0
     for i in range(len(c.mu)):
         if state[at(i, B_STEP)] == RIDES:
             v1, v2 = state[S_V1], state[at(i, B_V2)]
@@ -127,7 +135,7 @@ def _advance(c, state, stop, cap, rows, first):
     count = first
     # One instant may write this many rows.
     size = rows.shape[0] - (PASSES + 1) * n
-    modes = modes_of(c.mu, state)
+    modes = state[S_MODE]
     o = frame_with(c, modes)
     while True:
         if count >= size:
@@ -135,17 +143,17 @@ def _advance(c, state, stop, cap, rows, first):
         left = (stop - state[S_T]) - state[S_T_LOW]
         if left < 0.0:
             return count, COMPLETE
-        now = modes_of(c.mu, state)
-        if now != modes:
-            modes = now
+        if state[S_MODE] != modes:
+            modes = state[S_MODE]
             o = frame_with(c, modes)
         motion = flight(c, o, state[S_X1], state[S_V1], state[S_PHASE], state[S_T])
-        merged = _merge(c, o, motion, modes, state, rows, count)
-        if merged > count:
-            count = merged
-            if too_many(state, cap, c.period):
-                return count, EVENT_CAP
-            continue
+        if state[S_DECIDE] != 0.0:
+            merged = _merge(c, o, motion, modes, state, rows, count)
+            if merged > count:
+                count = merged
+                if too_many(state, cap, c.period):
+                    return count, EVENT_CAP
+                continue
 
         until = min(left, AFRESH)
         clear = state[S_CLEAR]
@@ -172,22 +180,22 @@ def _advance(c, state, stop, cap, rows, first):
                 return count, COMPLETE
             tau = state[S_CLEAR]
             x, v, _, _, _ = derivatives(o, c.Omega, *flown(c, o, motion, tau))
-        place_balls(c, state, x, v, tau)
+        on_wall = place_balls(c, state, x, v, tau)
         move(c, state, tau)
         state[S_X1], state[S_V1] = x, v
-        if code == CONTACT and modes == 0.0 and tau > 0.0 and hits & (hits - 1) == 0:
+        if code == CONTACT and not on_wall and hits & (hits - 1) == 0:
             i = 0
             while hits > 1:
                 hits >>= 1
                 i += 1
-            state[at(i, B_X2)] = x - state[at(i, B_STEP)] * c.beta[i]
+            state[at(i, B_X2)] = x - state[at(i, B_STEP)] * state[at(i, B_BETA)]
             count = strike_alone(c, state, i, tau, rows, count)
             if too_many(state, cap, c.period):
                 return count, EVENT_CAP
         elif code == CONTACT:
             for i in range(n):
                 if hits & (1 << i):
-                    state[at(i, B_X2)] = x - state[at(i, B_STEP)] * c.beta[i]
+                    state[at(i, B_X2)] = x - state[at(i, B_STEP)] * state[at(i, B_BETA)]
             before = count
             count, whole = strike(c, state, hits, tau, rows, count)
             for _ in range(count - before):

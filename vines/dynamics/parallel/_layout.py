@@ -9,8 +9,9 @@ from __future__ import annotations
 from vines.dynamics._advance import ROW, STATE
 
 __all__ = [
-    "BALL", "BALLS", "BEFORE", "B_DECIDE", "B_FOUND", "B_MODE", "B_RELEASED", "B_RUN", "B_RUN_SIDE", "B_STEP", "B_V2",
-    "B_WALL", "B_X2", "EACH", "R_V2", "R_X2", "S_TIES", "TIES", "at", "row_width", "state_size",
+    "BALL", "BALLS", "BEFORE", "B_BETA", "B_DECIDE", "B_FOUND", "B_MODE", "B_RELEASED", "B_RUN", "B_RUN_SIDE",
+    "B_STEP", "B_V2", "B_WALL", "B_X2", "EACH", "R_V2", "R_X2", "S_NEXT", "S_TIES", "TIES", "at", "row_width",
+    "state_size",
 ]  # fmt: skip
 
 from vines.kernels import fused_njit
@@ -18,12 +19,16 @@ from vines.kernels import fused_njit
 S_TIES = STATE
 """Ties so far: instants at which several balls hit together."""
 
-BALLS = STATE + 1
-B_X2, B_V2, B_MODE, B_WALL, B_RELEASED, B_DECIDE, B_RUN, B_RUN_SIDE, B_STEP, B_FOUND = range(10)
-"""Of each ball: position, velocity, the wall it rides on, the wall just left, whether it was let go there, whether it
-may stick from now on, impacts of the present chatter and their wall; room of the search for contacts."""
+S_NEXT = STATE + 1
+"""The ball that came to a wall first after the last event, had nothing bent its way: where the search begins."""
 
-EACH = 10
+BALLS = STATE + 2
+B_X2, B_V2, B_MODE, B_WALL, B_RELEASED, B_DECIDE, B_RUN, B_RUN_SIDE, B_STEP, B_FOUND, B_BETA = range(11)
+"""Of each ball: position, velocity, the wall it rides on, the wall just left, whether it was let go there, whether it
+may stick from now on, impacts of the present chatter and their wall; room of the search for contacts; half the length
+of its cavity, which stands here too because the element of a tuple is picked by a chain of branches."""
+
+EACH = 11
 
 BALL, TIES, BEFORE = ROW, ROW + 1, ROW + 2
 """Columns: number of the ball, from 1 on; balls that hit together with it, 0 for one alone; MODE before the event."""

@@ -7,7 +7,7 @@ are struck then, all at once, with the velocity that it has given the frame. Tho
 
 from __future__ import annotations
 
-from vines.dynamics._advance import IMPACT, RELEASE, S_IMPACTS, S_V1
+from vines.dynamics._advance import IMPACT, RELEASE, S_DECIDE, S_IMPACTS, S_MODE, S_V1
 from vines.dynamics._impact_law import after_impact_kernel
 from vines.dynamics.parallel._layout import (
     B_DECIDE,
@@ -21,7 +21,7 @@ from vines.dynamics.parallel._layout import (
     S_TIES,
     at,
 )
-from vines.dynamics.parallel._rows import modes_of, write
+from vines.dynamics.parallel._rows import count_riding, write
 from vines.kernels import fused_njit, linked_njit
 
 __all__ = ["PASSES", "strike", "strike_alone"]
@@ -48,7 +48,7 @@ def strike_alone(c, state, i, tau, rows, count):
     state[S_IMPACTS] += 1.0
     _count_hit(state, i, wall)
     state[at(i, B_WALL)] = wall
-    state[at(i, B_DECIDE)] = 1.0
+    state[at(i, B_DECIDE)] = state[S_DECIDE] = 1.0
     write(c.mu, rows[count], state, IMPACT, wall, tau, i, before, v2, 0.0, 0.0)
     return count + 1
 
@@ -79,7 +79,7 @@ def strike(c, state, hits, tau, rows, count):
         if hits & (1 << i):
             state[at(i, B_WALL)] = state[at(i, B_STEP)]
     now = hits
-    modes = modes_of(c.mu, state)
+    modes = state[S_MODE]
     for _ in range(PASSES):
         together = 0
         momentum, mass, only = 0.0, 1.0, 0
@@ -106,7 +106,8 @@ def strike(c, state, hits, tau, rows, count):
                 state[S_IMPACTS] += 1.0
                 _count_hit(state, i, wall)
                 state[at(i, B_MODE)] = 0.0
-                state[at(i, B_DECIDE)] = 1.0
+                count_riding(c.mu, state)
+                state[at(i, B_DECIDE)] = state[S_DECIDE] = 1.0
                 write(c.mu, rows[count], state, IMPACT, wall, tau, i, before, v2, together - 1.0, modes)
                 tau, modes = 0.0, 0.0
                 count += 1
@@ -122,6 +123,9 @@ def strike(c, state, hits, tau, rows, count):
         if wall != 0.0 and wall * (state[S_V1] - state[at(i, B_V2)]) < 0.0:
             # The frame was kicked away from under it.
             state[at(i, B_MODE)] = 0.0
+            # It may have been so little that it rides on.
+            state[at(i, B_DECIDE)] = state[S_DECIDE] = 1.0
+            count_riding(c.mu, state)
             write(c.mu, rows[count], state, RELEASE, wall, 0.0, i, state[S_V1], state[at(i, B_V2)], 0.0, modes)
             count += 1
     return count, now == 0

@@ -11,7 +11,6 @@ import numpy as np
 
 from vines import schema
 from vines.model import PARAMETER_NAMES, START_NAMES
-from vines.pipeline import kind
 from vines.stages.audit._compare import (
     TOLERANCE,
     Comparison,
@@ -20,6 +19,7 @@ from vines.stages.audit._compare import (
     params_of,
     stored_row,
 )
+from vines.stages.audit._systems import base_of, kind_of, start_names
 
 if TYPE_CHECKING:
     from vines.attractors import Attractor
@@ -41,8 +41,7 @@ class PointsAgain:
     @staticmethod
     def can(result: Result) -> bool:
         """Say whether points of this result can be computed again from their rows."""
-        spec = kind(result.manifest["kind"])
-        # for another system the kind is another one, with tables of that system
+        spec = kind_of(result)
         return spec.again == "points" and set(result.tables) <= set(spec.tables)
 
     def compare(self, result: Result, table: str, place: int) -> Comparison:
@@ -55,18 +54,19 @@ class PointsAgain:
         comparison = Comparison()
         primary = _rows_of(result, point, result.tables[0])[0]
         regular = primary.get("regime") is None or (primary["settled"] and primary["regime"] in _REGULAR)
-        if primary.get("status") == "failed" or not (regular or table == "points"):
+        if primary.get("status") == "failed" or not (regular or table == result.tables[0]):
             return comparison
         if key not in self._known:
             stored = {name: _rows_of(result, point, name) for name in result.tables}
             self._known[key] = (stored, _compute(result, primary))
         stored, again = self._known[key]
         if not regular:
-            compare_within_errors(comparison, primary, again["points"][0])
+            compare_within_errors(comparison, primary, again[table][0], names=_given(result, primary))
             return comparison
         # the impacts of other attractors at the point may be chaotic
         ours, theirs = (
-            [row for row in rows[table] if table != "impacts" or not row.get("attractor")] for rows in (stored, again)
+            [row for row in rows[table] if base_of(table) != "impacts" or not row.get("attractor")]
+            for rows in (stored, again)
         )
         comparison.same("number of rows", len(ours), len(theirs))
         for one, other in zip(ours, theirs, strict=False):
@@ -82,6 +82,12 @@ _ROUGH = tuple(
 def _settled(row: dict[str, Any]) -> bool:
     """Whether a row of ``attractors`` is periodic; rows of other tables count as such here."""
     return "fraction" not in row or row["regime"] in _REGULAR
+
+
+def _given(result: Result, row: dict[str, Any]) -> list[str]:
+    """Return the columns of a row of points that are not computed: its parameters and its start."""
+    parameters = [name for name in kind_of(result).parameters if row.get(name) is not None]
+    return [*parameters, *start_names(row)]
 
 
 def _rows_of(result: Result, point: str, table: str) -> list[dict[str, Any]]:
@@ -100,7 +106,7 @@ def _compute(result: Result, row: dict[str, Any]) -> dict[str, list[dict[str, An
     from vines.store import Ids
 
     form: Any = result.manifest["ingredients"]
-    spec = kind(form["kind"])
+    spec = kind_of(result)
     names = [*(axis[0] for axis in form["vary"]), *form.get("link", ())]
     varied = {name: np.array([row[name]]) for name in names}
     fixed = {name: form["params"].get(name, 0.0) for name in spec.parameters}
@@ -110,7 +116,7 @@ def _compute(result: Result, row: dict[str, Any]) -> dict[str, list[dict[str, An
             options=msgspec.convert(form["options"], spec.options),
             points=Points(fixed, varied, Ids.of([row["point_id"]])),
             carry=carry,
-            start={f"end_{name}": row[name] for name in START_NAMES} if carry is not None else None,
+            start={f"end_{name}": row[name] for name in start_names(row)} if carry is not None else None,
             folder=Path(folder),
             provenance=result.manifest["provenance"],
         )

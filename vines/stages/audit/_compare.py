@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from vines import schema
-from vines.model import PARAMETER_NAMES, START_NAMES, Params
+from vines.model import PARAMETER_NAMES, Params
 
 __all__ = ["TOLERANCE", "Comparison", "compare_rows", "compare_within_errors", "params_of", "stored_row"]
 
@@ -92,16 +92,20 @@ def compare_rows(
             comparison.same(name, list(a) if isinstance(a, list) else a, list(b) if isinstance(b, list) else b)
 
 
-def compare_within_errors(comparison: Comparison, stored: Mapping[str, Any], again: Mapping[str, Any]) -> None:
-    """Compare rows of points that are not periodic: regime and parameters, and the measures within their errors.
+def compare_within_errors(
+    comparison: Comparison, stored: Mapping[str, Any], again: Mapping[str, Any], *, names: Collection[str]
+) -> None:
+    """Compare rows of points that are not periodic: regime, the columns `names`, and the measures within their errors.
 
     Both rows are samples of the motion, so four standard errors are those of their difference.
     """
-    for name in (*PARAMETER_NAMES, *START_NAMES):
+    for name in names:
         comparison.number(name, stored[name], again[name], TOLERANCE * (1 + abs(stored[name] or 0.0)))
     for name in ("regime", "settled", "status"):
         comparison.same(name, stored[name], again[name])
     for name in ("kinetic_ratio", "max_abs_x1", "rms_x1", "lyapunov"):
+        if f"{name}_error" not in stored:
+            continue  # what is shaken has no displacement of its own
         errors = [math.nan if row[f"{name}_error"] is None else row[f"{name}_error"] for row in (stored, again)]
         allowed = _ERRORS * math.hypot(*errors) if all(map(math.isfinite, errors)) else 0.0
         comparison.number(name, stored[name], again[name], max(allowed, TOLERANCE * (1 + abs(stored[name] or 0.0))))

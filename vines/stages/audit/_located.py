@@ -11,9 +11,10 @@ import numpy as np
 import numpy.typing as npt
 
 from vines.errors import OrbitNotFound, ParameterError
-from vines.model import Params, Word
+from vines.model import Word
 from vines.orbits import Bifurcation, Orbit, all_orbits, continue_orbit, find_orbit
-from vines.stages.audit._compare import TOLERANCE, Comparison, params_of, stored_row
+from vines.stages.audit._compare import TOLERANCE, Comparison, stored_row
+from vines.stages.audit._systems import parameters_of_row, system_of
 
 if TYPE_CHECKING:
     from vines.store import Result
@@ -24,11 +25,12 @@ _BESIDE = (1e-3, 1e-4, 1e-5)
 """Distances of the orbit that is followed from the bifurcation, relative to the value of the parameter."""
 
 
-def locate_again(result: Result, place: int) -> Comparison:
-    """Locate the bifurcation of a row of ``bifurcations`` again and compare where it lies."""
-    row = stored_row(result, "bifurcations", place)
+def locate_again(result: Result, table: str, place: int) -> Comparison:
+    """Locate the bifurcation of a row of a table of bifurcations again and compare where it lies."""
+    row = stored_row(result, table, place)
+    p = parameters_of_row(system_of(result), row)
     comparison = Comparison()
-    nearest = min(_met(row), key=lambda found: abs(found.value - row["value"]), default=None)
+    nearest = min(_met(row, p), key=lambda found: abs(found.value - row["value"]), default=None)
     if nearest is None:
         comparison.same(f"{row['type']} at {row['parameter']} = {row['value']:.10g}", "there", "not met again")
         return comparison
@@ -36,10 +38,10 @@ def locate_again(result: Result, place: int) -> Comparison:
     return comparison
 
 
-def _met(row: dict[str, Any]) -> Iterator[Bifurcation]:
+def _met(row: dict[str, Any], p: Any) -> Iterator[Bifurcation]:
     """Yield the bifurcations and events of the type of the row that branches through the place meet."""
-    word, p, parameter = Word(row["word"]), params_of(row), row["parameter"]
-    times = np.array(row["t"]) + row["phase"][0] / p.Omega
+    word, parameter = Word(row["word"]), row["parameter"]
+    times = np.array(row["t"]) + row["phase"][0] / getattr(p, "Omega", 1.0)
     for distance in _BESIDE:
         delta = distance * max(abs(row["value"]), 1e-3)
         for sign in (-1.0, 1.0):
@@ -57,7 +59,7 @@ def _met(row: dict[str, Any]) -> Iterator[Bifurcation]:
                 return
 
 
-def _beside(word: Word, p: Params, times: npt.NDArray[np.float64], distance: float) -> Orbit:
+def _beside(word: Word, p: Any, times: npt.NDArray[np.float64], distance: float) -> Orbit:
     """Return the orbit next to given impact times.
 
     At a fold Newton's method has no derivative to go by, and the orbit beside it is the square root of the distance

@@ -13,6 +13,13 @@ from vines.model import PARAMETER_NAMES
 from vines.pipeline import kinds
 from vines.stages.audit._bifurcations import bifurcation_defects, branch_defects, curve_defects
 from vines.stages.audit._defect import Defect
+from vines.stages.audit._family import (
+    family_curve_defects,
+    family_impact_defects,
+    family_orbit_defects,
+    family_point_defects,
+    family_transient_defects,
+)
 from vines.stages.audit._files import check_table
 from vines.stages.audit._impacts import POINT_COLUMNS, impact_defects, motion_defects
 from vines.stages.audit._orbits import orbit_defects
@@ -20,6 +27,7 @@ from vines.stages.audit._others import basin_defects, check_defects, optimum_def
 from vines.stages.audit._points import attractor_defects, point_defects
 from vines.stages.audit._rig import comparison_defects, cycle_defects, reconstruction_defects, rig_impact_defects
 from vines.stages.audit._rows import Rows
+from vines.stages.audit._systems import base_of
 
 if TYPE_CHECKING:
     import pyarrow as pa
@@ -27,7 +35,7 @@ if TYPE_CHECKING:
     from vines.stages.audit._ledger import Ledger
     from vines.store import Result
 
-__all__ = ["check_physics", "describe_row"]
+__all__ = ["check_physics", "defects", "describe_row"]
 
 _CHECKS: dict[str, Callable[[Rows], Iterator[Defect]]] = {
     "attractors": attractor_defects,
@@ -46,6 +54,14 @@ _CHECKS: dict[str, Callable[[Rows], Iterator[Defect]]] = {
     "rig_cycles": cycle_defects,
     "rig_impacts": rig_impact_defects,
 }
+_OF_SYSTEMS: dict[str, Callable[[str, Rows], Iterator[Defect]]] = {
+    "curves": family_curve_defects,
+    "impacts": family_impact_defects,
+    "orbits": family_orbit_defects,
+    "points": family_point_defects,
+    "transients": family_transient_defects,
+}
+"""Of the tables that each system beside the VI-NES has of its own, as the VI-NES calls them."""
 _WHOLE = ("basins",)
 """Tables that are checked as a whole: their rows share a sum."""
 
@@ -73,7 +89,7 @@ def check_physics(ledger: Ledger, where: str, result: Result, name: str) -> None
         rows = Rows(table)
         _note(ledger, where, name, _fixed(rows, result), rows, start)
         with np.errstate(all="ignore"):  # rows that were tampered with may hold anything
-            for defect in _CHECKS.get(name, _nothing)(rows):
+            for defect in defects(name, rows):
                 _note(ledger, where, name, defect, rows, start)
             if motion is not None:
                 for defect, places in motion.defects(rows):
@@ -88,9 +104,12 @@ def describe_row(table: pa.Table, place: int) -> str:
     return ", ".join([*told, f"point_id {row['point_id']}"])
 
 
-def _nothing(rows: Rows) -> Iterator[Defect]:
-    del rows
-    return iter(())
+def defects(name: str, rows: Rows) -> Iterator[Defect]:
+    """Return the checks of rows of a table, those of its system where that has it for its own."""
+    if name in _CHECKS:
+        return _CHECKS[name](rows)
+    base = base_of(name)
+    return _OF_SYSTEMS[base](name, rows) if base != name and base in _OF_SYSTEMS else iter(())
 
 
 def _note(

@@ -13,6 +13,7 @@ from vines.pipeline import CodeDigests, kind
 from vines.stages.audit._again import PointsAgain, start_again
 from vines.stages.audit._located import locate_again
 from vines.stages.audit._resolved import resolve_again
+from vines.stages.audit._systems import base_of, kind_of
 from vines.stages.kinds._register import register_kinds
 
 if TYPE_CHECKING:
@@ -31,6 +32,7 @@ _SAYS = {
     "reduced": "to 1e-9",
     "orbits": "solved from a disturbed state, to 1e-9, and flown by the simulator",
     "bifurcations": "located again from beside it, to 1e-9",
+    "transients": "with their point: to 1e-9",
     "basins": "each start comes to the attractor of its cell",
 }
 _OTHERS = "with their point: to 1e-9"
@@ -82,7 +84,7 @@ def recompute_rows(
     points, codes = PointsAgain(), CodeDigests(None)
     for table, share in _shares({name: sum(s.rows for s in found) for name, found in sources.items()}, count).items():
         say(f"computing {share} rows of {table} again")
-        line = ledger.line("recomputed", table, _SAYS.get(table, _OTHERS), "rows", 1.0)
+        line = ledger.line("recomputed", table, _SAYS.get(base_of(table), _OTHERS), "rows", 1.0)
         for source, place in _draw(sources[table], _REDRAWN * share, rng):
             if line.checked == share:
                 break
@@ -105,12 +107,12 @@ def recompute_rows(
 
 def _same_code(result: Result, codes: CodeDigests) -> bool:
     """Say whether the result was computed by the sources that are here now."""
-    return codes.digest(kind(result.manifest["kind"]).body) == result.manifest["provenance"]["code"]
+    return codes.digest(kind_of(result).body) == result.manifest["provenance"]["code"]
 
 
 def _can(result: Result, table: str) -> bool:
     """Say whether a row of the table has what is needed to compute it again."""
-    return table in ("orbits", "bifurcations") or _from_starts(result, table) or PointsAgain.can(result)
+    return base_of(table) in ("orbits", "bifurcations") or _from_starts(result, table) or PointsAgain.can(result)
 
 
 def _from_starts(result: Result, table: str) -> bool:
@@ -120,15 +122,16 @@ def _from_starts(result: Result, table: str) -> bool:
 
 def _again(source: _Source, place: int, points: PointsAgain, rng: np.random.Generator) -> Comparison:
     """Compute a row again and compare it with the stored one."""
-    match source.table:
+    table = source.table
+    match base_of(table):
         case "orbits":
-            return resolve_again(source.result, place, rng)
+            return resolve_again(source.result, table, place, rng)
         case "bifurcations":
-            return locate_again(source.result, place)
-        case table if _from_starts(source.result, table):
-            return start_again(source.result, source.table, place)
+            return locate_again(source.result, table, place)
+        case _ if _from_starts(source.result, table):
+            return start_again(source.result, table, place)
         case _:
-            return points.compare(source.result, source.table, place)
+            return points.compare(source.result, table, place)
 
 
 def _shares(rows: dict[str, int], count: int) -> dict[str, int]:

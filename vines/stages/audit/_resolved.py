@@ -4,17 +4,21 @@ from __future__ import annotations
 
 import contextlib
 import math
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
 
 from vines.dynamics import simulate
 from vines.errors import OrbitNotFound
-from vines.model import STATE_NAMES, Params, Word
+from vines.model import STATE_NAMES, VI_NES, Word
 from vines.orbits import Orbit, find_orbit, orbit_row
-from vines.stages.audit._compare import TOLERANCE, Comparison, compare_rows, params_of, stored_row
+from vines.schema import system_table
+from vines.stages.audit._compare import TOLERANCE, Comparison, compare_rows, stored_row
 from vines.stages.audit._located import locate_again
+from vines.stages.audit._systems import parameters_of_row, system_of
+from vines.stages.bodies._family_rows import family_orbit
+from vines.stages.kinds._family import HarvestLaw
 
 if TYPE_CHECKING:
     from vines.store import Result
@@ -32,18 +36,19 @@ _MULTIPLIERS = ("multipliers_re", "multipliers_im", "max_multiplier", "stable")
 _NAMES = ("point_id", "orbit_id", "branch_id", "violation_time")
 
 
-def resolve_again(result: Result, place: int, rng: np.random.Generator) -> Comparison:
-    """Solve the orbit of a row of ``orbits`` again and compare everything that is stored of it.
+def resolve_again(result: Result, table: str, place: int, rng: np.random.Generator) -> Comparison:
+    """Solve the orbit of a row of a table of orbits again and compare everything that is stored of it.
 
     Near a bifurcation the solution is as sensitive as the multiplier is near 1, and what is allowed grows with that.
     Multipliers are compared by the coefficients of their polynomial, which are smooth where two of them meet. At a fold
     two orbits meet and none is isolated at these parameters: its row is located again, as the bifurcation that it is.
     """
-    row = stored_row(result, "orbits", place)
+    row, system = stored_row(result, table, place), system_of(result)
     if min(math.hypot(a - 1, b) for a, b in zip(row["multipliers_re"], row["multipliers_im"], strict=True)) < _FOLD:
-        places = _bifurcations_of(result, row["orbit_id"])
-        return locate_again(result, places[0]) if places else Comparison()
-    word, p = Word(row["word"]), params_of(row)
+        others = system_table(system, "bifurcations")
+        places = _bifurcations_of(result, others, row["orbit_id"])
+        return locate_again(result, others, places[0]) if places else Comparison()
+    word, p = Word(row["word"]), parameters_of_row(system, row)
     t = np.array(row["t"])
     scale = _DISTURBED * word.p * p.period
     # The relative times are disturbed by less than a tenth of the shortest flight, so that their order stays.
@@ -54,7 +59,8 @@ def resolve_again(result: Result, place: int, rng: np.random.Generator) -> Compa
     finite = bool(np.isfinite(m).all())
     nearest = float(np.abs(m - 1).min()) if finite else 0.0
     allowed = max(TOLERANCE, _ROUNDING / max(nearest, 1e-10))
-    compare_rows(comparison, "orbits", row, orbit_row(orbit), leave=(*_MULTIPLIERS, *_NAMES), tolerance=allowed)
+    again = orbit_row(orbit) if system == VI_NES.name else family_orbit(orbit, None, _law(result))
+    compare_rows(comparison, table, row, again, leave=(*_MULTIPLIERS, *_NAMES), tolerance=allowed)
     if finite and np.abs(m).max() < _UNSTABLE:
         one, other = np.poly(m), np.poly(orbit.multipliers)
         largest = float(np.abs(one).max())
@@ -65,15 +71,23 @@ def resolve_again(result: Result, place: int, rng: np.random.Generator) -> Compa
     return comparison
 
 
-def _bifurcations_of(result: Result, orbit_id: str) -> list[int]:
-    """Return the rows of ``bifurcations`` that are this orbit."""
-    if "bifurcations" not in result.tables:
+def _law(result: Result) -> HarvestLaw | None:
+    """Return what the result declares that impacts yield."""
+    import msgspec
+
+    declared = result.manifest["ingredients"]["options"].get("harvest")
+    return None if declared is None else msgspec.convert(declared, HarvestLaw)
+
+
+def _bifurcations_of(result: Result, table: str, orbit_id: str) -> list[int]:
+    """Return the rows of the table of bifurcations that are this orbit."""
+    if table not in result.tables:
         return []
-    ids = result.table("bifurcations").column("orbit_id").to_pylist()
+    ids = result.table(table).column("orbit_id").to_pylist()
     return [place for place, each in enumerate(ids) if each == orbit_id]
 
 
-def _solve(word: Word, p: Params, t: npt.NDArray[np.float64], disturbance: npt.NDArray[np.float64]) -> Orbit:
+def _solve(word: Word, p: Any, t: npt.NDArray[np.float64], disturbance: npt.NDArray[np.float64]) -> Orbit:
     """Solve for the orbit; where Newton's method all but stalls, next to a bifurcation, from a smaller disturbance."""
     for part in (1.0, 1e-2, 1e-4):
         with contextlib.suppress(OrbitNotFound):
@@ -83,17 +97,8 @@ def _solve(word: Word, p: Params, t: npt.NDArray[np.float64], disturbance: npt.N
 
 def _fly(comparison: Comparison, orbit: Orbit) -> None:
     """Compare the impacts of the orbit with those that the simulator meets in a period from the first one."""
-    start = orbit.start()
-    p = orbit.params
-    run = simulate(
-        p,
-        x1=start["x1"],
-        v1=start["v1"],
-        x2=start["x2"],
-        v2=start["v2"],
-        t=start["t"],
-        periods=orbit.word.p * (1 + 1e-9),
-    )
+    start: dict[str, Any] = orbit.start()
+    run = simulate(orbit.params, **start, periods=orbit.word.p * (1 + 1e-9))
     met = run.impacts[: len(orbit.t)]
     comparison.same("number of impacts in the simulator", len(orbit.t), len(met))
     if len(met) != len(orbit.t):

@@ -115,7 +115,7 @@ def of_systems(
             check=_check,
             code=_code,
             kernels=(),
-            again="",
+            again=kind.again if kind.again == "points" else "",
             systems={},
             system=system,
             balls=balls,

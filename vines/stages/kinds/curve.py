@@ -35,11 +35,7 @@ class CurveOptions(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 
 class FamilyCurveOptions(CurveOptions, frozen=True, forbid_unknown_fields=True, kw_only=True):
-    """Every curve of one type of bifurcation of a word in the plane of the two varied parameters.
-
-    The bifurcations are found on the families of the word along the first parameter, at `lines` values of the second
-    and from `seeds` values of the first.
-    """
+    """Every curve of one type of bifurcation of a word in the plane of the two varied parameters, as of the VI-NES."""
 
     system: str
 

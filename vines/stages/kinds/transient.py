@@ -45,6 +45,7 @@ _VI_NES = Kind(
     vary="grid",
     check=_check,
     kernels=("one_run", "runs"),
+    again="points",
     meaningless={"impact_pair": "its capsule moves as it is driven, so nothing decays"},
 )
 
