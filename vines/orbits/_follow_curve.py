@@ -39,8 +39,11 @@ _RANK = 1e-10
 _ROUNDING = 1e-9
 """Residual beyond which the equations have lost their digits: next to a resonance they are small differences."""
 
-_SOUND = 1e-11
-"""Residual up to which a point is taken next to one at which the equations fail."""
+_NEAREST = 1e-3
+"""Margin at which a curve ends if its equations fail at zero: M grows as its inverse, and loses digits."""
+
+_FINE = 1e-8
+"""Of that point, as a fraction of the step in which it lies."""
 
 _FIRST = 4
 """Points before which a curve is not looked at for having closed."""
@@ -251,16 +254,15 @@ class _Way:
         That is so where an impact loses its speed: M is infinite there.
         """
         chord = Chord(self.zero, here, there)
+        sign = math.copysign(1.0, function(here))
         low, high = 0.0, 1.0
-        while high - low > _TOLERANCE:
+        while high - low > _FINE:
             middle = 0.5 * (low + high)
             try:
-                point = chord.point(middle)
+                inside = sign * function(chord.point(middle)) > _NEAREST
             except OrbitNotFound:
-                break
-            if not np.abs(self.problem.residual(point.y)).max() < _SOUND:
-                break
-            low, high = (middle, high) if (function(point) > 0) == (function(here) > 0) else (low, middle)
+                inside = False
+            low, high = (middle, high) if inside else (low, middle)
         return low, chord.point(low)
 
     def _cusp(self, here: Point, there: Point) -> tuple[float, str, Point] | None:

@@ -72,13 +72,13 @@ def _between(low: float, high: float, count: int) -> list[float]:
     return [low + (high - low) * share for share in shares]
 
 
-def _bifurcations(
-    options: CurveOptions, p: Any, parameter: str, within: tuple[float, float]
-) -> Iterator[Bifurcation]:
+def _bifurcations(options: CurveOptions, p: Any, parameter: str, within: tuple[float, float]) -> Iterator[Bifurcation]:
     word = own_word(options.word, p)
     # Inside the range, since a curve does not begin at its border.
     seeds = np.linspace(*within, options.seeds + 2)[1:-1].tolist()
-    for branch in follow_families(options.word, p, parameter, within, seeds=seeds, depth=1):
+    # Of what comes out of a family only what has broken its symmetry has the same word.
+    depth = 1 if word.symmetric and p.mirrored else 0
+    for branch in follow_families(options.word, p, parameter, within, seeds=seeds, depth=depth):
         if branch.word == word:
             yield from (found for found in branch.bifurcations if found.type == options.type)
 
