@@ -154,11 +154,14 @@ def test_a_doubling_curve_meets_a_fold_curve_and_ends_at_grazing(found):
     [flip] = grazing.special
     assert flip.type == "grazing_flip"
     assert abs(flip.orbit.multipliers + 1).min() < 1e-7
+    # Where its weak impact loses its speed the fold of 2:1 ends, on the grazing of 1:1.
     fold = follow_curve(found["LLR fold"], ("mu", "r"), box=box)
     [corner] = fold.special
-    assert corner.type == "fold_flip"
-    assert abs(corner.orbit.multipliers + 1).min() < 1e-6
-    assert abs(corner.orbit.multipliers - 1).min() < 1e-6
+    assert corner.type == "grazing"
+    assert "grazing" in fold.ends
+    assert 0 < min(corner.orbit.side * corner.orbit.w_dot) < 1.01e-3
+    assert all(orbit.admissible for orbit in fold.orbits)
+    assert np.hypot(*(grazing.values - corner.values).T).min() < 0.01
 
 
 def test_a_curve_can_begin_where_the_family_ends_that_came_out(found):
@@ -194,3 +197,37 @@ def test_bad_calls_are_refused_in_one_line(found, parameters, box, options, said
     with pytest.raises(ParameterError, match=said) as caught:
         follow_curve(found["LLR fold"], parameters, box=box, **options)
     assert "\n" not in str(caught.value)
+
+
+WIDE = {"A": (1e-4, 2.0), "mu": (1e-6, 2.0), "Omega": (0.05, 4.0), "r": (0.0, 1.0), "lam": (0.0, 1.999)}
+"""All of the domain but what is out of any use."""
+
+
+@pytest.mark.parametrize(
+    "name", ["LR symmetric fold", "LR symmetric grazing", "LR period_doubling", "LLR neimark_sacker"]
+)
+@pytest.mark.parametrize("names", [("A", "lam"), ("mu", "lam"), ("lam", "r"), ("A", "r"), ("Omega", "lam")])
+def test_a_curve_ends_at_the_border_of_the_domain_and_keeps_its_points(found, name, names):
+    curve = follow_curve(found[name], names, box={each: WIDE[each] for each in names}, max_points=120)
+    assert len(curve.orbits) > 5
+    assert curve.residuals.max() < 1e-6
+    low, high = zip(*(WIDE[each] for each in names), strict=True)
+    assert ((curve.values >= low) & (curve.values <= high)).all()
+    assert "lost" not in curve.ends
+
+
+def test_the_grazing_over_damping_of_the_report_is_followed():
+    p = Params(mu=0.01, A=0.09, lam=0.02)
+    [end] = continue_orbit(find_orbit("LR", p), "A", 0.12).bifurcations
+    assert end.value == pytest.approx(0.1020379, abs=1e-7)
+    curve = follow_curve(end, ("A", "lam"), box={"A": (0.01, 1.0), "lam": (0.0, 0.2)})
+    assert "box" in curve.ends
+    assert curve.residuals.max() < 1e-6
+    assert np.ptp(curve.values[:, 1]) > 0.15
+
+
+@pytest.mark.parametrize(("parameter", "stop"), [("r", 1.0), ("r", 0.3), ("lam", 1.9), ("mu", 1e-9), ("Omega", 2.0)])
+def test_a_branch_goes_to_the_border_of_what_a_parameter_may_be(parameter, stop):
+    branch = continue_orbit(find_orbit("LR", P), parameter, stop)
+    assert branch.ends[1] in ("range", "grazing")
+    assert len(branch.orbits) > 3

@@ -1,4 +1,4 @@
-"""Curves of systems beside the VI-NES in pipelines, and the chart of the harvester: as it is shipped, with fewer points."""
+"""Curves of systems beside the VI-NES in pipelines, and the chart of the harvester on fewer points."""
 
 import math
 import re
@@ -10,8 +10,10 @@ import vines
 from tests.project import REPOSITORY
 from vines.errors import VinesError
 from vines.orbits import find_orbit
-from vines.stages import load_pipeline, run
+from vines.stages import load_pipeline, run, verify
 from vines.systems import Harvest, ImpactPair
+
+pytestmark = pytest.mark.long(20)
 
 BALLS = """
 title = "balls"
@@ -27,6 +29,19 @@ seeds = 2
 step = 0.2
 vary.A = { from = 0.017, to = 0.019 }
 vary.beta_1 = { from = 0.99, to = 1.01 }
+"""
+LEVEL = """
+title = "level"
+system = "impact_pair"
+[stages.doubling]
+kind = "curve"
+word = "LR"
+type = "period_doubling"
+lines = 1
+seeds = 3
+step = 0.1
+vary.B = { from = 0.6, to = 1.1 }
+vary.r = { from = 0.49, to = 0.51 }
 """
 
 
@@ -48,6 +63,7 @@ def root(tmp_path_factory):
     text = re.sub(r"needs = \[.*?\]", 'needs = ["map", "doubling", "one_zero_fold"]', text, flags=re.DOTALL)
     (made / "pipelines" / "harvester.toml").write_text(text)
     (made / "pipelines" / "balls.toml").write_text(BALLS)
+    (made / "pipelines" / "level.toml").write_text(LEVEL)
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("VINES_ROOT", str(made))
         yield made
@@ -63,7 +79,6 @@ def rows(table, where):
     return vines.query(f"select * from {table} where {where}").to_pylist()
 
 
-@pytest.mark.long(60)
 def test_curves_are_in_the_tables_of_the_system(harvester):
     points = rows("impact_pair_curves", "stage = 'one_zero_fold' and special is null order by point")
     # at the other end the bounces reach the upper end
@@ -88,6 +103,21 @@ def test_points_are_the_orbits_that_the_map_names(harvester):
         assert orbit.stable
         power = law.energy(orbit.w_dot).sum() / orbit.period
         assert row["harvested_left"] + row["harvested_right"] == pytest.approx(power, rel=1e-8)
+
+
+def test_a_level_pair_doubles_where_the_tilted_one_does_without_tilt(harvester):
+    # the level one by way of the symmetric orbit and what breaks its symmetry
+    run("level")
+    level = rows("impact_pair_curves", "pipeline = 'level' and special is null order by r")
+    tilted = rows("impact_pair_curves", "stage = 'doubling' and pipeline = 'harvester' and G = 0 and special is null")
+    B = np.interp(0.5, [row["r"] for row in level], [row["B"] for row in level])
+    assert min(abs(row["B"] - B) for row in tilted) < 1e-4
+
+
+def test_verify_holds_what_is_stored(harvester):
+    found = verify("harvester")
+    assert found.good, [line.first for line in found.lines if line.first]
+    assert {"critical multiplier", "multiplier product", "energy balance"} <= {line.name for line in found.lines}
 
 
 def test_the_figure_is_drawn_with_the_curves_on_it(harvester):

@@ -3,7 +3,8 @@
 from vines.attractors._alike import SAME, Motion, apart
 from vines.attractors._attractor import Attractor
 from vines.attractors._basins import Basins, basins
-from vines.attractors._classify import Classified, classify_many
+from vines.attractors._classified import Classified
+from vines.attractors._classify import classify_many
 from vines.attractors._search import Lifetime
 from vines.attractors._settle import APART, settle, settle_from
 from vines.attractors._shares import share_error

@@ -3,18 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
-from functools import cached_property
+from typing import Any, TypeGuard, cast
 
 import numpy as np
 import numpy.typing as npt
 
 from vines.attractors import _verdict as v
-from vines.attractors._attractor import Attractor
+from vines.attractors._classified import NO_IMPACTS, Classified
+from vines.attractors._classify_family import classify_family
 from vines.attractors._look import look_at_block
-from vines.attractors._naming import attractor_from, word_of
+from vines.attractors._naming import word_of
 from vines.attractors._patience import Patience
-from vines.attractors._settle import NUDGE, ROUNDS
+from vines.attractors._settle import APART, NUDGE, ROUNDS
 from vines.attractors._staying import note_conserving, watch_on
 from vines.attractors._waiting import next_wait
 from vines.domains import Whole, stated
@@ -24,7 +24,6 @@ from vines.dynamics.kernels import rows as col
 from vines.dynamics.kernels import totals as entry
 from vines.dynamics.runs import (
     EVENTS_PER_PERIOD,
-    STATUS_NAMES,
     each_thread,
     impacts_of,
     measures_of,
@@ -32,7 +31,7 @@ from vines.dynamics.runs import (
     start_table,
     threads_allowed,
 )
-from vines.model import DAMPING, FREQUENCY, MASS, PARAMETER_NAMES, RESTITUTION, START_NAMES, Params
+from vines.model import DAMPING, FREQUENCY, MASS, PARAMETER_NAMES, RESTITUTION, START_NAMES, Parameters, Params
 
 __all__ = ["Classified", "classify_many"]
 
@@ -45,155 +44,10 @@ STAGES = (4.0, 16.0)
 BLOCK = 512
 """Most runs in one call of the kernel; a thread takes one block after the other."""
 
-_NO_IMPACTS = impacts_of(np.empty((0, col.ROW)))
-
-
-@dataclass(frozen=True)
-class Classified:
-    """What many runs settled to; row k of every array belongs to run k. `attractor` gives one as an `Attractor`.
-
-    Attributes
-    ----------
-    parameters : ndarray, shape (n, 5)
-        mu, A, Omega, r, lam.
-    starts : ndarray, shape (n, 5)
-        x1, v1, x2, v2 and phase [rad].
-    words : ndarray of object, shape (n,)
-        `Word` of the contacts of one repetition, None where the run is not periodic.
-    verdicts : ndarray, shape (n, VERDICT)
-        The numbers behind everything else, as the kernels wrote them.
-    totals : ndarray, shape (n, TOTALS)
-        Totals of the window that the measures are taken over.
-    hits : list of structured ndarray, or None
-        Recorded impacts of each run, as `Attractor.impacts`, where they were asked for.
-    """
-
-    parameters: Floats
-    starts: Floats
-    words: npt.NDArray[np.object_]
-    verdicts: Floats = field(repr=False)
-    totals: Floats = field(repr=False)
-    hits: list[npt.NDArray[np.void]] | None = field(default=None, repr=False)
-
-    def __len__(self) -> int:
-        return len(self.verdicts)
-
-    def attractor(self, k: int) -> Attractor:
-        """Return run k as `settle` would: one object with names for everything."""
-        p = Params(**dict(zip(PARAMETER_NAMES, self.parameters[k].tolist(), strict=True)))
-        hits = _NO_IMPACTS if self.hits is None else self.hits[k]
-        return attractor_from(p, self.verdicts[k], self.totals[k], self.words[k], hits, 0.0, True)
-
-    def _whole(self, column: int) -> npt.NDArray[np.int64]:
-        return self.verdicts[:, column].astype(np.int64)
-
-    @property
-    def regime(self) -> npt.NDArray[np.str_]:
-        """``periodic``, ``quasiperiodic``, ``chaotic``, ``no_impact`` or ``unsettled``."""
-        return np.array(v.REGIMES)[self._whole(v.REGIME)]
-
-    @property
-    def settled(self) -> npt.NDArray[np.bool_]:
-        """Whether the run reached its attractor."""
-        return self.verdicts[:, v.SETTLED] > 0
-
-    @property
-    def n(self) -> npt.NDArray[np.int64]:
-        """Contacts on L in p forcing periods, 0 where the run is not periodic."""
-        return self._whole(v.LEFT)
-
-    @property
-    def m(self) -> npt.NDArray[np.int64]:
-        """Contacts on R in p forcing periods, 0 where the run is not periodic."""
-        return self._whole(v.RIGHT)
-
-    @property
-    def p(self) -> npt.NDArray[np.int64]:
-        """Smallest number of forcing periods after which the run repeats, 0 where it does not."""
-        return self._whole(v.P)
-
-    @property
-    def name(self) -> npt.NDArray[np.object_]:
-        """Type n:m/pT, None where the run is not periodic."""
-        return np.array([word.name if word else None for word in self.words], dtype=object)
-
-    @property
-    def symmetric(self) -> npt.NDArray[np.bool_]:
-        """Whether a periodic run is its own mirror image."""
-        return self.verdicts[:, v.SYMMETRIC] > 0
-
-    @cached_property
-    def measures(self) -> npt.NDArray[np.void]:
-        """Energy measures as `Ensemble.measures`: over one repetition if periodic, else over the recorded window."""
-        return measures_of(self.parameters[:, MASS], self.totals)
-
-    @property
-    def errors(self) -> Floats:
-        """Standard errors of K2/K1, of the largest |x1| and of rms x1, shape (n, 3), as those of an `Attractor`."""
-        return self.verdicts[:, [v.KINETIC_RATIO_ERROR, v.MAX_ABS_X1_ERROR, v.RMS_X1_ERROR]]
-
-    @property
-    def sticks(self) -> Floats:
-        """Spells of sticking per forcing period."""
-        sticks = self.totals[:, entry.STICKS_LEFT] + self.totals[:, entry.STICKS_RIGHT]
-        with np.errstate(invalid="ignore", divide="ignore"):
-            return sticks * (2.0 * np.pi / self.parameters[:, FREQUENCY]) / self.totals[:, entry.DURATION]
-
-    @property
-    def sticking_share(self) -> Floats:
-        """Share of the forcing periods in which the ball sticks for a while."""
-        return self.verdicts[:, v.STICKING]
-
-    @property
-    def recurrent_sticking(self) -> npt.NDArray[np.bool_]:
-        """Whether sticking recurs: see `Attractor`."""
-        return (self.sticking_share >= v.RECURS) | ((self.p > 0) & (self.sticking_share > 0))
-
-    @property
-    def lyapunov(self) -> Floats:
-        """Largest Lyapunov exponent per unit of time; nan where the run is not settled and none was needed."""
-        return self.verdicts[:, v.EXPONENTS]
-
-    @property
-    def lyapunov_error(self) -> Floats:
-        """Standard error of `lyapunov`, 0 where the run is periodic."""
-        return self.verdicts[:, v.LYAPUNOV_ERROR]
-
-    @property
-    def remaining(self) -> Floats:
-        """Estimated forcing periods still needed where the run is not settled."""
-        return self.verdicts[:, v.REMAINING]
-
-    @property
-    def transient(self) -> Floats:
-        """Forcing periods run before the recording."""
-        return self.verdicts[:, v.PERIODS]
-
-    @property
-    def watched(self) -> Floats:
-        """Forcing periods over which a motion that never repeated was seen to last, 0 where it was not watched."""
-        return self.verdicts[:, v.WATCHED]
-
-    @property
-    def final(self) -> Floats:
-        """State at the end, shape (n, 5): x1, v1, x2, v2 and phase [rad]."""
-        return self.verdicts[:, v.FINAL : v.FINAL + 5]
-
-    @property
-    def status(self) -> npt.NDArray[np.str_]:
-        """``complete``, ``impact_cap`` or ``step_limit``."""
-        codes = self._whole(v.STATUS)
-        return np.where(codes == col.EVENT_CAP, STATUS_NAMES[1], np.where(codes > 0, STATUS_NAMES[2], STATUS_NAMES[0]))
-
-    @property
-    def reason(self) -> npt.NDArray[np.object_]:
-        """Why a run is called unsettled, or what was noted on the way; empty if nothing."""
-        return np.array([v.reason_text(verdict) for verdict in self.verdicts], dtype=object)
-
 
 @stated(threads=Whole(optional=True))
 def classify_many(
-    params: Params | Sequence[Params] | Mapping[str, npt.ArrayLike],
+    params: Parameters | Sequence[Parameters] | Mapping[str, npt.ArrayLike],
     starts: Mapping[str, npt.ArrayLike] | None = None,
     *,
     settle: float = 400,
@@ -206,13 +60,15 @@ def classify_many(
     errors: bool = True,
     max_impacts_per_period: int = EVENTS_PER_PERIOD,
     threads: int | None = None,
+    apart: float = APART,
 ) -> Classified:
     """Do as `settle` for many parameter points or starts at once, in lanes and on all cores.
 
     Parameters
     ----------
     params, starts
-        As for `vines.ensemble`.
+        As for `vines.ensemble`; of another system, whose runs settle one by one, parameter objects and starts by its
+        names, what every ball has also by its name without a number, in rows of one value a ball.
     settle, record, patience, watch, tolerance, largest_p, max_impacts_per_period
         As for `settle`, but a recording ends as soon as the run is seen to repeat.
     impacts : bool
@@ -221,6 +77,8 @@ def classify_many(
         Whether runs that never repeat are watched on until what they measured has standard errors, as by `settle`.
     threads : int, optional
         Cores to use; all of this process's if left out. Results do not depend on it, nor on what else is in the call.
+    apart : float
+        As for `settle`.
 
     Returns
     -------
@@ -238,7 +96,9 @@ def classify_many(
     (['1:1', '1:1', '2:2/2T', '2:1', None], 'chaotic')
     """
     how = Patience(settle, record, patience, watch, tolerance, max_impacts_per_period, largest_p)
-    table, given = parameter_table(params), start_table(starts)
+    if _of_another_system(params):
+        return classify_family(params, starts, how, apart=apart, impacts=impacts, errors=errors, threads=threads)
+    table, given = parameter_table(cast(Any, params)), start_table(starts)
     how.check_length(2.0 * np.pi / float(np.min(table[:, FREQUENCY])))
     n = np.broadcast_shapes(table.shape[:1], given.shape[:1])[0]
     parameters, begin = (np.ascontiguousarray(np.broadcast_to(each, (n, 5))) for each in (table, given))
@@ -248,6 +108,16 @@ def classify_many(
         work.wait(everyone, settle)
     work.arrive(everyone, errors)
     return Classified(parameters, begin, work.words, work.verdicts, work.totals, work.hits)
+
+
+def _of_another_system(
+    params: Parameters | Sequence[Parameters] | Mapping[str, npt.ArrayLike],
+) -> TypeGuard[Parameters | Sequence[Parameters]]:
+    """Say whether parameters are objects of another system than the VI-NES."""
+    if isinstance(params, Mapping):
+        return False
+    first = params if isinstance(params, Parameters) else next(iter(params), None)
+    return first is not None and not isinstance(first, Params)
 
 
 class _Many:
@@ -261,7 +131,7 @@ class _Many:
         self.verdicts = np.zeros((n, v.VERDICT))
         self.totals = np.zeros((n, entry.TOTALS))
         self.words = np.full(n, None, dtype=object)
-        self.hits = [_NO_IMPACTS] * n if impacts else None
+        self.hits = [NO_IMPACTS] * n if impacts else None
         self.stages = np.array([*(stage for stage in STAGES if stage < how.window), how.window])
         self.conserves = (parameters[:, DAMPING] == 0.0) & (parameters[:, RESTITUTION] == 1.0)
 

@@ -10,7 +10,8 @@ import numpy.typing as npt
 
 from vines.attractors._attractor import Attractor
 from vines.attractors._averages import WINDOW, Group, averages, match, observe, sort_into, steady
-from vines.attractors._classify import Classified, classify_many
+from vines.attractors._classified import Classified
+from vines.attractors._classify import classify_many
 from vines.attractors._sections import NEAR, ON, Section, sections_of
 from vines.attractors._settle import settle_from
 from vines.dynamics import ensemble

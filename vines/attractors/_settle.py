@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -21,8 +21,9 @@ from vines.dynamics.kernels import constants, pass_over, room_of, shift_time, ta
 from vines.dynamics.kernels import rows as col
 from vines.dynamics.runs import EVENTS_PER_PERIOD, impacts_of, measures_from, slices, start_of
 from vines.errors import StateError
+from vines.model import Word
 
-__all__ = ["APART", "NUDGE", "ROUNDS", "settle", "settle_from"]
+__all__ = ["APART", "NUDGE", "ROUNDS", "Settled", "parted", "settle", "settle_from", "settled"]
 
 ROUNDS = 8
 """How often a run may be taken on because it had not arrived."""
@@ -115,18 +116,11 @@ def settle(
     >>> found.regime, found.name, found.word, found.symmetric
     ('periodic', '2:1', 'LLR', False)
     """
-    x1, v1, x2, v2, phase = start_of(p, start, t, phi)
-    for group in getattr(p, "together", ()):
-        v2[np.array(group) - 1] += apart * np.arange(len(group))
-    begin = (x1, v1, x2, v2, phase)
-    return _settled(
-        p,
-        begin,
-        t,
-        Patience(settle, record, patience, watch, tolerance, max_impacts_per_period, largest_p),
-        lyapunov,
-        errors,
+    begin = parted(p, start_of(p, start, t, phi), apart)
+    found = settled(
+        p, begin, Patience(settle, record, patience, watch, tolerance, max_impacts_per_period, largest_p), errors
     )
+    return attractor_from(p, *found, t, lyapunov)
 
 
 @stated(p=Parameters(), start=Named(Number()))
@@ -177,14 +171,10 @@ def settle_from(
     t = float(start.get("t", 0.0))
     at = {name: value for name, value in start.items() if name not in ("t", "phase")}
     begin = start_of(p, at, 0.0, start["phase"])
-    return _settled(
-        p,
-        begin,
-        t,
-        Patience(settle, record, patience, watch, tolerance, max_impacts_per_period, largest_p),
-        lyapunov,
-        errors,
+    found = settled(
+        p, begin, Patience(settle, record, patience, watch, tolerance, max_impacts_per_period, largest_p), errors
     )
+    return attractor_from(p, *found, t, lyapunov)
 
 
 def _passed_over(
@@ -199,9 +189,25 @@ def _passed_over(
     return code
 
 
-def _settled(
-    p: Any, begin: tuple[float, float, float, float, float], t: float, how: Patience, lyapunov: bool, errors: bool
-) -> Attractor:
+class Settled(NamedTuple):
+    """A run at its end: verdict, totals of the window, word if it repeats, and recorded impacts."""
+
+    verdict: npt.NDArray[np.float64]
+    totals: npt.NDArray[np.float64]
+    word: Word | None
+    hits: npt.NDArray[np.void]
+
+
+def parted(p: Any, begin: tuple[Any, Any, Any, Any, float], apart: float) -> tuple[Any, Any, Any, Any, float]:
+    """Return a start in which balls of one length and restitution differ in velocity."""
+    x1, v1, x2, v2, phase = begin
+    for group in getattr(p, "together", ()):
+        v2[np.array(group) - 1] += apart * np.arange(len(group))
+    return x1, v1, x2, v2, phase
+
+
+def settled(p: Any, begin: tuple[Any, Any, Any, Any, float], how: Patience, errors: bool) -> Settled:
+    """Run from a start, as kernels hold it, until it is decided what it settles to."""
     how.check_length(p.period)
     c, room = constants(p), room_of(p)
     layout = room.layout(p)
@@ -257,4 +263,4 @@ def _settled(
             spare -= wait
     verdict[v.NUDGED], verdict[v.PERIODS] = nudged, ran - how.window
     word = word_of(sides, int(verdict[v.P]), p) if len(sides) else None
-    return attractor_from(p, verdict, totals[0], word, impacts_of(hits, layout.width > col.ROW), t, lyapunov)
+    return Settled(verdict, totals[0], word, impacts_of(hits, layout.width > col.ROW))

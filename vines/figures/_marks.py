@@ -19,6 +19,7 @@ MARKS = {
     "grazing": ("v", "grazing"),
     "incomplete_chatter": ("X", "chatter no longer completes"),
     "release_tangency": ("P", "release without a fall of the contact force"),
+    "tie": ("*", "two balls hit together"),
     "pair_turns_real": ("|", "a pair of multipliers turns real"),
 }
 """Symbol and name of each type."""

@@ -44,6 +44,11 @@ def assemble(word: Word, p: Any, t: Floats, states: Floats, remark: str = "") ->
     side = marks_of(word)
     c = constants(p)
     jacobians, residual, clearance, violation, wall = survey_kernel(c, duration, side, t, states)
+    gaps = np.diff(t, append=t[0] + duration)
+    if wall == 0 and not np.all(gaps > 0):
+        # Impacts of different balls have changed places.
+        first = int(np.argmin(gaps > 0))
+        violation, wall = t[first], word.sides[first]
     symmetric = asymmetry(word, duration, t, states) < _SAME
     half = (
         sorted_multipliers(half_map(jacobians, IMPACT_TO_IMPACT if isinstance(p, Params) else FIXED_TIME))

@@ -22,7 +22,7 @@ class Bifurcation:
     Attributes
     ----------
     type : str
-        fold, symmetry_breaking, period_doubling, neimark_sacker or grazing; of orbits that stick also
+        fold, symmetry_breaking, period_doubling, neimark_sacker, grazing or tie; of orbits that stick also
         incomplete_chatter and release_tangency, where they end; in `Branch.events` pair_turns_real.
     parameter : str
         The parameter in which the branch was followed.

@@ -28,12 +28,15 @@ class ChainProblem:
         Gives the word and the parameters that stay fixed.
     parameter : str
         Name of the parameter that varies.
+    symmetric : bool, optional
+        Whether the family is to be kept symmetric; by default if the orbit is, and remains so.
     """
 
-    def __init__(self, orbit: Orbit, parameter: str) -> None:
+    def __init__(self, orbit: Orbit, parameter: str, symmetric: bool | None = None) -> None:
         self.word = orbit.word
         self.parameter = parameter
-        self._closing = Closing(orbit, (parameter,), stays_symmetric(orbit, parameter))
+        kept = stays_symmetric(orbit, parameter) if symmetric is None else symmetric
+        self._closing = Closing(orbit, (parameter,), kept)
         self.start = self._closing.start
 
     def equations(self, y: Floats) -> tuple[Floats, Floats]:

@@ -16,11 +16,21 @@ import numpy.typing as npt
 
 from vines.orbits._problem import Point
 
-__all__ = ["GRAZING", "REMARKS", "Condition", "conditions", "critical_multiplier", "grazing_margin"]
+__all__ = [
+    "GRAZING",
+    "REMARKS",
+    "TIE",
+    "Condition",
+    "conditions",
+    "critical_multiplier",
+    "grazing_margin",
+    "tie_margin",
+]
 
 Multipliers = npt.NDArray[np.complex128]
 
 GRAZING = "grazing"
+TIE = "tie"
 REMARKS = ("pair_turns_real",)
 """Types that are not bifurcations: nothing changes its stability there."""
 
@@ -54,6 +64,11 @@ def grazing_margin(point: Point) -> float:
     """Return the least of the clearances of turning points and the speeds at which the walls are met."""
     orbit = point.orbit
     return min(orbit.min_clearance, float(np.min(orbit.side * orbit.w_dot)))
+
+
+def tie_margin(point: Point) -> float:
+    """Return the least time from an impact to the next: balls whose impacts change places are no orbit of the word."""
+    return float(np.min(point.orbit.flight_times))
 
 
 def _whole(point: Point) -> Multipliers:
@@ -94,10 +109,12 @@ def _discriminant(m: Multipliers) -> float:
     return float(np.prod([(a - b) ** 2 for a, b in combinations(m[m != 0], 2)]).real)
 
 
-def conditions(symmetric: bool) -> tuple[Condition, ...]:
-    """Return the defining equations for a family of symmetric or of other orbits."""
+def conditions(symmetric: bool, *, several: bool = False) -> tuple[Condition, ...]:
+    """Return the defining equations for a family of symmetric or of other orbits, of one ball or of `several`."""
     of = _half if symmetric else _whole
+    ties = (Condition(TIE, tie_margin),) if several else ()
     return (
+        *ties,
         Condition("fold", _fold),
         Condition("symmetry_breaking" if symmetric else "period_doubling", lambda point: _minus_one(of(point))),
         Condition("neimark_sacker", lambda point: _product_one(of(point))),
@@ -110,10 +127,10 @@ def critical_multiplier(kind: str, point: Point, symmetric: bool) -> tuple[compl
     """Return the multiplier that makes the bifurcation, of the map it is defined by and over the whole period.
 
     None, if the zero of the defining equation is no bifurcation: a product of two real multipliers that passes through
-    one is no Neimark-Sacker point. Nan for grazing, where the Jacobian jumps.
+    one is no Neimark-Sacker point. Nan for grazing and ties, where the Jacobian jumps.
     """
     m = _half(point) if symmetric else _whole(point)
-    if kind == GRAZING or not np.isfinite(m).all():
+    if kind in (GRAZING, TIE) or not np.isfinite(m).all():
         found = complex(np.nan, np.nan)
     elif kind == "fold":
         found = m[np.argmin(abs(m - 1))]

@@ -18,10 +18,12 @@ from vines.orbits._closing import stays_symmetric
 from vines.orbits._conditions import (
     GRAZING,
     REMARKS,
+    TIE,
     Condition,
     conditions,
     critical_multiplier,
     grazing_margin,
+    tie_margin,
 )
 from vines.orbits._family import GeneralProblem
 from vines.orbits._general import origin
@@ -35,6 +37,9 @@ __all__ = ["continue_orbit"]
 
 _SMALLEST_STEP = 1e-8
 _TURN = 0.15
+_MARGINS = {GRAZING: grazing_margin, TIE: tie_margin}
+"""What has to be positive for orbits to be admissible."""
+
 _TOLERANCE = 1e-14
 """Of the root of a defining equation, as a fraction of the step in which it lies."""
 
@@ -62,8 +67,9 @@ def continue_orbit(
 ) -> Branch:
     """Follow an orbit in one parameter, through folds, and locate the bifurcations on the way.
 
-    The branch ends where the parameter leaves its range on either side, or at the grazing that ends admissibility. A
-    family that sticks ends also where a chatter no longer completes, or the contact force vanishes without falling.
+    The branch ends where the parameter leaves its range on either side, or at the grazing that ends admissibility,
+    or where two balls hit together, beyond which their impacts have changed places. A family that sticks ends also
+    where a chatter no longer completes, or the contact force vanishes without falling.
 
     Parameters
     ----------
@@ -159,7 +165,7 @@ class _Branch:
         start = float(self.problem.start[-1])
         self.curve = ZeroSet(self.problem, self.high - self.low)
         self.symmetric = stays_symmetric(self.orbit, self.problem.parameter)
-        self.conditions = conditions(self.symmetric)
+        self.conditions = conditions(self.symmetric, several=any(self.orbit.word.balls))
         towards = np.zeros(len(self.problem.start))
         towards[-1] = np.sign(self.stop - start)
         here = Point(self.problem.start, self.curve.tangent(self.problem.start, towards), self.orbit)
@@ -219,8 +225,8 @@ class _Branch:
             self.bifurcations.append(event)
             self.orbits.append(point.orbit)
             before = point
-            if kind == GRAZING and not self.beyond_grazing and grazing_margin(here) > 0:
-                return GRAZING
+            if kind in _MARGINS and not self.beyond_grazing and _MARGINS[kind](here) > 0:
+                return kind
             if joined:
                 return kind
         self._add_values(before, there)
@@ -241,10 +247,10 @@ class _Branch:
             if condition.type != "fold" or origin(chord.seen[last].orbit) is None:
                 raise
             root = last
-        if condition.type == GRAZING:
+        if condition.type in _MARGINS:
             # The search may have come from beyond; the orbit to show is the last one that is still admissible.
             back = math.copysign(1e-15, -1 if first > 0 else 1)
-            while not grazing_margin(chord.point(root)) > 0:
+            while not condition.function(chord.point(root)) > 0:
                 root = min(max(root + back, 0.0), 1.0)
                 back *= 2
         return root, condition.type, chord.point(root)

@@ -24,7 +24,8 @@ class SpecialPoint:
     type : str
         cusp; resonance_1_1 … resonance_1_4; fold_flip, fold_symmetry_breaking, fold_neimark_sacker,
         flip_neimark_sacker, symmetry_breaking_neimark_sacker; degenerate_period_doubling,
-        degenerate_symmetry_breaking; grazing, where the orbits of the curve cease to be admissible; on grazing
+        degenerate_symmetry_breaking; grazing, where the orbits of the curve cease to be admissible; tie, where two
+        balls hit together, beyond which their impacts have changed places; on grazing
         curves grazing_fold, grazing_flip, grazing_symmetry_breaking, grazing_neimark_sacker, double_grazing,
         degenerate_grazing. Docs/orbits.md says what each is.
     values : tuple of float, float
@@ -61,10 +62,10 @@ class Curve:
         In order along the curve.
     ends : tuple of str, str
         Why it ends at either end: ``box``, ``grazing`` (of a curve of another type: its orbits cease to be
-        admissible), ``double_grazing``, ``degenerate_grazing``, ``resonance_1_1`` or ``resonance_1_2`` (of a
+        admissible), ``tie``, ``double_grazing``, ``degenerate_grazing``, ``resonance_1_1`` or ``resonance_1_2`` (of a
         Neimark-Sacker curve, whose pair turns real), ``closed``, ``points`` (as many as were allowed), ``domain``
         (next to where the system, or its steady response, does not exist), ``rounding`` (the equations are left with
-        fewer than six digits), ``lost``.
+        fewer than nine digits), ``lost``.
     """
 
     type: str

@@ -15,6 +15,7 @@ from vines.model import Params
 from vines.orbits._arclength import Chord, Walk
 from vines.orbits._branch import Bifurcation
 from vines.orbits._chain_curve import ChainCurve
+from vines.orbits._conditions import TIE
 from vines.orbits._curve import Curve, SpecialPoint
 from vines.orbits._curve_equations import CurveEquations
 from vines.orbits._curve_problem import CurveProblem
@@ -31,16 +32,19 @@ _TURN = 0.2
 _REACH = 4.0
 _TOLERANCE = 1e-13
 """Of a special point, as a fraction of the step in which it lies."""
-_ENDS = (END, "resonance_1_1", "resonance_1_2", "double_grazing", "degenerate_grazing")
+_ENDS = (END, TIE, "resonance_1_1", "resonance_1_2", "double_grazing", "degenerate_grazing")
 """Special points beyond which the equations describe something else."""
 _RANK = 1e-10
 """Least singular value of the equations relative to the largest: below it they do not depend on the parameters."""
 
-_ROUNDING = 1e-6
+_ROUNDING = 1e-9
 """Residual beyond which the equations have lost their digits: next to a resonance they are small differences."""
 
-_SOUND = 1e-11
-"""Residual up to which a point is taken next to one at which the equations fail."""
+_NEAREST = 1e-3
+"""Margin at which a curve ends if its equations fail at zero: M grows as its inverse, and loses digits."""
+
+_FINE = 1e-8
+"""Of that point, as a fraction of the step in which it lies."""
 
 _FIRST = 4
 """Points before which a curve is not looked at for having closed."""
@@ -259,16 +263,15 @@ class _Way:
         That is so where an impact loses its speed: M is infinite there.
         """
         chord = Chord(self.zero, here, there)
+        sign = math.copysign(1.0, function(here))
         low, high = 0.0, 1.0
-        while high - low > _TOLERANCE:
+        while high - low > _FINE:
             middle = 0.5 * (low + high)
             try:
-                point = chord.point(middle)
+                inside = sign * function(chord.point(middle)) > _NEAREST
             except OrbitNotFound:
-                break
-            if not np.abs(self.problem.residual(point.y)).max() < _SOUND:
-                break
-            low, high = (middle, high) if (function(point) > 0) == (function(here) > 0) else (low, middle)
+                inside = False
+            low, high = (middle, high) if inside else (low, middle)
         return low, chord.point(low)
 
     def _cusp(self, here: Point, there: Point) -> tuple[float, str, Point] | None:

@@ -8,16 +8,18 @@ import numpy as np
 
 from vines.domains import Of, stated
 from vines.errors import OrbitNotFound, ParameterError
-from vines.model import Word
+from vines.model import Params, Word
 from vines.orbits._assemble import assemble
 from vines.orbits._branch import Bifurcation
+from vines.orbits._chain_family import ChainProblem
 from vines.orbits._family import GeneralProblem
 from vines.orbits._general import origin, refine
 from vines.orbits._orbit import Orbit
 from vines.orbits._problem import ZeroSet
 from vines.orbits._sticking_orbit import mirrored_sticking
+from vines.orbits._values import frequency_of
 
-__all__ = ["BRANCHING", "is_joint", "left_family", "mirror_image", "unfolded"]
+__all__ = ["BRANCHING", "family_through", "is_joint", "left_family", "mirror_image", "unfolded"]
 
 BRANCHING = ("symmetry_breaking", "period_doubling")
 """Types at which another family comes out."""
@@ -36,7 +38,21 @@ def mirror_image(orbit: Orbit) -> Orbit:
     """
     if orbit.word.sticking:
         return mirrored_sticking(orbit)
-    return assemble(orbit.word.mirror, orbit.params, orbit.t + orbit.params.period / 2, -orbit.states, orbit.remark)
+    word, t, states = orbit.word.mirror, orbit.t + orbit.params.period / 2, -orbit.states
+    if any(word.balls):
+        word, names = word.relabelled(getattr(orbit.params, "alike", ()))
+        balls = [names.get(ball, ball) for ball in orbit.word.balls]
+        marks = [(-side, ball) for side, ball in zip(orbit.word.sides, balls, strict=True)]
+        wanted = list(zip(word.sides, word.balls, strict=True))
+        k = next(k for k in range(len(marks)) if marks[k:] + marks[:k] == wanted)
+        t, states = np.concatenate([t[k:], t[:k] + orbit.period]), np.roll(states, -k, axis=0)
+    return assemble(word, orbit.params, t, states, orbit.remark)
+
+
+def family_through(orbit: Orbit, parameter: str, *, symmetric: bool) -> GeneralProblem | ChainProblem:
+    """Return the family of an orbit in a parameter, by the closing equations that hold for any word."""
+    form = GeneralProblem if isinstance(orbit.params, Params) else ChainProblem
+    return form(orbit, parameter, symmetric=symmetric)
 
 
 def is_joint(bifurcation: Bifurcation) -> bool:
@@ -73,10 +89,10 @@ def left_family(joint: Bifurcation) -> Orbit:
         raise OrbitNotFound(f"what {joint} comes out of sticks; find it by its own word and follow it to there")
     n = len(orbit.word) // 2
     if joint.type == "period_doubling":
-        word = Word(f"{orbit.word.letters[:n]}/{orbit.word.p // 2}T")
+        word = Word(f"{orbit.word.letters[: len(orbit.word.letters) // 2]}/{orbit.word.p // 2}T")
         return refine(word, orbit.params, (orbit.t[:n] + orbit.t[n:] - orbit.period / 2) / 2)
-    problem = GeneralProblem(orbit, joint.parameter, symmetric=True)
-    phases = (orbit.t[:n] + orbit.t[n:] - orbit.period / 2) / 2 * orbit.params.Omega
+    problem = family_through(orbit, joint.parameter, symmetric=True)
+    phases = (orbit.t[:n] + orbit.t[n:] - orbit.period / 2) / 2 * frequency_of(orbit.params)
     y = ZeroSet(problem, 1.0).at_value(np.append(phases, joint.value), joint.value)
     if y is None:
         raise OrbitNotFound(f"the symmetric orbit at {joint} was lost; follow the symmetric family to it")

@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from vines.orbits._conditions import grazing_margin
+from vines.orbits._conditions import TIE, grazing_margin, tie_margin
 from vines.orbits._criticality import branching_curvature
 from vines.orbits._curve_equations import CurveEquations
 from vines.orbits._joined import unfolded
@@ -108,11 +108,13 @@ def special_functions(problem: CurveEquations) -> tuple[Special, ...]:
     def small_curvature(point: Point) -> bool:
         return abs(curvature(point)) < 1.0
 
+    ties = (Special(TIE, tie_margin, _always),) if any(problem.word.balls) else ()
     fold = Special(f"{kind}_fold" if kind == "grazing" else f"fold_{flip}", one, _always)
     if kind == "grazing":
         if not problem.touches:
-            return ()
+            return ties
         return (
+            *ties,
             fold,
             Special(f"grazing_{flip}", minus_one, _always),
             Special("grazing_neimark_sacker", pairs, on_circle),
@@ -122,6 +124,7 @@ def special_functions(problem: CurveEquations) -> tuple[Special, ...]:
     end = Special(END, grazing_margin, _always)
     if kind == "fold":
         return (
+            *ties,
             Special("resonance_1_1", one, _always),
             Special(f"fold_{flip}", minus_one, _always),
             Special("fold_neimark_sacker", pairs, on_circle),
@@ -129,6 +132,7 @@ def special_functions(problem: CurveEquations) -> tuple[Special, ...]:
         )
     if kind == "neimark_sacker":
         return (
+            *ties,
             *(
                 Special(name, lambda point, value=value: cosine(point) - value, _always)
                 for name, value in RESONANCES.items()
@@ -138,6 +142,7 @@ def special_functions(problem: CurveEquations) -> tuple[Special, ...]:
             end,
         )
     return (
+        *ties,
         fold,
         Special("resonance_1_2", minus_one, _always),
         Special(f"{flip}_neimark_sacker", pairs, on_circle),

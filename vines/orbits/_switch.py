@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from vines.domains import Of, stated
@@ -9,10 +11,10 @@ from vines.dynamics import no_ball
 from vines.errors import OrbitNotFound, ParameterError
 from vines.model import X1, Word
 from vines.orbits._branch import Bifurcation
-from vines.orbits._family import GeneralProblem
 from vines.orbits._general import origin, refine
-from vines.orbits._joined import BRANCHING, is_joint, left_family, mirror_image, unfolded
+from vines.orbits._joined import BRANCHING, family_through, is_joint, left_family, mirror_image, unfolded
 from vines.orbits._orbit import Orbit
+from vines.orbits._problem import Problem
 from vines.orbits._sticking_family import StickingProblem
 from vines.orbits._sticking_search import refine_sticking
 
@@ -85,11 +87,11 @@ def switch_branch(bifurcation: Bifurcation) -> list[Orbit]:
     )
 
 
-def _unfolded(bifurcation: Bifurcation) -> GeneralProblem | StickingProblem:
+def _unfolded(bifurcation: Bifurcation) -> Problem:
     """Return the family of the old orbits, as one of those that come out of it, from the branching point on."""
     orbit, parameter = bifurcation.orbit, bifurcation.parameter
     if not orbit.word.sticking:
-        return GeneralProblem(unfolded(bifurcation.type, orbit), parameter, symmetric=False)
+        return family_through(unfolded(bifurcation.type, orbit), parameter, symmetric=False)
     twice = bifurcation.type == "period_doubling"
     word = Word(f"{orbit.word.letters * 2}/{2 * orbit.word.p}T") if twice else orbit.word
     return StickingProblem(orbit, parameter, word=word, symmetric=False)
@@ -101,7 +103,7 @@ def _pair(orbit: Orbit) -> list[Orbit]:
     return sorted(pair, key=lambda one: float(one.states[:, X1].mean()), reverse=True)
 
 
-def _step_off(problem: GeneralProblem | StickingProblem, step: float) -> Orbit | None:
+def _step_off(problem: Problem, step: float) -> Orbit | None:
     """Return the orbit at this distance along the null vector from where the problem starts, or None.
 
     The old family has no component along the null vector that joins it to the new one, so that a prescribed component
@@ -130,6 +132,10 @@ def _step_off(problem: GeneralProblem | StickingProblem, step: float) -> Orbit |
         orbit = solve(here.word, here.params, here)
     except OrbitNotFound:
         return None
-    # Residuals are sums of parts as large as the steady motion without the ball.
-    allowed = (_STICKING if orbit.word.sticking else _RESIDUAL) * (1.0 + no_ball(orbit.params))
+    allowed = (_STICKING if orbit.word.sticking else _RESIDUAL) * (1.0 + _size(orbit.params))
     return orbit if orbit.residual <= allowed and origin(orbit) is None and not orbit.symmetric else None
+
+
+def _size(p: Any) -> float:
+    """Return the size of the parts of which residuals are sums: the steady motion of the frame without the balls."""
+    return p.B if "x1_no_ball" in p.system.without else no_ball(p)

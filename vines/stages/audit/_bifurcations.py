@@ -13,7 +13,7 @@ from vines.stages.audit._flights import Flights
 from vines.stages.audit._orbits import product_defect
 from vines.stages.audit._rows import Floats, Rows
 
-__all__ = ["bifurcation_defects", "branch_defects", "curve_defects"]
+__all__ = ["bifurcation_defects", "branch_defects", "curve_defects", "curve_equations"]
 
 _AT_ONE = ("fold", "symmetry_breaking")
 _WITHOUT = ("grazing", "incomplete_chatter", "release_tangency")
@@ -86,16 +86,21 @@ def curve_defects(rows: Rows) -> Iterator[Defect]:
     """Yield the checks of rows of the table ``curves``."""
     yield from model_defects(rows, np.ones(len(rows), dtype=bool))
     yield Defect("word", "word and name agree", 0.0, words(rows))
-    yield Defect("residual", "below 1e-9", 1e-9, np.abs(rows["residual"]))
     yield product_defect(rows)
-    m = (rows.lists("multipliers_re") + 1j * rows.lists("multipliers_im")).reshape(len(rows), 4)
+    yield from curve_equations(rows)
+
+
+def curve_equations(rows: Rows) -> Iterator[Defect]:
+    """Yield those of them that hold for curves of any system."""
+    yield Defect("residual", "below 1e-9", 1e-9, np.abs(rows["residual"]))
+    m = (rows.lists("multipliers_re") + 1j * rows.lists("multipliers_im")).reshape(len(rows), -1)
     types = rows.text("type")
     off = np.full(len(rows), np.inf)
     # what is stored belongs to the whole period; the others are as exact as the largest one lets them be
     slack = np.maximum(1.0, np.abs(m).max(axis=1))
     off = np.where(np.isin(types, _AT_ONE), np.abs(m - 1).min(axis=1), off)
     off = np.where(types == "period_doubling", np.abs(m + 1).min(axis=1), off)
-    i, j = np.triu_indices(4, 1)
+    i, j = np.triu_indices(m.shape[1], 1)
     off = np.where(types == "neimark_sacker", np.abs(m[:, i] * m[:, j] - 1).min(axis=1), off)
     off = np.where(types == "grazing", np.nan, off) / slack
     yield Defect("critical multiplier", "+1, -1, or a pair of product 1, by the type", _CRITICAL, off)

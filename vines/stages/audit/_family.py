@@ -8,10 +8,17 @@ import numpy as np
 
 from vines import schema
 from vines.model import most_balls, read_system
+from vines.stages.audit._bifurcations import curve_equations
 from vines.stages.audit._defect import Defect, forced_amplitude, relative
 from vines.stages.audit._rows import Floats, Rows
 
-__all__ = ["family_impact_defects", "family_orbit_defects", "family_point_defects", "family_transient_defects"]
+__all__ = [
+    "family_curve_defects",
+    "family_impact_defects",
+    "family_orbit_defects",
+    "family_point_defects",
+    "family_transient_defects",
+]
 
 _EPSILON = 1e-14
 _PRODUCT = 1e-9
@@ -73,6 +80,9 @@ def _balance(rows: Rows, where: np.ndarray, *more: str) -> Iterator[Defect]:
     change = sum((rows[name] for name in more), np.zeros(len(rows)))
     work = rows["base_work"]
     scale = np.max([np.abs(each) for each in (work, damper, lost, change)], axis=0)
+    if rows.has("B"):
+        # A ball that rides on the capsule loses nothing: what is left is the rounding of what passes to and fro.
+        scale = np.maximum(scale, rows["B"] ** 2)
     off = relative(work, damper + lost + change, scale)
     yield Defect(
         "energy balance", "base_work = what is lost and what is stored more", 1e-9, np.where(where, off, np.nan)
@@ -110,17 +120,34 @@ def family_orbit_defects(table: str, rows: Rows) -> Iterator[Defect]:
     everywhere = np.ones(len(rows), dtype=bool)
     yield from _balance(rows, everywhere)
     yield from _yardsticks(rows, everywhere)
-    m = (rows.lists("multipliers_re") + 1j * rows.lists("multipliers_im")).reshape(len(rows), -1)
+    size = np.abs(_multipliers(rows))
+    yield _product(rows)
+    flat = np.isclose(size.max(axis=1), rows["max_multiplier"], rtol=1e-9)
+    right = flat & ((rows["stable"] == 1) == (rows["max_multiplier"] < 1))
+    yield Defect("stability", "max_multiplier, and stable where it is below 1", 0.0, np.where(right, 0.0, np.inf))
+
+
+def family_curve_defects(table: str, rows: Rows) -> Iterator[Defect]:
+    """Yield the checks of rows of a table of curves."""
+    yield _parameters(table, rows)
+    yield _product(rows)
+    yield from curve_equations(rows)
+
+
+def _multipliers(rows: Rows) -> np.ndarray:
+    return (rows.lists("multipliers_re") + 1j * rows.lists("multipliers_im")).reshape(len(rows), -1)
+
+
+def _product(rows: Rows) -> Defect:
+    """Return the check of the product of the multipliers."""
+    m = _multipliers(rows)
     size = np.abs(m)
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
         off = np.abs(np.prod(m, axis=1) * np.exp(-_log_determinant(rows)) - 1)
         # the small ones carry the rounding error of the largest
         slack = _EPSILON * size.max(axis=1) / size.min(axis=1)
     off = np.where(slack < 1e-2, off / (1 + slack / _PRODUCT), np.nan)
-    yield Defect("multiplier product", "the determinant: r² for each impact, exp(-lam p T)", _PRODUCT, off)
-    flat = np.isclose(size.max(axis=1), rows["max_multiplier"], rtol=1e-9)
-    right = flat & ((rows["stable"] == 1) == (rows["max_multiplier"] < 1))
-    yield Defect("stability", "max_multiplier, and stable where it is below 1", 0.0, np.where(right, 0.0, np.inf))
+    return Defect("multiplier product", "the determinant: r² for each impact, exp(-lam p T)", _PRODUCT, off)
 
 
 def _log_determinant(rows: Rows) -> Floats:

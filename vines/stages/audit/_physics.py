@@ -14,6 +14,7 @@ from vines.pipeline import kinds
 from vines.stages.audit._bifurcations import bifurcation_defects, branch_defects, curve_defects
 from vines.stages.audit._defect import Defect
 from vines.stages.audit._family import (
+    family_curve_defects,
     family_impact_defects,
     family_orbit_defects,
     family_point_defects,
@@ -54,6 +55,7 @@ _CHECKS: dict[str, Callable[[Rows], Iterator[Defect]]] = {
     "rig_impacts": rig_impact_defects,
 }
 _OF_SYSTEMS: dict[str, Callable[[str, Rows], Iterator[Defect]]] = {
+    "curves": family_curve_defects,
     "impacts": family_impact_defects,
     "orbits": family_orbit_defects,
     "points": family_point_defects,

@@ -26,11 +26,11 @@ _SLOW = 0.01
 
 def compute(job: WholeJob[CurveOptions]) -> Batch:
     """Find the bifurcations on lines through the box and follow each that lies on no curve yet, both ways."""
-    curves = followed(job, lambda values: Params(**values), depth=1)
+    curves = followed(job, lambda values: Params(**values))
     return Batch(tables={"curves": [row for curve in curves for row in rows_of(curve)]})
 
 
-def followed(job: WholeJob[Any], form: Callable[[dict[str, float]], Any], depth: int) -> list[Curve]:
+def followed(job: WholeJob[Any], form: Callable[[dict[str, float]], Any]) -> list[Curve]:
     """Return the curves.
 
     Parameters
@@ -39,8 +39,6 @@ def followed(job: WholeJob[Any], form: Callable[[dict[str, float]], Any], depth:
         With the options of the kind, whatever the system.
     form : callable
         Makes the parameters of the system from their flat names.
-    depth : int
-        Generations of families that come out of those of the word.
 
     Raises
     ------
@@ -55,7 +53,7 @@ def followed(job: WholeJob[Any], form: Callable[[dict[str, float]], Any], depth:
     curves: list[Curve] = []
     for value in _between(*box[second], options.lines):
         p = form({**job.params, first: box[first][0], second: value})
-        for bifurcation in _bifurcations(options, p, first, box[first], depth):
+        for bifurcation in _bifurcations(options, p, first, box[first]):
             if not any(_lies_on(bifurcation, curve, box) for curve in curves):
                 curves.append(follow_curve(bifurcation, (first, second), box=box, step=options.step))
     if not curves:
@@ -74,12 +72,12 @@ def _between(low: float, high: float, count: int) -> list[float]:
     return [low + (high - low) * share for share in shares]
 
 
-def _bifurcations(
-    options: CurveOptions, p: Any, parameter: str, within: tuple[float, float], depth: int
-) -> Iterator[Bifurcation]:
+def _bifurcations(options: CurveOptions, p: Any, parameter: str, within: tuple[float, float]) -> Iterator[Bifurcation]:
     word = own_word(options.word, p)
     # Inside the range, since a curve does not begin at its border.
     seeds = np.linspace(*within, options.seeds + 2)[1:-1].tolist()
+    # Of what comes out of a family only what has broken its symmetry has the same word.
+    depth = 1 if word.symmetric and p.mirrored else 0
     for branch in follow_families(options.word, p, parameter, within, seeds=seeds, depth=depth):
         if branch.word == word:
             yield from (found for found in branch.bifurcations if found.type == options.type)

@@ -19,6 +19,6 @@ __all__ = ["compute"]
 def compute(job: WholeJob[FamilyCurveOptions]) -> Batch:
     """Find the bifurcations on lines through the box and follow each that lies on no curve yet, both ways."""
     system = job.options.system
-    curves = followed(job, partial(parameters_of, system), depth=0)
+    curves = followed(job, partial(parameters_of, system))
     rows = [only_own(curve.orbits[0].params, "curves", row) for curve in curves for row in rows_of(curve)]
     return Batch(tables={system_table(system, "curves"): rows})

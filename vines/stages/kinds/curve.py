@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
 import msgspec
 from msgspec import Meta
@@ -35,11 +35,7 @@ class CurveOptions(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 
 class FamilyCurveOptions(CurveOptions, frozen=True, forbid_unknown_fields=True, kw_only=True):
-    """Every curve of one type of bifurcation of a word in the plane of the two varied parameters.
-
-    The bifurcations are found on the families of the word along the first parameter, at `lines` values of the second
-    and from `seeds` values of the first.
-    """
+    """Every curve of one type of bifurcation of a word in the plane of the two varied parameters, as of the VI-NES."""
 
     system: str
 
@@ -53,9 +49,10 @@ def _fits(stage: Stage, pipeline: Pipeline) -> None:
     del pipeline
     check_axes(stage, 2, "a curve is followed in two parameters", "give vary.X and vary.Y")
     system = stage.kind.system
+    options: Any = stage.options
     varied = [axis.name for axis in stage.axes]
     for name in read_system(system, min(most_balls(system), 1)).mirror.broken_by:
-        if stage.options.type == "symmetry_breaking" and (name in varied or stage.params.get(name, 0) != 0):
+        if options.type == "symmetry_breaking" and (name in varied or stage.params.get(name, 0) != 0):
             raise DeclarationError(f"there is no symmetry to break unless {name} = 0; give that and vary others")
 
 

@@ -33,9 +33,9 @@ _COLUMNS_OF = {
 class RegimesOptions(PlotOptions, frozen=True, tag="regimes"):
     """One sweep over two parameters, the first along x: a map of what is reached, and one of K2/K1 or of a power.
 
-    Of several balls K2 is the sum. Where the sweep declares a law of harvest the second map is of the power harvested at
-    both ends, else of a system whose cavity is driven itself of the power that impacts take. Stages of kind `curve`
-    over the same two parameters are laid over both maps.
+    Of several balls K2 is the sum. Where the sweep declares a law of harvest the second map is of the power harvested
+    at both ends, else of a system whose cavity is driven itself of the power that impacts take. Stages of kind
+    `curve` over the same two parameters are laid over both maps.
     """
 
 
