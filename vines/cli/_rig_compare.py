@@ -24,11 +24,13 @@ def command(run: Path, ring_downs: tuple[Path, ...], as_json: bool) -> None:
 
     The verdict is agree, pattern_only, disagree or undecidable, with the reason. E_n = |measured - model|/(2 u) of
     impact phase, max|x1| and K2/K1 is at most 1 where they agree. Also writes RUN/derived/comparison.json. Exit code 1
-    unless the verdict is agree. Of a folder of runs all with the ball are, a line each. Parameters calibrated on other runs need a pipeline: see docs/rig.md.
+    unless the verdict is agree. Of a folder of runs all with the ball are compared, a line each. Parameters calibrated
+    on other runs need a pipeline: see docs/rig.md.
 
     \b
     vines rig compare campaign/runs/01_up
     """  # noqa: D301
+    from vines.cli._rig_reconstruct import lost_row, show_runs
     from vines.stages import compare_run, compile_for, each_of, is_campaign
 
     several = is_campaign(run)

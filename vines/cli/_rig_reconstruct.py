@@ -28,7 +28,7 @@ def command(run: Path, ring_downs: tuple[Path, ...], as_json: bool) -> None:
 
     Ring-downs are those that run.json names, else the nearest before and after, among the run folders beside RUN.
     Writes RUN/derived/reconstruction.json and RUN/derived/rig_impacts.parquet. Exit code 1 if a gate or check fails.
-    Of a folder of runs all with the ball are, a line each; what is wrong with one leaves the others.
+    Of a folder of runs all with the ball are reconstructed, a line each; what is wrong with one leaves the others.
 
     \b
     vines rig reconstruct campaign/runs/01_up

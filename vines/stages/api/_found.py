@@ -101,9 +101,11 @@ def _findings(results: dict[str, Result]) -> Iterable[str]:
         if "curves" in result.tables:
             yield from (f"{line}  ({stage})" for line in _curves(result.table("curves").to_pylist()))
         if "reconstructions" in result.tables:
-            rows = result.table("reconstructions").to_pylist()
+            rows = [row for row in result.table("reconstructions").to_pylist() if row["protocol"] != "ringdown"]
             accepted = sum(bool(row["accepted"]) for row in rows)
-            yield f"{len(rows)} runs of a rig, {accepted} of them pass every gate and check  ({stage})"
+            failed = sum(row["status"] == "failed" for row in rows)
+            lost = f", {failed} cannot be used (reasons in reconstructions)" if failed else ""
+            yield f"{len(rows)} runs of a rig, {accepted} of them pass every gate and check{lost}  ({stage})"
         if "comparisons" in result.tables:
             yield from (f"{line}  ({stage})" for line in _compared(result.table("comparisons").to_pylist()))
         if "points" in result.tables:
