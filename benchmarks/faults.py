@@ -20,7 +20,8 @@ HEAD = """\
 Written by `python -m benchmarks.faults`. Each file below `data/` of a small pipeline (a sweep `up`, a `run`,
 a `picture`) was deleted, truncated (to nothing or to half), had a bit flipped, and was replaced by the same
 file of another pipeline, one at a time: {count} faults. Then the commands were called in the order of the
-columns. Kernels have tests of their own (`tests/kernels/test_cache.py`).
+columns. Kernels have tests of their own (`tests/kernels/test_cache.py`). Two more faults, a JSON object without
+content and a link to itself, are in the full tests and end as those here.
 
 - **named**: told in a line with what mends it, exit code 1 or 2; no traceback, no wrong number.
 - **right**, **up to date**, **whole**, **nothing to do**: what was hurt is not needed, and the answer is that

@@ -149,7 +149,7 @@ def test_every_file_of_the_store_has_a_fault(whole, tmp_path):
 
 
 @pytest.mark.full
-@pytest.mark.parametrize("fault", (*FAULTS, *MORE), ids=lambda each: each.__name__)
+@pytest.mark.parametrize("fault", [*FAULTS, *MORE], ids=lambda each: each.__name__)
 def test_every_file_of_the_store_has_every_fault(whole, tmp_path, fault):
     inject(whole, tmp_path, lambda number: fault)
 
