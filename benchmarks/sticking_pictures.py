@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -10,9 +9,8 @@ from matplotlib.colors import ListedColormap
 from matplotlib.figure import Figure
 
 from vines.attractors import classify_many, settle, settle_from
-from vines.errors import OrbitNotFound
 from vines.model import Params
-from vines.orbits import Branch, Orbit, continue_orbit, find_orbit
+from vines.orbits import continue_orbit, find_orbit, follow_end
 
 FOLDER = Path(__file__).resolve().parent.parent / "docs" / "pictures"
 CASE = Params(mu=0.0256654, A=0.965717, Omega=1.02946, r=0.347164, lam=0.0959532)
@@ -43,15 +41,16 @@ def branch_picture() -> None:
     axes = figure.subplots(3, 1, sharex=True)
     for value, sticks, phase, speed in simulated(np.linspace(1.2, 0.3, 226)):
         colour = STICKS if sticks else OTHER
-        axes[0].plot(np.full(len(phase), value), phase, ",", color=colour, alpha=0.8)
-        axes[1].plot(np.full(len(speed), value), speed, ",", color=colour, alpha=0.8)
+        axes[0].plot(np.full(len(phase), value), phase, ".", ms=1.6, color=colour)
+        axes[1].plot(np.full(len(speed), value), speed, ".", ms=1.6, color=colour)
     left = [each.spells[each.spells["side"] > 0][0] for each in orbits]
     contact = [float(each.phase[0]) for each in orbits]
     axes[0].plot(A, contact, color=INK, lw=1.2, label="first impact")
     axes[0].plot(A, [s["phase_start"] for s in left], color=INK, lw=1.2, ls="--", label="chatter complete")
     axes[0].plot(A, [s["phase_release"] for s in left], color=INK, lw=1.2, ls=":", label="release")
     axes[0].set_ylabel("phase on L [rad]")
-    axes[0].legend(fontsize=7, loc="upper right")
+    axes[0].set_ylim(0, 2.9)
+    axes[0].legend(fontsize=7, loc="upper right", ncols=3)
     axes[1].plot(A, [each.w_dot[0] for each in orbits], color=INK, lw=1.2)
     axes[1].set_ylabel("w' at impacts on L")
     axes[2].plot(A, [abs(each.half_multipliers[0]) for each in orbits], color=INK, lw=1.2, label="|m| of the half map")
@@ -63,22 +62,6 @@ def branch_picture() -> None:
         ax.axvline(end.value, color=INK, lw=0.6, ls=(0, (1, 2)))
     axes[0].set_title(f"L*R*, chatter complete from A = {end.value:.7f} on; simulation red where it sticks", fontsize=9)
     figure.savefig(FOLDER / "sticking_branch.png", dpi=130)
-
-
-def bound(p: Params, values: np.ndarray, along: str, stop: float) -> list[tuple[float, str, float]]:
-    """Return value of mu, type and place of the end of L*R* along a parameter, from one mu to the next."""
-    found: list[tuple[float, str, float]] = []
-    orbit: Orbit | None = None
-    for mu in values:
-        here = p.replace(mu=float(mu))
-        try:
-            orbit = find_orbit("L*R*", here, guess=orbit) if orbit is not None else find_orbit("L*R*", here)
-        except OrbitNotFound:
-            orbit = None
-            continue
-        branch: Branch = continue_orbit(orbit, along, stop)
-        found += [(float(mu), each.type, each.value) for each in branch.bifurcations]
-    return found
 
 
 def map_picture() -> None:
@@ -96,13 +79,9 @@ def map_picture() -> None:
     ax = figure.add_subplot()
     colours = ListedColormap(["#ffffff", "#e3d6c3", "#a9c8e6", "#2b5d8c"])
     ax.pcolormesh(A, mu, kind.reshape(len(mu), len(A)), cmap=colours, vmin=-0.5, vmax=3.5, shading="nearest")
-    for name, stop in (("A", 0.02),):
-        told = bound(base, np.geomspace(0.001, 0.6, 140), name, stop)
-        for type_, colour in (("incomplete_chatter", STICKS), ("grazing", "#0b4ea2"), ("neimark_sacker", "#0b7d6b")):
-            points = [(value, m) for m, each, value in told if each == type_]
-            for (a, m), (b, n) in pairwise(points):
-                if abs(np.log(b / a)) < 0.25 and abs(np.log(n / m)) < 0.1:
-                    ax.plot([a, b], [m, n], color=colour, lw=1.4)
+    inside = find_orbit("L*R*", base.replace(mu=float(mu[0])))
+    ends = follow_end(inside, "A", 0.05, other="mu", values=np.geomspace(mu[0], mu[-1], 140).tolist())
+    ax.plot([end.params.A for end in ends], [end.params.mu for end in ends], color=STICKS, lw=1.4)
     ax.set(xscale="log", yscale="log", xlabel="A", ylabel="mu", xlim=(A[0], A[-1]), ylim=(mu[0], mu[-1]))
     ax.set_title(
         "Dark: 1:1 that sticks; blue: 1:1 without; brown: other recurrent sticking. Red: end of L*R*", fontsize=8
