@@ -14,7 +14,7 @@ GROUP = 16
 HORIZON = 0.6
 """Share of the longest move up to which Taylor's polynomial of tenth order is of use."""
 
-SHORT = 0.5
+SHORT = 0.7
 """A hop below this share of the usual time is taken for the next flight."""
 
 
