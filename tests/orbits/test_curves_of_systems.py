@@ -89,7 +89,7 @@ def test_bounces_on_the_lower_end_have_straight_curves():
 def test_a_curve_of_multipliers_ends_where_an_impact_loses_its_speed(level):
     fold = met(level, "B", 0.2, "fold", within=(0.2, 0.7))
     curve = follow_curve(fold, ("B", "G"), box={"B": (0.2, 0.5), "G": (0.0, 0.4)})
-    assert "grazing" in curve.ends
+    assert set(curve.ends) == {"box", "grazing"}  # it begins on the border of the box
     [end] = curve.special
     assert end.orbit.admissible
     assert min(end.orbit.side * end.orbit.w_dot) == pytest.approx(1e-3, rel=1e-3)

@@ -198,6 +198,10 @@ class _Way:
 
     def run(self, begin: Point) -> None:
         self.begin = begin
+        out = begin.tangent[-2:]
+        if np.any((begin.y[-2:] <= self.low) & (out < 0) | (begin.y[-2:] >= self.high) & (out > 0)):
+            self.end = "box"
+            return
         self.functions = special_functions(self.problem)
         self.values = [special.function(begin) for special in self.functions]
         walk = Walk(

@@ -130,7 +130,11 @@ def family_orbit_defects(table: str, rows: Rows) -> Iterator[Defect]:
 def family_curve_defects(table: str, rows: Rows) -> Iterator[Defect]:
     """Yield the checks of rows of a table of curves."""
     yield _parameters(table, rows)
-    yield _product(rows)
+    product = _product(rows)
+    # A curve may end where an impact has the speed 1e-3: M is a thousand times its multipliers there, and infinite on a
+    # grazing curve of an impact without speed.
+    off = np.where(rows.text("type") == "grazing", np.nan, product.values)
+    yield Defect(product.name, product.says, 100 * _PRODUCT, off)
     yield from curve_equations(rows)
 
 
