@@ -213,7 +213,7 @@ class Numbers:
         kind = getattr(value, "dtype", None)
         if kind is not None and kind.kind in "fiu" and isinstance(self.each, Number):
             # The extremes stand for the rest; nan is one of them if there is any.
-            given = [value.min(), value.max()] if len(given) else []
+            given = [given.min(), given.max()] if len(given) else []
         for number in given:
             self.each.check(f"a number of {name}", number, error)
 

@@ -85,7 +85,11 @@ def test_parameters_and_states_are_those_of_the_system():
     spec = {column.name: column for column in schema.table("points").columns}
     for parameter in VI_NES.parameters:
         column = spec[parameter.name]
-        assert (column.description, column.source, column.minimum) == (parameter.text, parameter.source, 0)
+        assert (column.description, column.source, column.minimum) == (
+            parameter.text,
+            parameter.source,
+            parameter.allowed.least,
+        )
     assert [name for name in spec if name.startswith("end_")] == [f"end_{each.name}" for each in VI_NES.start]
     assert schema.table("orbits").columns[list(schema.table("orbits").names).index("x1")].dtype == "list<float64>"
 

@@ -38,7 +38,8 @@ def test_every_point_is_named_and_most_are_settled(coarse, points):
         assert (row["name"] is not None) == (row["regime"] == "periodic")
         assert row["settled"] == (row["regime"] != "unsettled")
         if row["regime"] == "chaotic":
-            assert row["lyapunov"] > 3 * row["lyapunov_error"] > 0
+            # Told with the correlation of its blocks, of which the decision knows nothing.
+            assert row["lyapunov"] > 2 * row["lyapunov_error"] > 0
     assert list(coarse.data.glob("results/*/picture.png"))
 
 

@@ -89,8 +89,9 @@ class Room:
 
     def conserves(self, p: Any) -> bool:
         """Say whether nothing is lost, by damping or in impacts: volumes of states are kept, and nothing attracts."""
-        r = getattr(p, "r", 0.0)  # a system without it may have a restitution that is none of its parameters
-        return getattr(p, "lam", 0.0) == 0.0 and all(each == 1.0 for each in (r if isinstance(r, tuple) else (r,)))
+        restitution = getattr(p, "r", 0.0)
+        each = restitution if isinstance(restitution, tuple) else (restitution,)
+        return getattr(p, "lam", 0.0) == 0.0 and all(r == 1.0 for r in each)
 
     def base(self, p: Any, phase: Any) -> Any:
         """Return the displacement that is prescribed."""

@@ -131,7 +131,10 @@ def all_orbits(word: str | Word, p: Any) -> Orbits:
     else:
         complete = False
         _gather_long(gathered)
-        remark = "Newton's method from simulations, neighbouring orbits and random starts: there may be more"
+        remark = (
+            f"Newton's method from {gathered.tried} starts (simulations, neighbouring amplitudes, orbits of half the "
+            "period, random flight times): there may be more"
+        )
         if can_search(word, halves=True):
             remark += "; of symmetric orbits none is missing"
     gathered.add_mirror_images()
@@ -144,7 +147,7 @@ def _searched(word: Word, p: Any) -> Orbits:
     for t in (*harvested_times(word, p), *random_times(word, p, _SIMPLEX)):
         gathered.solve(t)
     gathered.add_mirror_images()
-    remark = "Newton's method from simulations and random starts: there may be more"
+    remark = f"Newton's method from {gathered.tried} starts (simulations, random flight times): there may be more"
     return Orbits(_in_order(gathered.orbits), complete=False, remark=remark, nearest=gathered.nearest)
 
 
@@ -153,17 +156,19 @@ def _in_order(orbits: list[Orbit]) -> list[Orbit]:
 
 
 class _Gathered:
-    """The different orbits found so far."""
+    """The different orbits found so far, and from how many starts they were sought."""
 
     def __init__(self, word: Word, p: Any) -> None:
         self.word, self.p, self.c = word, p, constants(p)
         self.orbits: list[Orbit] = []
         self.nearest = np.inf
+        self.tried = 0
         self._duration = word.p * p.period
         self._side = marks_of(word)
 
     def solve(self, t: Floats) -> bool:
         """Add what Newton's method finds from impact times, and say whether it converged."""
+        self.tried += 1
         converged, t, defect, states = newton_kernel(self.c, self._duration, self._side, t, ITERATIONS)
         if not converged:
             if np.isfinite(defect):
