@@ -134,13 +134,18 @@ def known_channels(name: str, file: RawFile) -> tuple[list[dict[str, str]], dict
             row["unit"], by["unit"] = channel.unit, "unit in the file"
             if _quantity(channel.unit) not in ("voltage", "count", None):
                 row["sensitivity"], by["sensitivity"] = "scaled", "unit in the file"
+        if "scale" in channel.about and channel.unit == "count":
+            row["scale"], by["scale"] = channel.about["scale"], "scale in the file"
+            row["unit"], by["unit"] = channel.about.get("scale_unit", ""), "unit beside its scale"
         if channel_facts(channel).rate:
             row["fs"], by["fs"] = "file", "rate in the file"
         row["t0"] = "0" if channel.start is None else "file"
         if file.dialect:
             row["dialect"], by["dialect"] = file.dialect, "layout as it was found"
         rows.append({key: text for key, text in row.items() if text})
-        notes |= {f"{own}.{key}": Proposal(row[key], f"{RECORDING}{name}, {what}") for key, what in by.items()}
+        notes |= {
+            f"{own}.{key}": Proposal(row[key], f"{RECORDING}{name}, {what}") for key, what in by.items() if row[key]
+        }
     return rows, notes
 
 

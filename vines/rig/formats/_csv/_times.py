@@ -12,7 +12,7 @@ import numpy.typing as npt
 from vines.errors import RigError
 from vines.rig.formats._csv._head import Name, is_unit
 from vines.rig.formats._csv._layout import COUNTS, Layout
-from vines.rig.formats._csv._table import day_seconds, numbers
+from vines.rig.formats._csv._table import day_seconds, measures, numbers
 from vines.rig.units import si_factor
 
 __all__ = ["TimeColumn", "counts_rows", "time_columns", "times_of"]
@@ -109,9 +109,13 @@ def times_of(
         If a time is missing.
     """
     units = {k: _unit(layout, k, stated_unit, noted_unit) for k in places}
+    measured = {k: measures(table.column(k), layout.decimal, layout.names[k]) for k in layout.measured & {*places}}
+    units |= {k: unit for k, (_, _, unit) in measured.items() if unit is not None}
     read: dict[int, Callable[[], npt.NDArray[np.float64]]] = {
         k: (lambda k=k: day_seconds(table.column(k)))
         if units[k] == "stamp"
+        else (lambda k=k: measured[k][0])
+        if k in measured
         else (lambda k=k: numbers(table.column(k), layout.decimal)[0])
         for k in places
     }
