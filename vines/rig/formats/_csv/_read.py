@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from vines.rig.formats._csv._cells import split_line
+from vines.rig.formats._csv._dates import start_of
 from vines.rig.formats._csv._dialect import DECIMALS, SEPARATORS, Dialect, stated_dialect
 from vines.rig.formats._csv._encoding import to_utf8
 from vines.rig.formats._csv._head import read_notes
@@ -101,7 +102,8 @@ def read(path: Path, dialect: str = "") -> RawFile:
         time=0 if main is None else main.column,
         time_unit="unknown" if main is None else main.unit.replace(" ", ""),
     )
-    return RawFile("CSV", tuple(channels), notes.started, tuple(other), str(found), tuple(remarks))
+    began = start_of(table.column(main.column - 1)[0].as_py()) if main is not None and main.unit == "stamp" else None
+    return RawFile("CSV", tuple(channels), began or notes.started, tuple(other), str(found), tuple(remarks))
 
 
 def _scale(layout: Layout, k: int) -> float | None:
