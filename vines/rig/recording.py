@@ -16,9 +16,17 @@ ROLES = {
     "base_acc": ("acceleration", "m/s^2"),
     "lo_disp": ("displacement", "m"),
     "lo_acc": ("acceleration", "m/s^2"),
+    "base_vel": ("velocity", "m/s"),
+    "lo_vel": ("velocity", "m/s"),
     "ball_cam": ("displacement", "m"),
+    "stinger_force": ("force", "N"),
+    "temperature": ("temperature", "degC"),
+    "sound": ("pressure", "Pa"),
 }
-"""What a channel may measure, with its quantity and SI unit. Positive is to the right, the direction of x1."""
+"""What a channel may measure, with its quantity and SI unit. Positive is to the right, the direction of x1.
+
+Temperature is that of the springs, the stinger's force that of the shaker on the base, sound that of a microphone.
+"""
 
 
 @dataclass(frozen=True, slots=True)

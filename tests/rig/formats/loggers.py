@@ -11,6 +11,7 @@ COUNT = 240
 T = np.arange(COUNT) / RATE
 LO = np.round(2.0 * np.sin(55.4 * T) + 0.01, 5)
 BASE = np.round(1.5 * np.cos(55.4 * T), 5)
+COUNTED = (np.rint(1e5 * LO), np.rint(1e5 * BASE))
 
 
 @dataclass(frozen=True)
@@ -268,6 +269,27 @@ LOGGERS: dict[str, Case] = {
     "pandas_index": Case((",Time [s],lo [V],base [V]\n" + rows("{k},{t:.5f},{a},{b}")).encode()),
     "r_row_names": Case(("Time [s],lo [V]\n" + rows("{k},{t:.5f},{a}")).encode(), refused="2 names, but rows have 3"),
     "head_too_long": Case(("Time [s],lo [V],base [V],x [V]\n" + rows(PLAIN)).encode(), refused="4 names.*3 fields"),
+    "scale_row_of_counts": Case(
+        ("Time,lo,base\ns,V,V\nScale,0.00001,0.00001\n" + rows("{t:.3f},{a:.0f},{b:.0f}", columns=COUNTED)).encode(),
+        units=("count", "count"),
+        said="line 3 states the scale 1e-05 V of 'lo': it is not applied",
+    ),
+    "scale_row_beside_fractions": Case(
+        ("Time [s];lo [V];base [V]\n" + comma("Factor;2.5;1.0\n" + rows(SEMI))).encode(),
+        units=(None, "V"), said="line 2 states the scale 2.5 V of 'lo': it is not applied",
+    ),
+    "units_in_cells": Case(("Time,lo,base\n" + rows("{t:.3f} s,{a} V,{b}V")).encode()),
+    "units_in_cells_german": Case(("Zeit;lo;base\n" + comma(rows("{t:.3f} s;{a} V;{b} V"))).encode("cp1252")),
+    "units_in_cells_of_two_sizes": Case(
+        ("Time,lo,base\n" + rows("{t:.3f} s,{a} V,{b} V").replace("0.002 s,", "2 ms,")).encode()
+    ),
+    "units_in_cells_beside_others_in_the_head": Case(
+        ("Time [s],lo [m],base\n" + rows("{t:.3f},{a} V,{b} V")).encode(), refused="cells are in V, the head says m"
+    ),
+    "units_in_cells_of_two_kinds": Case(
+        ("Time,lo,base\n" + rows("{t:.3f} s,{a} V,{b} V").replace(f"{LO[9]} V", f"{LO[9]} mm")).encode(),
+        refused="column 'lo': cells are in mm, others are in V",
+    ),
     "excel_sep": Case(("sep=;\nTime [s];lo [V];base [V]\n" + comma(rows(SEMI))).encode("utf-8-sig")),
     "excel_unicode_text": Case(
         ("Zeit [s]\tlo [V]\tbase [V]\r\n" + comma(rows("{t:.5f}\t{a}\t{b}")).replace("\n", "\r\n")).encode("utf-16")

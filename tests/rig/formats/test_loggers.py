@@ -38,3 +38,25 @@ def test_files_of_loggers(case, tmp_path):
         again = read_file(path, found.dialect.replace("time_unit=unknown", "").replace("encoding=utf-16-le", ""))
         assert again.channels[0].name == found.channels[0].name
         np.testing.assert_array_equal(again.channels[-1].values, found.channels[-1].values)
+
+
+def _stamped(path, days, separator="-"):
+    """Write two rows a second about midnight, the second half of them so many days later."""
+    rows = []
+    for k in range(200):
+        late = k >= 100
+        clock = f"00:00:{(k - 100) / 10:06.3f}" if late else f"23:59:{50 + k / 10:06.3f}"
+        day = 2 + days if late else 2
+        told = f"{day:02}.03.2026" if separator == "." else f"2026{separator}03{separator}{day:02}"
+        rows.append(f"{told} {clock};{np.sin(k):.4f}")
+    path.write_text("Time;lo [V]\n" + "\n".join(rows) + "\n")
+    return path
+
+
+@pytest.mark.parametrize("separator", ["-", "/", "."])
+def test_dates_are_laid_beside_the_midnights_that_times_pass(tmp_path, separator):
+    found = read_file(_stamped(tmp_path / "one.csv", 1, separator))
+    assert channel_facts(found.channels[0]).rate == pytest.approx(10.0)
+    assert found.started == "2026-03-02T23:59:50.000"
+    with pytest.raises(RigError, match=r"from 2026-03-02 to 2026-03-04, its times pass midnight 1 times"):
+        read_file(_stamped(tmp_path / "two.csv", 2, separator))

@@ -276,3 +276,15 @@ def test_a_recording_says_what_it_knows_and_no_more(tmp_path):
     for name in ("start_utc", "E_cmd", "settle", "temperature_after"):
         with pytest.raises(RigError, match=f"still null: .*{name}"):
             read_folder(tmp_path / "new")
+
+
+def test_a_scale_in_the_head_is_proposed_and_not_applied(tmp_path):
+    counts = np.rint(20000 * np.sin(np.arange(600) / 20)).astype(int)
+    text = "Time,lo laser\nms,V\nScale,0.0003\n" + "".join(f"{k},{value}\n" for k, value in enumerate(counts))
+    (tmp_path / "log.csv").write_text(text)
+    made = init_run(tmp_path / "new", [tmp_path / "log.csv"])
+    head, row = [line.split("\t") for line in made.files[1].read_text().splitlines() if line[0] != "#"]
+    cells = dict(zip(head, row, strict=True))
+    assert (cells["scale"], cells["unit"], cells["sensitivity"]) == ("0.0003", "V", "n/a")
+    proposed = json.loads(made.files[0].read_text())["proposed"]
+    assert proposed["lo_laser.scale"]["by"] == "recording log.csv, scale in the file"

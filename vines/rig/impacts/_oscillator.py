@@ -120,7 +120,8 @@ def measure_response(
     displacement, accelerometer = recording.role("lo_disp"), recording.role("lo_acc")
     channel = displacement or accelerometer
     if channel is None:
-        raise RigError(f"run {recording.run.run_id!r} has no channel on the oscillator (lo_disp or lo_acc)")
+        alone = "; a velocity alone gives no impacts" if recording.role("lo_vel") else ""
+        raise RigError(f"run {recording.run.run_id!r} has no channel on the oscillator (lo_disp or lo_acc){alone}")
     order = 0 if displacement is not None else 2
     bins = bins_of(channel) if order == 0 else _quiet(channel)
     model = JumpModel(bins, s, omega, order, forced, seed=seed)

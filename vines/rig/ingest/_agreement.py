@@ -19,6 +19,8 @@ _ANGLE = np.radians(35.0)
 """The same of their phases."""
 _COMMAND = 5e-3
 """Relative difference of measured and commanded frequency that no generator has: a clock or the command is wrong."""
+_WARMER = 3.0
+"""[K] By how much springs, a sensor on them and a reading by hand may differ, and warm up in a run."""
 _REACHED = (0.5, 1.5)
 """Measured over commanded base amplitude: shakers sag by a fifth, and don't overshoot by half."""
 
@@ -41,16 +43,16 @@ def check_agreement(run: RunInfo, channels: Sequence[Sampled], measured: Collect
         If two channels that saw one motion contradict each other, or the base its command.
     """
     said: list[str] = []
-    base = _tones(channels, ("base_disp", "base_acc"), None)
+    base = _tones(channels, ("base_disp", "base_vel", "base_acc"), None)
     ringdown = run.protocol == "ringdown"
     frequency = next((tone.f for _, tone in base if tone.clear), None) if not ringdown else None
     if not ringdown:
         said += _check_command(replace(run, **dict.fromkeys(measured)), base)
-    for pair in (base if not ringdown else [], _tones(channels, ("lo_disp", "lo_acc"), frequency)):
+    for pair in (base if not ringdown else [], _tones(channels, ("lo_disp", "lo_vel", "lo_acc"), frequency)):
         for k, (one, a) in enumerate(pair):
             for other, b in pair[k + 1 :]:
                 said += _compare(one, a, other, b)
-    return tuple(said)
+    return (*said, *_check_temperature(run, channels))
 
 
 def _tones(channels: Sequence[Sampled], roles: tuple[str, ...], near: float | None) -> list[tuple[Sampled, Tone]]:
@@ -77,7 +79,7 @@ def _check_command(run: RunInfo, base: list[tuple[Sampled, Tone]]) -> list[str]:
                 "the command is wrong"
             )
         if run.E_cmd is not None:
-            E = tone.amplitude if channel.role == "base_disp" else tone.amplitude / (2 * np.pi * tone.f) ** 2
+            E = tone.amplitude / (2 * np.pi * tone.f) ** _derivative(channel)
             if not _REACHED[0] < E / run.E_cmd < _REACHED[1]:
                 raise RigError(
                     f"{channel.where}: the base moves by {E:.3g} m, {E / run.E_cmd:.3g} times E_cmd = {run.E_cmd:.3g}: "
@@ -90,13 +92,38 @@ def _check_command(run: RunInfo, base: list[tuple[Sampled, Tone]]) -> list[str]:
     return [f"{channel.name} against the command{missing}" for channel, _ in base]
 
 
+def _derivative(channel: Sampled) -> int:
+    """Return how often a motion was differentiated in what a channel measures."""
+    return ("disp", "vel", "acc").index(channel.role.rpartition("_")[2])
+
+
+def _check_temperature(run: RunInfo, channels: Sequence[Sampled]) -> list[str]:
+    """Compare what the sensor at the springs says in the first and last second with what is stated."""
+    said = []
+    for channel in channels:
+        if channel.role != "temperature":
+            continue
+        count = max(1, round(channel.rate))
+        for part, stated, when in zip(
+            (channel.values[:count], channel.values[-count:]), run.temperature, ("before", "after"), strict=True
+        ):
+            off = float(np.median(part)) - stated
+            if abs(off) > _WARMER:
+                raise RigError(
+                    f"{channel.where}: it says {stated + off:.4g} degC, temperature_{when} is {stated:.4g} degC; a "
+                    "unit, a sensitivity, an offset or the statement is wrong, or it is not at the springs"
+                )
+            said.append(f"{channel.name} against temperature_{when}: {off:+.2f} K")
+    return said
+
+
 def _compare(one: Sampled, a: Tone, other: Sampled, b: Tone) -> list[str]:
     """Compare the fundamentals of two channels that saw one motion."""
     if not (a.clear and b.clear):
         return []
-    flipped = one.role != other.role
-    ratio = b.amplitude / a.amplitude / ((2 * np.pi * a.f) ** 2 if flipped else 1.0)
-    angle = b.phase - a.phase - (np.pi if flipped else 0.0)
+    times = _derivative(other) - _derivative(one)
+    ratio = b.amplitude / a.amplitude / (2 * np.pi * a.f) ** times
+    angle = b.phase - a.phase - 0.5 * np.pi * times
     angle = float((angle + np.pi) % (2 * np.pi) - np.pi)
     if abs(abs(angle) - np.pi) < _ANGLE:
         raise RigError(

@@ -19,9 +19,11 @@ _SLIP = 2e-4
 """[s] Jump of a clock from one block to the next that means lost samples."""
 _PAIRS = (
     ("base_acc", "base_acc"),
+    ("base_vel", "base_vel"),
     ("base_disp", "base_disp"),
     ("base_disp", "base_acc"),
     ("base_acc", "base_disp"),
+    ("lo_vel", "lo_vel"),
     ("lo_disp", "lo_disp"),
     ("lo_acc", "lo_acc"),
     ("lo_disp", "lo_acc"),

@@ -33,12 +33,18 @@ _QUANTITIES = {
     "velocity": r"vel\w*|vibro\w*|v\d?|schnelle",
     "acceleration": r"acc\w*|a\d?|beschl\w*",
 }
+_OTHERS = {
+    "stinger_force": r"stinger|force|kraft|loadcell",
+    "temperature": r"temp\w*|thermo\w*",
+    "sound": r"sound|mic\w*|schall\w*",
+}
 _SUFFIX = {"displacement": "disp", "velocity": "vel", "acceleration": "acc"}
 _BLOCKS = 8
 _FALLS = 0.97
 """Each eighth of a free decay is smaller than the one before by this and more."""
 _FALLEN = 0.7
 _DIGITS = 6
+_DERIVATIVES = {"base_disp": 0, "base_vel": 1, "base_acc": 2}
 _EARLIEST = 1990
 """Before it a start is none: LabVIEW and Unix count from 1904 and 1970."""
 
@@ -77,6 +83,9 @@ def role_of(name: str, unit: str | None) -> str | None:
         return last.casefold()
     words = [word for word in re.split(r"[^a-zA-Zß0-9]+|(?<=[a-z])(?=[A-Z])", last) if word]
     bodies = [key for key, pattern in _BODIES.items() if any(_is(pattern, word) for word in words)]
+    if not bodies:
+        others = [role for role, pattern in _OTHERS.items() if any(_is(pattern, word) for word in words)]
+        return others[0] if len(others) == 1 else None
     if len(bodies) != 1:
         return None
     if bodies == ["ball"]:
@@ -125,13 +134,18 @@ def known_channels(name: str, file: RawFile) -> tuple[list[dict[str, str]], dict
             row["unit"], by["unit"] = channel.unit, "unit in the file"
             if _quantity(channel.unit) not in ("voltage", "count", None):
                 row["sensitivity"], by["sensitivity"] = "scaled", "unit in the file"
+        if "scale" in channel.about and channel.unit == "count":
+            row["scale"], by["scale"] = channel.about["scale"], "scale in the file"
+            row["unit"], by["unit"] = channel.about.get("scale_unit", ""), "unit beside its scale"
         if channel_facts(channel).rate:
             row["fs"], by["fs"] = "file", "rate in the file"
         row["t0"] = "0" if channel.start is None else "file"
         if file.dialect:
             row["dialect"], by["dialect"] = file.dialect, "layout as it was found"
         rows.append({key: text for key, text in row.items() if text})
-        notes |= {f"{own}.{key}": Proposal(row[key], f"{RECORDING}{name}, {what}") for key, what in by.items()}
+        notes |= {
+            f"{own}.{key}": Proposal(row[key], f"{RECORDING}{name}, {what}") for key, what in by.items() if row[key]
+        }
     return rows, notes
 
 
@@ -173,8 +187,8 @@ def known_run(files: Mapping[str, RawFile], rows: Sequence[Cells], protocol: str
         entries["protocol"] = protocol
     if protocol == "ringdown":
         return found
-    order = {"base_disp": 0, "base_acc": 1}
-    for row, channel in sorted(seen, key=lambda one: order.get(one[0].cells.get("role", ""), 2)):
+    order = {"base_disp": 0, "base_vel": 1, "base_acc": 2}
+    for row, channel in sorted(seen, key=lambda one: order.get(one[0].cells.get("role", ""), 3)):
         role = row.cells.get("role", "")
         if not role.startswith(("base", "lo")) or (tone := _tone(channel)) is None:
             continue
@@ -263,7 +277,7 @@ def _amplitude(row: Cells, channel: RawChannel, f: float) -> float | None:
     tone = find_tone(seen.values, seen.valid, seen.rate, seen.start, f)
     if tone is None:
         return None
-    return tone.amplitude if told.role == "base_disp" else tone.amplitude / (2 * np.pi * f) ** 2
+    return tone.amplitude / (2 * np.pi * f) ** _DERIVATIVES[told.role]
 
 
 def _rounded(value: float) -> float:

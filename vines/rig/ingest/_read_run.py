@@ -142,10 +142,10 @@ def _assemble(
     check_starts(raw)
     clocks = align_clocks(calibrated, max_offset=form.max_offset, ringdown=info.protocol == "ringdown")
     channels = [_on_the_clock(channel, clocks[channel.row.recorder]) for channel in calibrated]
-    if not any(channel.role in ("lo_disp", "lo_acc") for channel in channels):
-        raise RigError("no channel measures the oscillator (roles lo_disp, lo_acc)")
+    if not any(channel.role in ("lo_disp", "lo_vel", "lo_acc") for channel in channels):
+        raise RigError("no channel measures the oscillator (roles lo_disp, lo_vel, lo_acc)")
     if info.protocol != "ringdown" and not any(channel.role.startswith("base") for channel in channels):
-        raise RigError("no channel measures the base (base_disp, base_acc); a command is no measurement")
+        raise RigError("no channel measures the base (base_disp, base_vel, base_acc); a command is no measurement")
     measured = [key for key, note in holding(form).items() if note.by.startswith(RECORDING)]
     compared = check_agreement(info, channels, [key for key in measured if key in ("f_cmd", "E_cmd")])
     together = hashlib.sha256(

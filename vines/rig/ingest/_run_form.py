@@ -90,9 +90,16 @@ class ChannelRow(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_onl
 
     name: Annotated[str, Meta(pattern=r"^[A-Za-z0-9][A-Za-z0-9_.-]*$", description="Name of the channel")]
     role: Annotated[
-        Literal["base_disp", "base_acc", "lo_disp", "lo_acc", "ball_cam"], Meta(description="What it measures")
+        Literal[
+            "base_disp", "base_vel", "base_acc", "lo_disp", "lo_vel", "lo_acc", "ball_cam", "stinger_force",
+            "temperature", "sound",
+        ],
+        Meta(description="What it measures"),
+    ]  # fmt: skip
+    quantity: Annotated[
+        Literal["displacement", "velocity", "acceleration", "force", "temperature", "pressure"],
+        Meta(description="Quantity; must fit the role"),
     ]
-    quantity: Annotated[Literal["displacement", "acceleration"], Meta(description="Quantity; must fit the role")]
     dof: Annotated[str, Meta(description="Degree of freedom, such as x1 or e")] = ""
     file: Annotated[str, Meta(min_length=1, description="File below raw/")]
     field: Annotated[str, Meta(min_length=1, description="Name of the channel in that file")]

@@ -77,11 +77,11 @@ def measure_base(recording: Recording, *, harmonics: int = 3) -> Base:
     RigError
         If no channel measures the base.
     """
-    channel = recording.role("base_disp", "base_acc")
+    channel = recording.role("base_disp", "base_vel", "base_acc")
     if channel is None:
         raise RigError(
-            f"run {recording.run.run_id!r} has no channel on the base (base_disp or base_acc); the command is not used "
-            "in its place"
+            f"run {recording.run.run_id!r} has no channel on the base (base_disp, base_vel or base_acc); the command "
+            "is not used in its place"
         )
     fit = sine_fit(bins_of(channel), harmonics=harmonics)
     e = _displacement(channel, fit)
@@ -90,7 +90,8 @@ def measure_base(recording: Recording, *, harmonics: int = 3) -> Base:
     # The fit's phase is best in the middle of the record; the clock's alignment adds to it.
     # That of a first-order high-pass changes by its corner over the frequency.
     u_phase = float(np.hypot.reduce([fit.u_phase, fit.omega * channel.u_time, channel.u_high_pass / fit.f]))
-    second = recording.role("base_acc") if channel.role == "base_disp" else None
+    later = {"base_disp": ("base_acc", "base_vel"), "base_vel": ("base_acc",)}
+    second = recording.role(*later.get(channel.role, ()))
     other = None
     if second is not None:
         again = sine_fit(bins_of(second), harmonics=harmonics, near=fit.f)
@@ -109,7 +110,7 @@ def measure_base(recording: Recording, *, harmonics: int = 3) -> Base:
 
 def _displacement(channel: Sampled, fit: SineFit) -> npt.NDArray[np.complex128]:
     n = np.arange(1, len(fit.harmonics) + 1)
-    scale = 1.0 if channel.role == "base_disp" else -((n * fit.omega) ** 2)
+    scale = {"base_disp": 1.0, "base_vel": 1j * n * fit.omega}.get(channel.role, -((n * fit.omega) ** 2))
     return fit.harmonics / scale
 
 

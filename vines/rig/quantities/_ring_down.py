@@ -81,9 +81,9 @@ def ring_down(recording: Recording) -> RingDown:
     run = recording.run
     if run.ball:
         raise RigError(f"run {run.run_id!r} is a ring-down with the ball in; take it out and let the oscillator decay")
-    channel = recording.role("lo_disp", "lo_acc")
+    channel = recording.role("lo_disp", "lo_acc", "lo_vel")
     if channel is None:
-        raise RigError(f"run {run.run_id!r} has no channel on the oscillator (lo_disp or lo_acc)")
+        raise RigError(f"run {run.run_id!r} has no channel on the oscillator (lo_disp, lo_vel or lo_acc)")
     bins = bins_of(channel)
     t, y = bins.t, bins.mean - np.median(bins.mean)
     f = _line(t, y)

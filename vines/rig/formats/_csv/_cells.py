@@ -3,11 +3,15 @@
 from __future__ import annotations
 
 import csv
+import functools
 import re
 from collections import Counter
 from collections.abc import Sequence
 
-__all__ = ["STAMP", "conforms", "is_number", "kinds_of", "split_line"]
+from vines.errors import RigError
+from vines.rig.units import si_factor
+
+__all__ = ["MEASURE", "STAMP", "conforms", "is_number", "kinds_of", "split_line"]
 
 _NUMBER = {
     mark: re.compile(rf"[+-]?(?:\d+{re.escape(mark)}?\d*|{re.escape(mark)}\d+)(?:[eE][+-]?\d+)?") for mark in ".,"
@@ -26,8 +30,22 @@ STAMP = (
 )
 """A time of the day, behind a date maybe: 2026-03-02T09:00:00.25Z, 02.03.2026 09:00:00,250, 9:00:00.25 AM, 01:02.5."""
 
+MEASURE = r"^(?P<number>[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(?P<unit>[^\d\s.,:;/+-][^\d,:;]*(?:\^?-?\d)?)$"
+"""A number with a unit behind it in one cell: 1.2 mV, 3.4e-3V, 9.81 m/s^2."""
+
+_MEASURE = re.compile(MEASURE)
 _STAMP = re.compile(STAMP)
 _DATE = re.compile(r"\s*\d{1,4}[-/.]\w{1,3}[-/.]\d{1,4}\s*")
+
+
+@functools.cache
+def is_known(unit: str) -> bool:
+    """Say whether a text behind a number is a unit that is known."""
+    try:
+        si_factor(unit)
+    except RigError:
+        return False
+    return True
 
 
 def split_line(line: str, separator: str) -> list[str]:
@@ -72,6 +90,9 @@ def _kind(cell: str, decimal: str) -> str:
         return "lost"
     if _DATE.fullmatch(cell):
         return "date"
+    measure = _MEASURE.match(cell.replace(decimal, "."))
+    if measure and is_known(measure["unit"]):
+        return "measure"
     # Digits among other signs are what numbers look like that were parted wrongly.
     return "text" if any(map(str.isdigit, cell)) else "word"
 
@@ -81,7 +102,7 @@ def kinds_of(rows: Sequence[Sequence[str]], decimal: str) -> list[str]:
     kinds = []
     for column in zip(*rows, strict=True):
         counts = Counter(_kind(cell, decimal) for cell in column)
-        meanings = ("number", "stamp", "date", "text", "word")
+        meanings = ("number", "measure", "stamp", "date", "text", "word")
         said = sum(counts[kind] for kind in meanings)
         most = max(meanings, key=lambda kind: counts[kind])
         kinds.append(most if said else "number" if counts["lost"] else "empty")
@@ -94,7 +115,7 @@ def conforms(cells: Sequence[str], kinds: Sequence[str], decimal: str) -> bool:
         return False
     numbers = 0
     for cell, kind in zip(cells, kinds, strict=True):
-        if kind in ("number", "stamp"):
+        if kind in ("number", "measure", "stamp"):
             found = _kind(cell, decimal)
             if found not in (kind, "lost", "empty"):
                 return False

@@ -22,6 +22,21 @@ Where rows have several fields one is enough; a number alone may stand in a head
 _NAMES = ("tracename", "trace name", "channel name", "signal name", "name", "channel", "ch")
 _UNITS = ("vunit", "unit", "units")
 """Labels of rows of names and of units, where the first column is one of labels, as Yokogawa writes them."""
+_SCALES = frozenset(
+    {
+        "scale",
+        "scales",
+        "scaling",
+        "scale factor",
+        "factor",
+        "slope",
+        "lsb",
+        "skalierung",
+        "faktor",
+        "skalierungsfaktor",
+    }
+)
+"""Labels of rows of scales."""
 COUNTS = frozenset(
     {
         "no",
@@ -60,6 +75,10 @@ class Layout:
         What each is called: by its number where there is no head.
     trailing : bool
         Whether rows end with a separator that the head does not have.
+    measured : frozenset of int
+        Columns of numbers, from 0, whose cells hold their unit too.
+    scales : tuple of int and tuple of str
+        Line that states a scale for each column, and its cells; 0 and none if there is none.
     """
 
     separator: str
@@ -70,6 +89,8 @@ class Layout:
     kinds: tuple[str, ...]
     names: tuple[Name, ...]
     trailing: bool
+    measured: frozenset[int] = frozenset()
+    scales: tuple[int, tuple[str, ...]] = (0, ())
 
 
 def find_layout(lines: Lines, stated: Mapping[str, Any]) -> Layout:
@@ -141,20 +162,25 @@ def _kinds(rows: Sequence[str], separator: str, decimal: str) -> tuple[str, ...]
     # A short text shows its head here, too.
     cells = [row for row in cells if len(row) == len(cells[-1])][-max(_SHORTEST, len(cells) // 2) :]
     kinds = kinds_of(cells, decimal)
-    if len(cells) < _SHORTEST or "number" not in kinds or not conforms(cells[-1], kinds, decimal):
+    if len(cells) < _SHORTEST or not {"number", "measure"} & set(kinds) or not conforms(cells[-1], kinds, decimal):
         return None
     return tuple(kinds)
 
 
 def _score(kinds: Sequence[str]) -> int:
     """Return how well signs part rows: columns of numbers and times count; other digits show that they don't."""
-    return sum(kind in ("number", "stamp") for kind in kinds) - 2 * kinds.count("text")
+    return sum(kind in ("number", "measure", "stamp") for kind in kinds) - 2 * kinds.count("text")
 
 
 def _placed(lines: Lines, separator: str, decimal: str, kinds: tuple[str, ...], stated: Mapping[str, Any]) -> Layout:
     """Return the layout with these signs."""
     data = stated.get("data") or _first_row(lines, separator, decimal, kinds)
-    head, units = (_Row(), _Row()) if data == 1 else _named_rows(lines, data, separator, decimal, kinds, stated)
+    measured = frozenset(k for k, kind in enumerate(kinds) if kind == "measure")
+    kinds = tuple("number" if kind == "measure" else kind for kind in kinds)
+    scales = _scale_row(lines, data, separator, decimal, kinds)
+    head, units = (
+        (_Row(), _Row()) if data == 1 else _named_rows(lines, data, separator, decimal, kinds, stated, scales.line)
+    )
     numbers = [str(k + 1) for k in range(len(kinds))]
     names = [
         read_name(cell) if cell else Name(number, None, False)
@@ -165,7 +191,18 @@ def _placed(lines: Lines, separator: str, decimal: str, kinds: tuple[str, ...], 
         if kinds[k] == "number" and cell.strip('"-[]() ') and cell.casefold() not in COUNTS:
             names[k] = Name(names[k].name, cell.strip('"[]()<> '), names[k].time)
     trailing = kinds[-1] == "empty" and 0 < len(head.cells) < len(kinds)
-    return Layout(separator, decimal, head.line, units.line, data, kinds, tuple(names), trailing)
+    return Layout(
+        separator,
+        decimal,
+        head.line,
+        units.line,
+        data,
+        kinds,
+        tuple(names),
+        trailing,
+        measured,
+        (scales.line, scales.cells),
+    )
 
 
 @dataclass(frozen=True, slots=True)
@@ -176,10 +213,21 @@ class _Row:
     cells: tuple[str, ...] = ()
 
 
+def _scale_row(lines: Lines, data: int, separator: str, decimal: str, kinds: Sequence[str]) -> _Row:
+    """Return the row above the samples that is labelled as scales and holds a number for a column, if there is one."""
+    for place in range(data - 1, 0, -1):
+        cells = split_line(lines.first[place - 1].lstrip("#% "), separator)
+        label = cells[0].strip('": ').casefold()
+        given = [cell for cell in cells[1:] if cell]
+        if label in _SCALES and len(cells) == len(kinds) and given and all(is_number(cell, decimal) for cell in given):
+            return _Row(place, ("", *cells[1:]))
+    return _Row()
+
+
 def _named_rows(
-    lines: Lines, data: int, separator: str, decimal: str, kinds: Sequence[str], stated: Mapping[str, Any]
+    lines: Lines, data: int, separator: str, decimal: str, kinds: Sequence[str], stated: Mapping[str, Any], scales: int
 ) -> tuple[_Row, _Row]:
-    """Return the rows of names and of units."""
+    """Return the rows of names and of units; the line `scales` is none of them."""
     if "head" in stated or "units" in stated:
         places = [stated.get("head", 0), stated.get("units", 0)]
         if max(places) > len(lines.first):
@@ -191,7 +239,7 @@ def _named_rows(
                 raise RigError(_unequal(lines, place, names, kinds))
             found.append(_Row(place, tuple(cells)))
         return found[0], found[1]
-    near = [k for k in range(data - 1, 0, -1) if lines.first[k - 1].strip()]
+    near = [k for k in range(data - 1, 0, -1) if lines.first[k - 1].strip() and k != scales]
     if kinds[0] == "empty":
         # The first column holds labels, each of a row of the head.
         rows = [(k, _head(lines.first[k - 1], separator, kinds)[0]) for k in near]

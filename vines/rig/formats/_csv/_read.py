@@ -8,12 +8,13 @@ from pathlib import Path
 import numpy as np
 
 from vines.rig.formats._csv._cells import split_line
+from vines.rig.formats._csv._dates import start_of
 from vines.rig.formats._csv._dialect import DECIMALS, SEPARATORS, Dialect, stated_dialect
 from vines.rig.formats._csv._encoding import to_utf8
 from vines.rig.formats._csv._head import read_notes
 from vines.rig.formats._csv._layout import Layout, find_layout
 from vines.rig.formats._csv._lines import take_lines, whole_lines
-from vines.rig.formats._csv._table import numbers, read_rows
+from vines.rig.formats._csv._table import measures, numbers, read_rows
 from vines.rig.formats._csv._times import TimeColumn, counts_rows, time_columns, times_of
 from vines.rig.formats._raw import RawChannel, RawFile
 
@@ -41,7 +42,11 @@ def read(path: Path, dialect: str = "") -> RawFile:
     lines = take_lines(text)
     layout = find_layout(lines, stated)
     table, comments = read_rows(text, layout)
-    above = [line for k, line in enumerate(lines.first[: layout.data - 1], 1) if k not in (layout.head, layout.units)]
+    above = [
+        line
+        for k, line in enumerate(lines.first[: layout.data - 1], 1)
+        if k not in (layout.head, layout.units, layout.scales[0])
+    ]
     notes = read_notes([line for line in above if line.strip()], layout.separator, layout.decimal)
     remarks = [*notes.remarks, *_remarks(layout, lines.first, cut, comments)]
     timed = time_columns(layout, stated.get("time"))
@@ -52,18 +57,32 @@ def read(path: Path, dialect: str = "") -> RawFile:
     channels: list[RawChannel] = []
     labels = _unique([name.name for name in layout.names])
     for k, places in timed.items():
-        values, lost = numbers(table.column(k), layout.decimal)
+        unit = layout.names[k].unit
+        if k in layout.measured:
+            values, lost, unit = measures(table.column(k), layout.decimal, layout.names[k])
+        else:
+            values, lost = numbers(table.column(k), layout.decimal)
+        about = {"no number": lost} if lost else {}
+        scale = _scale(layout, k)
+        if scale is not None:
+            # Whether the numbers are scaled already the file does not say: no unit is taken from it.
+            told = f" {unit}" if unit else ""
+            about |= {"scale": repr(scale)} | ({"scale_unit": unit} if unit else {})
+            remarks.append(
+                f"line {layout.scales[0]} states the scale {scale}{told} of {labels[k]!r}: it is not applied"
+            )
+            unit = "count" if bool((np.nan_to_num(values) % 1 == 0).all()) else None
         times = known.get(tuple(places))
         channels.append(
             RawChannel(
                 name=labels[k],
                 values=values,
-                unit=layout.names[k].unit,
+                unit=unit,
                 rate=notes.rate,
                 start=notes.start if times is None else None,
                 times=None if times is None else times.times,
                 tick=None if times is None else times.tick,
-                about={"no number": lost} if lost else {},
+                about=about,
             )
         )
     clocks = {place for places in known for place in places}
@@ -83,7 +102,16 @@ def read(path: Path, dialect: str = "") -> RawFile:
         time=0 if main is None else main.column,
         time_unit="unknown" if main is None else main.unit.replace(" ", ""),
     )
-    return RawFile("CSV", tuple(channels), notes.started, tuple(other), str(found), tuple(remarks))
+    began = start_of(table.column(main.column - 1)[0].as_py()) if main is not None and main.unit == "stamp" else None
+    return RawFile("CSV", tuple(channels), began or notes.started, tuple(other), str(found), tuple(remarks))
+
+
+def _scale(layout: Layout, k: int) -> float | None:
+    """Return the scale that a row above the samples states for a column; None if there is none but 1."""
+    cells = layout.scales[1]
+    cell = cells[k] if k < len(cells) else ""
+    scale = float(cell.replace(",", ".") if layout.decimal == "," else cell) if cell else 1.0
+    return None if scale == 1.0 else scale
 
 
 def _remarks(layout: Layout, first: tuple[str, ...], cut: str, comments: int) -> list[str]:

@@ -9,11 +9,13 @@ import numpy as np
 import numpy.typing as npt
 
 from vines.errors import RigError
-from vines.rig.formats._csv._cells import STAMP, split_line
+from vines.rig.formats._csv._cells import MEASURE, STAMP, split_line
+from vines.rig.formats._csv._head import Name
 from vines.rig.formats._csv._layout import Layout
 from vines.rig.formats._csv._lines import COMMENTS
+from vines.rig.units import si_factor
 
-__all__ = ["day_seconds", "numbers", "read_rows"]
+__all__ = ["day_seconds", "measures", "numbers", "read_rows"]
 
 _COMMENT = re.compile(rb"(?m)^[ \t]*(?:#|%|//).*\n")
 _BLANK = re.compile(rb"(?m)^[ ]+\n")
@@ -48,7 +50,8 @@ def read_rows(text: bytes, layout: Layout) -> tuple[Any, int]:
         body = re.sub(rb"(?m)^ | $", b"", re.sub(rb"[ \t]+", b" ", body))
     names = [str(k) for k in range(len(layout.kinds))]
     types = {
-        name: pa.float64() if kind == "number" else pa.string() for name, kind in zip(names, layout.kinds, strict=True)
+        name: pa.float64() if kind == "number" and k not in layout.measured else pa.string()
+        for k, (name, kind) in enumerate(zip(names, layout.kinds, strict=True))
     }
     while True:
         try:
@@ -78,6 +81,53 @@ def _ragged(text: bytes, layout: Layout, reason: str) -> RigError:
                 short = line if len(line) <= 60 else line[:57] + "..."
                 return RigError(f"line {place} has {count} fields, those above it have {len(layout.kinds)}: {short!r}")
     return RigError(f"its rows cannot be read: {' '.join(reason.split())[:160]}")
+
+
+def measures(column: Any, decimal: str, name: Name) -> tuple[npt.NDArray[np.float64], str, str | None]:
+    """Return a column of numbers with units behind them: numbers in one unit, the first cell that is none, the unit.
+
+    Parameters
+    ----------
+    column : pyarrow.ChunkedArray of texts
+    decimal : str
+    name : Name
+        What the head says; its unit must be that of the cells if it has one.
+
+    Raises
+    ------
+    RigError
+        If the cells are of several quantities, or the head says another.
+
+    Examples
+    --------
+    >>> import pyarrow as pa
+    >>> measures(pa.chunked_array([["1.5 mV", "2 V", "OL"]]), ".", Name("lo", None, False))
+    (array([1.5e+00, 2.0e+03,     nan]), "'OL' in row 3", 'mV')
+    """
+    import pyarrow as pa
+    import pyarrow.compute
+
+    pc: Any = pyarrow.compute
+    text = pc.utf8_trim_whitespace(pc.cast(column, pa.string()))
+    text = pc.replace_substring(text, ",", ".") if decimal == "," else text
+    found = pc.extract_regex(text, MEASURE)
+    values = pc.cast(pc.struct_field(found, "number"), pa.float64()).to_numpy().copy()
+    units = pc.utf8_trim_whitespace(pc.struct_field(found, "unit")).to_numpy()
+    told = [unit for unit in dict.fromkeys(units) if unit is not None]
+    unit = name.unit or told[0]
+    for each in told:
+        try:
+            (quantity, factor), (wanted, one) = si_factor(each), si_factor(unit)
+        except RigError as unknown:
+            raise RigError(f"column {name.name!r}: {unknown}") from None
+        if quantity != wanted:
+            where = "the head says" if name.unit else "others are in"
+            raise RigError(f"column {name.name!r}: cells are in {each}, {where} {unit}")
+        if factor != one:
+            values[units == each] *= factor / one
+    bad = np.isnan(values)
+    place = int(bad.argmax())
+    return values, f"{column[place].as_py()!r} in row {place + 1}" if bad.any() else "", unit
 
 
 def numbers(column: Any, decimal: str) -> tuple[npt.NDArray[np.float64], str]:

@@ -10,13 +10,15 @@ import numpy as np
 import numpy.typing as npt
 
 from vines.errors import RigError
+from vines.rig.formats._csv._dates import read_date
 from vines.rig.formats._csv._head import Name, is_unit
 from vines.rig.formats._csv._layout import COUNTS, Layout
-from vines.rig.formats._csv._table import day_seconds, numbers
+from vines.rig.formats._csv._table import day_seconds, measures, numbers
 from vines.rig.units import si_factor
 
 __all__ = ["TimeColumn", "counts_rows", "time_columns", "times_of"]
 
+_DAY = 86400.0
 _EPOCH = 1e8
 """[s] Times that begin later than this are counted from 1904, 1970 or the like."""
 
@@ -109,9 +111,13 @@ def times_of(
         If a time is missing.
     """
     units = {k: _unit(layout, k, stated_unit, noted_unit) for k in places}
+    measured = {k: measures(table.column(k), layout.decimal, layout.names[k]) for k in layout.measured & {*places}}
+    units |= {k: unit for k, (_, _, unit) in measured.items() if unit is not None}
     read: dict[int, Callable[[], npt.NDArray[np.float64]]] = {
         k: (lambda k=k: day_seconds(table.column(k)))
         if units[k] == "stamp"
+        else (lambda k=k: measured[k][0])
+        if k in measured
         else (lambda k=k: numbers(table.column(k), layout.decimal)[0])
         for k in places
     }
@@ -121,6 +127,8 @@ def times_of(
             place = int(np.isnan(column).argmax())
             raise RigError(f"column {layout.names[k].name!r}: row {place + 1} of the samples has no time")
     stamp = next((k for k in places if units[k] == "stamp"), None)
+    if stamp is not None:
+        _check_days(table.column(stamp), values[stamp], layout.names[stamp].name)
     if stamp is not None and (parts := _thousandths(values, units, stamp)) is not None:
         return TimeColumn(stamp + 1, "stamp", values[stamp] + 1e-3 * parts, 1.0), []
     best = max(places, key=lambda k: len(np.unique(values[k][:4096])))
@@ -132,6 +140,19 @@ def times_of(
         return TimeColumn(best + 1, unit, times, None), [text]
     times = times if unit == "stamp" else times * si_factor(unit)[1]
     return TimeColumn(best + 1, unit, times - (times[0] if abs(times[0]) > _EPOCH else 0.0), 1.0), []
+
+
+def _check_days(column: Any, seconds: npt.NDArray[np.float64], name: str) -> None:
+    """Refuse stamps whose times pass midnight more or less often than their dates: a day may be missing between two."""
+    first, last = (read_date(column[place].as_py()) for place in (0, len(column) - 1))
+    if first is None or last is None:
+        return
+    days, counted = (last - first).days, int(seconds[-1] // _DAY)
+    if days != counted:
+        raise RigError(
+            f"column {name!r}: its dates go from {first} to {last}, its times pass midnight {counted} times: samples "
+            "are missing or the dates are wrong"
+        )
 
 
 def _unit(layout: Layout, k: int, stated: str, noted: str) -> str:
