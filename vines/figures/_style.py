@@ -108,8 +108,8 @@ def new_figure(width: float, height: float) -> Figure:
 def save(figure: Figure, folder: Path, name: str = "picture") -> list[Path]:
     """Write a figure as PNG, SVG and PDF into a folder, without dates, and return the paths.
 
-    Panels are laid out once, so all files show the same, and each file is drawn once. In a PDF text is text. Drawing is slow: a sheet of 12
-    panels has hundreds of ticks and texts, which matplotlib measures at every draw.
+    Panels are laid out once, so all files show the same, and each file is drawn once. In a PDF text is text. Drawing is
+    slow: a sheet of 12 panels has hundreds of ticks and texts, which matplotlib measures at every draw.
     """
     import matplotlib as mpl
 

@@ -21,7 +21,6 @@ if TYPE_CHECKING:
 __all__ = ["WholeTask", "compute_whole", "stored_inputs", "whole_task"]
 
 
-
 @dataclass(frozen=True, slots=True)
 class WholeTask:
     """A stage of the whole shape, ready to be computed here or in a worker process.

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import shutil
 import uuid
 from pathlib import Path
@@ -54,7 +53,7 @@ def show_pictures(data: Path, result: Path, name: str) -> list[Path]:
 def _stamp(path: Path) -> tuple[int, int] | None:
     """Return size and time of a file, by which a copy is told from another."""
     try:
-        about = os.stat(path)
+        about = path.stat()
     except OSError:
         return None
     return about.st_size, about.st_mtime_ns
