@@ -1,9 +1,11 @@
-"""Speed beside another checkout, in turn: ``python -m benchmarks.beside CHECKOUT [WORDS] [--runs 7]``.
+"""Speed beside another checkout, in turn: ``python -m benchmarks.beside CHECKOUT [WORDS] [--runs 7] [--starts 5]``.
 
 A process of each checkout does the same work, one after the other, again and again, so that what disturbs one disturbs
-the other too. Processor time of one core; the ratio is the median of those of neighbouring runs. WORDS choose the rows
-whose name holds one of them. Only what both checkouts have under the same name is asked for; each keeps its kernels in
-a folder of its own under ``--kernels`` (a temporary one if left out: then compiling takes minutes first).
+the other too. Processor time of one core; the ratio is the median of those of neighbouring runs. Where a process lies
+in memory changes the time of a loop by several percent as long as it lives, so all is done again in new processes: the
+ratio shown is the median of the starts, with their least and largest. WORDS choose the rows whose name holds one of
+them. Only what both checkouts have under the same name is asked for; each keeps its kernels in a folder of its own
+under ``--kernels`` (a temporary one if left out: then compiling takes minutes first).
 """
 
 from __future__ import annotations
@@ -145,12 +147,24 @@ def compared(here: Checkout, there: Checkout, name: str, runs: int) -> tuple[flo
     return ours, theirs, statistics.median(one / other for one, other in pairs)
 
 
+def started(origin: Path, kernels: Path, words: list[str], runs: int) -> dict[str, tuple[float, float, float]]:
+    """Return what `compared` finds, by name, in a process of each checkout."""
+    # Both begin to compile at the same time.
+    here, there = Checkout(HERE, kernels / "here"), Checkout(origin, kernels / "there")
+    wanted = [name for name in here.names if name in there.names and (not words or any(w in name for w in words))]
+    found = {name: compared(here, there, name, runs) for name in wanted}
+    here.close()
+    there.close()
+    return found
+
+
 def main() -> None:
     """Print the table."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("checkout", type=Path, nargs="?")
     parser.add_argument("words", nargs="*")
     parser.add_argument("--runs", type=int, default=7)
+    parser.add_argument("--starts", type=int, default=5)
     parser.add_argument("--kernels", type=Path)
     parser.add_argument("--answer", action="store_true", help=argparse.SUPPRESS)
     asked = parser.parse_args()
@@ -160,16 +174,16 @@ def main() -> None:
     if asked.checkout is None or not (asked.checkout / "vines").is_dir():
         parser.error(f"{asked.checkout} holds no folder vines; give a checkout of vines")
     with tempfile.TemporaryDirectory() as folder:
-        kernels = asked.kernels or Path(folder)
-        # Both begin to compile at the same time.
-        here, there = Checkout(HERE, kernels / "here"), Checkout(asked.checkout.resolve(), kernels / "there")
-        print("| work | here, ms | there, ms | here/there |\n|---|---|---|---|")
-        for name in here.names:
-            if name in there.names and (not asked.words or any(word in name for word in asked.words)):
-                ours, theirs, ratio = compared(here, there, name, asked.runs)
-                print(f"| {name} | {ours * 1e3:.2f} | {theirs * 1e3:.2f} | {ratio:.2f} |", flush=True)
-        here.close()
-        there.close()
+        kernels, origin = asked.kernels or Path(folder), asked.checkout.resolve()
+        starts = [started(origin, kernels, asked.words, asked.runs) for _ in range(asked.starts)]
+    print("| work | here, ms | there, ms | here/there | least to largest |\n|---|---|---|---|---|")
+    for name in starts[0]:
+        ours, theirs, ratio = (
+            statistics.median(values) for values in zip(*(each[name] for each in starts), strict=True)
+        )
+        ratios = [each[name][2] for each in starts]
+        spread = f"{min(ratios):.2f} to {max(ratios):.2f}"
+        print(f"| {name} | {ours * 1e3:.2f} | {theirs * 1e3:.2f} | {ratio:.2f} | {spread} |")
 
 
 if __name__ == "__main__":
