@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from vines.errors import OrbitNotFound, ParameterError
-from vines.model import VI_NES
+from vines.model import VI_NES, word_for
 from vines.orbits._arclength import Chord, Walk
 from vines.orbits._branch import Bifurcation
 from vines.orbits._curve import Curve, SpecialPoint
@@ -81,6 +81,7 @@ def follow_curve(
     >>> curve.type, curve.ends
     ('symmetry_breaking', ('box', 'box'))
     """
+    word_for(bifurcation.word, VI_NES, sticking=False)
     for name in parameters:
         VI_NES.parameter(name)
     if len(set(parameters)) != 2:
