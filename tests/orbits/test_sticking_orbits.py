@@ -15,6 +15,7 @@ from vines.orbits import (
     find_orbit,
     follow_end,
     mirror_image,
+    optimise,
     orbit_row,
     switch_branch,
 )
@@ -137,6 +138,8 @@ def test_what_is_not_there_is_said():
     with pytest.raises(OrbitNotFound, match="for the VI-NES only"):
         find_orbit("L*R", ImpactPair(B=1.0, G=0.0, r=0.3))
     assert all_orbits("L*L*", P).complete
+    with pytest.raises(ParameterError, match="sticks, for which this is not made"):
+        optimise("L*R*", "max_abs_x1", P, {"A": (0.5, 1.0)})
 
 
 def test_the_bound_of_the_region_that_sticks_is_followed_in_two_parameters():

@@ -260,13 +260,20 @@ class Word:
         return f"Word({str(self)!r})"
 
 
-def word_for(text: str | Word, system: System) -> Word:
+def word_for(text: str | Word, system: System, *, sticking: bool = True) -> Word:
     """Return a word of a system; one numbered ball may also do without its number.
+
+    Parameters
+    ----------
+    text : str or Word
+    system : System
+    sticking : bool
+        Whether the orbit may stick.
 
     Raises
     ------
     ParameterError
-        If the text is no word, or has impacts that the system does not have.
+        If the text is no word, has impacts that the system does not have, or a star where none may be.
 
     Examples
     --------
@@ -282,6 +289,8 @@ def word_for(text: str | Word, system: System) -> Word:
         raise ParameterError(
             f"{str(text)!r} is not a word of the system {system.name!r}, which has the impacts {', '.join(known)}"
         )
+    if word.sticking and not sticking:
+        raise ParameterError(f"{str(text)!r} sticks, for which this is not made; give a word without a star")
     return word
 
 

@@ -11,7 +11,7 @@ import numpy.typing as npt
 
 from vines.domains import Interval, Named, Names, Number, Of, Whole, stated
 from vines.errors import OrbitNotFound, ParameterError
-from vines.model import Params
+from vines.model import Params, word_for
 from vines.orbits._arclength import Chord, Walk
 from vines.orbits._branch import Bifurcation
 from vines.orbits._chain_curve import ChainCurve
@@ -105,6 +105,7 @@ def follow_curve(
     >>> curve.type, curve.ends
     ('symmetry_breaking', ('box', 'box'))
     """
+    word_for(bifurcation.word, bifurcation.orbit.params.system, sticking=False)
     low, high = _bounds(bifurcation, parameters, box)
     if not 0 < step <= 1:
         raise ParameterError(f"step is {step!r}, allowed is 0 < step <= 1")

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 from vines.domains import Interval, Name, Named, Number, Parameters, stated
 from vines.errors import ParameterError, nearest
-from vines.model import Params, Word
+from vines.model import VI_NES, Params, Word, word_for
 from vines.orbits._best import Search
 from vines.orbits._box import Box
 from vines.orbits._margins import Margin, margins_of
@@ -116,7 +116,7 @@ def optimise(
     >>> print(f"{best.value:.5f} at b = {best.b:.4f}", best.active, best.orbit.stable)
     0.21006 at b = 1.5461 () True
     """
-    word = Word(word)
+    word = word_for(word, VI_NES, sticking=False)
     if objective not in OBJECTIVES:
         raise ParameterError(f"unknown objective {objective!r}: {nearest(str(objective), OBJECTIVES)}")
     if not 0 < largest_multiplier <= 1:

@@ -42,7 +42,7 @@ class FamilyCurveOptions(CurveOptions, frozen=True, forbid_unknown_fields=True, 
 
 def _check(params: dict[str, float], options: CurveOptions) -> None:
     Params(**params)
-    word_for(options.word, VI_NES)
+    word_for(options.word, VI_NES, sticking=False)
 
 
 def _fits(stage: Stage, pipeline: Pipeline) -> None:

@@ -29,7 +29,7 @@ class OptimumOptions(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 def _check(params: dict[str, float], options: OptimumOptions) -> None:
     Params(**{name: value for name, value in params.items() if name != "b"})
-    word_for(options.word, VI_NES)
+    word_for(options.word, VI_NES, sticking=False)
     if not params["b"] > 0:
         raise ParameterError(f"b is {params['b']:g}, allowed is b > 0: it is the half length of the cavity")
 
