@@ -24,7 +24,7 @@ BAD = {
     "misspelt top key": ("title =", "titel =", "'title'"),
     "misspelt axis": ("vary.A", "vary.B", "allowed"),
     "r above 1": ("Omega = 1.0", "r = 1.2", "0 <= r <= 1"),
-    "mu not positive": ("mu = 0.01", "mu = 0.0", "1e-09 <= mu"),
+    "mu not positive": ("mu = 0.01", "mu = 0.0", "1e-12 <= mu"),
     "lam too large": ("Omega = 1.0", "lam = 2.0", "0 <= lam < 2"),
     "a point of years": ("settle = 10", "settle = 99999999999999", "settle <= 10000000 periods a point; VINES_LONG"),
     "starts of years": ("settle = 10", "settle = 1000\nrandom = 100000", "(settle + record) (1 + random) <= 10000000"),

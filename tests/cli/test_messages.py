@@ -156,7 +156,7 @@ def test_a_command(mine, refused, arguments, says):
     assert says in refused(*arguments)
 
 
-@pytest.mark.parametrize(("word", "mu", "says"), [("LR", "-1", "1e-09 <= mu"), ("LX", "0.01", "'LX' is not a word")])
+@pytest.mark.parametrize(("word", "mu", "says"), [("LR", "-1", "1e-12 <= mu"), ("LX", "0.01", "'LX' is not a word")])
 def test_solve_checks_before_the_compiler_is_loaded(monkeypatch, refused, word, mu, says):
     monkeypatch.setitem(sys.modules, "vines.orbits", None)  # its import would fail
     assert says in refused("solve", word, "--mu", mu, "--A", "0.02")

@@ -142,7 +142,7 @@ def test_bad_starts_are_refused_in_one_line(start: dict[str, float], message: st
 def test_samples_outside_the_run_are_refused() -> None:
     run = simulate(CHATTER, periods=2)
     for times in ([-1.0], [100.0], [2.0, 1.0], [math.nan]):
-        with pytest.raises(StateError, match="times must ascend"):
+        with pytest.raises(StateError, match=r"times must ascend|times is nan"):
             run.sample(times=times)
     with pytest.raises(StateError, match="choose one"):
         run.sample(5, per_period=2)

@@ -137,7 +137,7 @@ def test_the_curvature_of_a_branching_is_that_of_the_family(cascade, generation)
 def test_other_bifurcations_lead_nowhere(cascade):
     with pytest.raises(OrbitNotFound, match="symmetry_breaking or period_doubling"):
         switch_branch(cascade[1].bifurcations[-1])
-    with pytest.raises(ParameterError, match="depth is -1"):
+    with pytest.raises(ParameterError, match="depth is -1; give an integer >= 0"):
         follow_cascade(cascade[0].orbits[0], "A", 0.02, depth=-1)
     with pytest.raises(ParameterError, match="it has to hold"):
         continue_orbit(cascade[0].orbits[0], "A", 0.02, within=(0.016, 0.02))

@@ -394,7 +394,9 @@ def parameter_table(params: Params | Sequence[Params] | Mapping[str, npt.ArrayLi
         return np.array([[getattr(params, name) for name in PARAMETER_NAMES]])
     if isinstance(params, Mapping):
         return _check_parameters(_columns(params, _PARAMETER_DEFAULTS, ParameterError, "parameter"))
-    if not isinstance(params, Sequence) or isinstance(params, str | bytes) or not len(params):
+    if isinstance(params, list | tuple) and not params:
+        raise ParameterError("params is empty; give at least one point")
+    if not isinstance(params, Sequence) or isinstance(params, str | bytes):
         raise ParameterError(f"params is {shown(params)}; give vines.Params, a list of them, or arrays by name")
     for p in params:
         if not isinstance(p, Params):

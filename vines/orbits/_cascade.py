@@ -29,7 +29,7 @@ _SAME = 1e-9
     depth=Whole(least=0, most=24),
     within=Pair(optional=True),
     at=Numbers(),
-    step=Number(above=0, most=1),
+    step=Number(),
     max_points=Whole(most=1_000_000),
 )
 def follow_cascade(

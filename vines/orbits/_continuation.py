@@ -51,7 +51,7 @@ _TOLERANCE = 1e-14
     stop=Number(),
     within=Pair(optional=True),
     at=Numbers(),
-    step=Number(above=0, most=1),
+    step=Number(),
     max_points=Whole(most=1_000_000),
 )
 def continue_orbit(

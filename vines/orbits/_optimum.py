@@ -6,7 +6,7 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from vines.domains import Interval, Name, Named, Number, Parameters, stated
+from vines.domains import Name, Named, Number, Pair, Parameters, stated
 from vines.errors import ParameterError, nearest
 from vines.model import VI_NES, Params, Word, word_for
 from vines.orbits._best import Search
@@ -65,8 +65,8 @@ class Optimum:
     ParameterError,
     p=Parameters(any_system=False),
     objective=Name(),
-    over=Named(Interval(), least=1),
-    largest_multiplier=Number(above=0, most=1),
+    over=Named(Pair()),
+    largest_multiplier=Number(),
 )
 def optimise(
     word: str | Word,
