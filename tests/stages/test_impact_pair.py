@@ -128,7 +128,10 @@ def test_tables_hold_the_check_values(pair):
         (('needs = ["points", "doubling"]', 'needs = ["points", "ball"]'), "one and the same parameter"),
         (("threshold = 1.0", "threshold = -1.0"), "threshold"),
         (('kind = "branch"', 'kind = "reduced"'), "the kind 'reduced' cannot do the system 'impact_pair'"),
-        (('kind = "branch"\nword = "LR"\npoints = 5', 'kind = "curve"\nword = "LR"\ntype = "fold"'), "in two parameters"),
+        (
+            ('kind = "branch"\nword = "LR"\npoints = 5', 'kind = "curve"\nword = "LR"\ntype = "fold"'),
+            "a curve is followed in two parameters, this one varies B",
+        ),
         (
             ('kind = "branch"\nword = "LR"\npoints = 5', 'kind = "transient"'),
             "cannot do the system 'impact_pair': its capsule moves as it is driven, so nothing decays; it can do",
