@@ -106,3 +106,28 @@ def test_states_of_half_a_ball_are_refused(run, states, tmp_path):
     with pytest.raises(SchemaError, match="states lack w_2"):
         write(tmp_path / "half.mcap", run, states[names])
     assert list(tmp_path.iterdir()) == []
+
+
+def test_a_log_that_grows_with_its_run_is_the_log_of_the_whole_run(run, states, path, tmp_path):
+    about = {"provenance": {"stage": "two"}, "parameters": TWO.as_dict(), "name": "two"}
+    with logs.LiveWriter(tmp_path / "live.mcap", **about, system="parallel", balls=2) as live:
+        for half in np.array_split(states, 2):
+            live.add("states", half)
+        live.add("impacts", run.impacts)
+        live.add("sticks", run.sticks)
+        with pytest.raises(SchemaError, match="no channel '1'; it has states, impacts, sticks"):
+            live.add("1", states)
+        with pytest.raises(SchemaError, match="x2_1"):
+            live.add("states", states[list(OSCILLATOR)])
+    ours, whole = logs.read(tmp_path / "live.mcap"), logs.read(path)
+    assert (ours.system, list(ours.balls)) == ("parallel", [1, 2])
+    assert ours.states.equals(whole.states)
+    assert ours.impacts.equals(whole.impacts)
+    assert ours.sticks.equals(whole.sticks)
+    assert all(ours.balls[ball].equals(whole.balls[ball]) for ball in (1, 2))
+
+
+def test_a_log_has_channels_for_as_many_balls_as_a_system_may_have(tmp_path):
+    for wrong in (-1, 9):
+        with pytest.raises(SchemaError, match="give 1 to 8"):
+            logs.LiveWriter(tmp_path / "x.mcap", name="x", provenance={}, parameters={}, balls=wrong)

@@ -25,6 +25,7 @@ from vines.kernels._by_type import by_type
 from vines.kernels._cache import CACHE
 from vines.kernels._decorators import cold_njit, entry_njit, fused_njit, linked_njit, loop_njit, njit
 from vines.kernels._memory import doubles_at
+from vines.kernels._rounded_once import rounded_once
 from vines.kernels._tasks import Task, compile_here, compile_tasks, is_warm
 
 __all__ = [
@@ -53,6 +54,7 @@ __all__ = [
     "new_matrix",
     "new_vector",
     "njit",
+    "rounded_once",
     "zero_cube",
     "zero_integers",
     "zero_matrix",

@@ -8,7 +8,7 @@ from vines.errors import SchemaError
 from vines.logs._channels import BALL, BALLS, OF_BALLS, Channel, Rows, as_rows
 from vines.schema import numpy_dtype
 
-__all__ = ["ball_rows", "has_balls"]
+__all__ = ["ball_rows", "has_balls", "rows_of_ball"]
 
 
 def has_balls(states: np.ndarray) -> bool:
@@ -36,10 +36,11 @@ def ball_rows(states: np.ndarray, impacts: np.ndarray, sticks: np.ndarray) -> li
     rows = [as_rows(array, channel) for array, channel in every]
     names = states.dtype.names or ()
     balls = [channel for channel in BALLS if f"x2_{channel.key}" in names]
-    return [*rows, *(as_rows(_of_ball(states, channel), channel) for channel in balls)]
+    return [*rows, *(as_rows(rows_of_ball(states, channel), channel) for channel in balls)]
 
 
-def _of_ball(states: np.ndarray, channel: Channel) -> np.ndarray:
+def rows_of_ball(states: np.ndarray, channel: Channel) -> np.ndarray:
+    """Return the fields of ``vines.v1.Ball`` of one ball, from states that have them with its number."""
     dtype = numpy_dtype(BALL)
     own = np.empty(len(states), dtype)
     for name in dtype.names or ():

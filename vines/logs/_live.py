@@ -12,7 +12,8 @@ from typing import Self
 import numpy as np
 
 from vines.errors import FileMissingError, LogError, SchemaError
-from vines.logs._channels import BASE, CHANNELS, Rows, as_rows
+from vines.logs._balls import rows_of_ball
+from vines.logs._channels import BALLS, BASE, CHANNELS, OF_BALLS, Rows, as_rows
 from vines.logs._chunk import packed
 from vines.logs._file import LogFile
 from vines.logs._pack import CHUNK_BYTES, cut
@@ -43,11 +44,17 @@ class LiveWriter:
     sensors : mapping of str to mapping of str to str, optional
         What each sensor of a rig measures (see :class:`vines.logs.Sensor`). The log is then one of a rig, with
         ``base`` and the sensors; else it is one of the simulator, with ``states``, ``impacts`` and ``sticks``.
+    balls : int, optional
+        Of a run with several balls, how many; rows are then as :func:`vines.logs.write_run` takes them.
+    system : str, optional
+        The system of the run; the VI-NES if left out.
 
     Raises
     ------
     FileMissingError
         If the folder does not exist.
+    SchemaError
+        If a log has no channels for so many balls, or a rig is said to have some.
     LogError
         If ``<path>.part`` exists: another writer is at it, or left it behind.
 
@@ -73,12 +80,21 @@ class LiveWriter:
         parameters: Mapping[str, float],
         declaration: str | None = None,
         sensors: Mapping[str, Mapping[str, str]] | None = None,
+        balls: int = 0,
+        system: str | None = None,
     ):
         self._path = Path(path)
         self._partial = self._path.with_name(f"{self._path.name}.part")
         if not self._path.parent.is_dir():
             raise FileMissingError(f"the folder {self._path.parent} of the log {self._path.name} does not exist")
-        if sensors is None:
+        if not 0 <= balls <= len(BALLS) or (balls and sensors is not None):
+            raise SchemaError(
+                f"balls is {balls!r}; give 1 to {len(BALLS)} for a run with several balls, none for a rig"
+            )
+        self._balls = BALLS[:balls]
+        if balls:
+            self._channels = {channel.key: channel for channel in (*OF_BALLS, *self._balls)}
+        elif sensors is None:
             self._channels = {channel.key: channel for channel in CHANNELS}
         else:
             self._channels = {BASE.key: BASE, **sensor_channels(sensors)}
@@ -99,7 +115,8 @@ class LiveWriter:
             ) from None
         self._log = LogFile(self._stream)
         kind = "run" if sensors is None else "rig"
-        begin(self._log, {"name": name, "kind": kind}, provenance, parameters, declaration)
+        about = {"name": name, "kind": kind} | ({} if system is None else {"system": system})
+        begin(self._log, about, provenance, parameters, declaration)
         for channel in self._channels.values():
             self._log.channel(channel)
         self._log.digests()
@@ -114,7 +131,8 @@ class LiveWriter:
         Parameters
         ----------
         key : str
-            ``"states"``, ``"impacts"`` or ``"sticks"``; in the log of a rig ``"base"`` or the name of a sensor.
+            ``"states"``, ``"impacts"`` or ``"sticks"``; in the log of a rig ``"base"`` or the name of a sensor. States
+            of several balls hold all bodies.
         rows : numpy.ndarray, shape (n,), structured
             The fields of its message, not before the rows that were added earlier.
 
@@ -125,26 +143,35 @@ class LiveWriter:
         OSError
             If the file could not be written.
         """
-        if key not in self._channels:
-            raise SchemaError(f"this log has no channel {key!r}; it has {', '.join(self._channels)}")
+        known = [name for name in self._channels if self._channels[name] not in self._balls]
+        if key not in known:
+            raise SchemaError(f"this log has no channel {key!r}; it has {', '.join(known)}")
         # A copy: what the caller does to the array afterwards must not change what is written.
-        added = as_rows(np.array(rows, ndmin=1), self._channels[key], self._counts[key])
-        if not len(added):
-            return
+        own = np.array(rows, ndmin=1)
+        added = {key: as_rows(own, self._channels[key], self._counts[key])}
+        if key == OF_BALLS[0].key:
+            added |= {each.key: as_rows(rows_of_ball(own, each), each, self._counts[each.key]) for each in self._balls}
+        if len(own):
+            self._take(added)
+
+    def _take(self, added: dict[str, Rows]) -> None:
+        """Keep rows of one instant after another in channels that are all as far until they are written."""
         with self._lock:
             if self._failed is not None:
                 raise self._failed
             if self._stream.closed:
                 raise LogError(f"{self._path} is finished; rows can be added only inside its context")
-            if int(added.times[0]) < self._latest[key]:
-                raise SchemaError(
-                    f"rows of {key!r} begin at {added.times[0] / 1e9:g}, "
-                    f"before the last one at {self._latest[key] / 1e9:g}; add them in the order of time"
-                )
-            self._waiting[key].append(added)
-            self._counts[key] += len(added)
-            self._latest[key] = int(added.times[-1])
-            self._size += len(added) * added.width
+            for key, each in added.items():
+                if int(each.times[0]) < self._latest[key]:
+                    raise SchemaError(
+                        f"rows of {key!r} begin at {each.times[0] / 1e9:g}, "
+                        f"before the last one at {self._latest[key] / 1e9:g}; add them in the order of time"
+                    )
+            for key, each in added.items():
+                self._waiting[key].append(each)
+                self._counts[key] += len(each)
+                self._latest[key] = int(each.times[-1])
+                self._size += len(each) * each.width
             full = self._size >= CHUNK_BYTES
         if full:
             self._due.set()

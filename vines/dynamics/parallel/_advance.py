@@ -46,7 +46,7 @@ from vines.dynamics.parallel._layout import (
 )
 from vines.dynamics.parallel._rows import count_riding, place_balls, write
 from vines.dynamics.parallel._strike import PASSES, strike, strike_alone
-from vines.kernels import entry_njit, fused_njit, linked_njit, loop_njit
+from vines.kernels import entry_njit, fused_njit, linked_njit, loop_njit, rounded_once
 
 __all__ = ["set_balls"]
 
@@ -89,7 +89,7 @@ def _merge(c, o, motion, modes, state, rows, count):
         if not merges(c, o, c.r[i], c.correction[i], int(wall), speed, motion, state[at(i, B_X2)]):
             continue
         mass = 1.0 + riding(c, modes)
-        common = (mass * v1 + c.mu[i] * v2) / (mass + c.mu[i])
+        common = rounded_once(c.mu[i], v2, mass * v1) / (mass + c.mu[i])
         state[S_V1] = common
         state[at(i, B_MODE)], state[at(i, B_RELEASED)] = wall, 0.0
         for k in range(len(c.mu)):

@@ -22,7 +22,7 @@ from vines.dynamics.parallel._layout import (
     at,
 )
 from vines.dynamics.parallel._rows import count_riding, write
-from vines.kernels import fused_njit, linked_njit
+from vines.kernels import fused_njit, linked_njit, rounded_once
 
 __all__ = ["PASSES", "strike", "strike_alone"]
 
@@ -44,7 +44,10 @@ def _count_hit(state, i, wall):
 def strike_alone(c, state, i, tau, rows, count):
     """Let one ball hit at the present instant, while no other is on a wall; return how many rows there are then."""
     wall, before, v2 = state[at(i, B_STEP)], state[S_V1], state[at(i, B_V2)]
-    state[S_V1], state[at(i, B_V2)] = after_impact_kernel(c.law[i], before, v2)
+    law = c.law[i]
+    # As the compiler rounds `after_impact_kernel` for the VI-NES: one ball is the VI-NES to the last bit.
+    state[S_V1] = rounded_once(law.pass1, v2, law.keep1 * before)
+    state[at(i, B_V2)] = rounded_once(law.keep2, v2, law.pass2 * before)
     state[S_IMPACTS] += 1.0
     _count_hit(state, i, wall)
     state[at(i, B_WALL)] = wall
