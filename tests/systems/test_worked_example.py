@@ -67,3 +67,23 @@ def test_its_names_are_everywhere_after_the_declaration(added):
     assert schema.table("scaled_orbits").walls["L"] == "left end, side +1"
     with pytest.raises(ParameterError, match="beta is 0, allowed is beta > 0"):
         added(mu=0.01, A=0.03, beta=0)
+
+
+def test_the_table_of_what_a_system_took_is_about_right():
+    root = PAGE.parents[1]
+    files = {
+        "impact_pair": [
+            "schemas/systems/impact_pair.toml",
+            "vines/systems/_impact_pair.py",
+            "vines/dynamics/impact_pair/*.py",
+        ],
+        "parallel": ["schemas/systems/parallel.toml", "vines/systems/_parallel.py", "vines/dynamics/parallel/**/*.py"],
+    }
+    files["impact_pair"] += ["vines/orbits/_capsule.py", "vines/logs/_capsule.py"]
+    files["parallel"] += ["vines/orbits/_balls.py", "vines/[lv]*/_balls.py"]
+    told = re.findall(r"^\| `[\w/]+`(?:, `[\w/]+`)? \| (\d+) \| (\d+) \|$", PAGE.read_text("utf-8"), re.MULTILINE)
+    assert len(told) == 5
+    for system, column in (("impact_pair", 0), ("parallel", 1)):
+        for pattern, row in zip(files[system], told, strict=True):
+            lines = sum(len(file.read_text("utf-8").splitlines()) for file in root.glob(pattern))
+            assert lines == pytest.approx(int(row[column]), rel=0.2), pattern

@@ -19,8 +19,8 @@ class Decay:
     Attributes
     ----------
     energy : float
-        Energy at the start, in units of M b² omega0², above that of rest: with tilt the balls rest on the lower ends, and
-        the oscillator below its place without them.
+        Energy at the start, in units of M b² omega0², above that of rest: with tilt the balls rest on the lower ends,
+        and the oscillator below its place without them.
     impact_share, damper_share, frame_share, ball_share : float
         Shares of it that were lost in impacts and in the damper, and that oscillator and ball have at the end; their
         sum is 1 to rounding.
@@ -92,9 +92,9 @@ def decay(run: Trajectory, shares: Sequence[float] = (0.1, 0.01)) -> Decay:
 def _above_rest(values: dict[str, float], state: dict[str, float]) -> tuple[float, float]:
     """Return the energies of the oscillator and of the balls above those at rest.
 
-    With x2'' = -G a ball has the potential mu G x2. Less its least value, which is reached at x1 = -G sum(mu) with every
-    ball on its lower end, the sum of all potentials is (x1 + G sum(mu))²/2 and mu |G| for each ball times its way down
-    to that end: squares and heights, so that nothing large cancels when little is left.
+    With x2'' = -G a ball has the potential mu G x2. Less its least value, which is reached at x1 = -G sum(mu) with
+    every ball on its lower end, the sum of all potentials is (x1 + G sum(mu))²/2 and mu |G| for each ball times its way
+    down to that end: squares and heights, so that nothing large cancels when little is left.
     """
     pull = values.get("G", 0.0)
     masses = {name.partition("mu")[2]: mass for name, mass in values.items() if name.partition("_")[0] == "mu"}

@@ -1,4 +1,4 @@
-"""What absorbers are worth over a range of forcing: bands of coexisting attractors, widths of ranges, maps of designs."""
+"""What absorbers are worth over a range of forcing: bands of attractors, widths of ranges, maps of designs."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ class BandCurve:
     label : str
         For the legend.
     colour : int
-        Number of the set, from 0.
+        Number of the set in its panel, from 0.
     """
 
     x: Floats
@@ -85,7 +85,7 @@ class BandPanel:
 
         worst: list[Entry] = [(band.label, (_line(band.colour),)) for band in self.bands]
         shade: Any = Patch(facecolor=COLOURS["mark"], alpha=0.25, linewidth=0)
-        return [*worst, ("best to worst of the attractors found", (shade,))]
+        return [*worst, ("from the best attractor to the worst", (shade,))]
 
 
 @dataclass(frozen=True)
@@ -116,10 +116,12 @@ class FactorPanel:
             ax.set_ylim(*self.y)
         else:
             ax.set_ylim(bottom=0.0)
+        handles = [_line(number) for *_, number in self.curves]
+        ax.legend(handles, [name for name, *_ in self.curves], loc="best", handlelength=2.4)
         _frame(ax, self.title)
 
     def entries(self) -> list[Entry]:
-        """Return what the legend says of it: nothing, its sets are those of the bands."""
+        """Return what the legend says of it: nothing, it has one of its own."""
         return []
 
 

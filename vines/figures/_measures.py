@@ -96,7 +96,7 @@ class MeasurePanel:
         elif ends and min(ends) < max(ends):
             # marks at the ends are shown whole
             more = 0.015 if any(curve.way for curve in self.curves) else 0.0
-            low, high = ((math.log(min(ends)), math.log(max(ends))) if self.log[0] else (min(ends), max(ends)))
+            low, high = (math.log(min(ends)), math.log(max(ends))) if self.log[0] else (min(ends), max(ends))
             window = (low - more * (high - low), high + more * (high - low))
             ax.set_xlim(*map(math.exp, window) if self.log[0] else window)
         if self.y is not None:

@@ -13,8 +13,8 @@ import pyarrow.compute as pc
 from vines.figures import BranchLine, ImpactDots, Marker
 from vines.model import Word, most_balls, read_system
 from vines.schema import table
-from vines.stages.plots._checks import called
 from vines.stages.plots._caption import listed, shared_params
+from vines.stages.plots._checks import called
 
 if TYPE_CHECKING:
     from vines.pipeline import Input

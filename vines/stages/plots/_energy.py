@@ -124,7 +124,7 @@ def _velocities(stages: list[Input], cell: Any, caption: str) -> VelocityPanel:
     numbered = "ball" in tables[0].column_names
     columns = [axis, "w_dot", "side", "attractor", *(["ball"] if numbered else [])]
     together = pa.concat_tables([rows.select(columns) for rows in tables])
-    balls = together["ball"].to_numpy() if numbered else np.zeros(0)
+    balls = together["ball"].to_numpy() if numbered else np.zeros(0, dtype=np.int64)
     later = np.repeat(np.arange(len(tables)) > 0, [rows.num_rows for rows in tables])
     found = np.where(together["attractor"].to_numpy() > 0, FOUND.index("random"), later.astype(np.int64))
     return VelocityPanel(

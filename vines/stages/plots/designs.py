@@ -46,7 +46,9 @@ class DesignsOptions(PlotOptions, frozen=True, tag="designs"):
     all sizes.
     """
 
-    sets: Annotated[dict[str, tuple[str, ...]], Meta(description="Names of the sets, and the sweeps of each")] = {}
+    sets: Annotated[dict[str, tuple[str, ...]], Meta(description="Names of the sets, and the sweeps of each")] = (
+        msgspec.field(default_factory=dict)
+    )
     over: Annotated[str, Meta(description="The parameter of the forcing, a length")] = "A"
     span: Annotated[tuple[float, float], Meta(description="The range of the forcing that a design is for")] = (0.0, 0.0)
     measure: Annotated[str, Meta(description="A column of the points; less is better")] = "reduction"
@@ -93,22 +95,26 @@ def _check_set(name: str, members: list[Stage], options: Any) -> None:
             raise DeclarationError(f"set {name!r}: {one.name} is of kind {one.kind.name!r}; sets are of sweeps")
         numbers = [column.name for column in form.columns if column.dtype == "float64"]
         if options.measure not in numbers:
-            raise DeclarationError(f"set {name!r}: unknown measure {options.measure!r}: {nearest(options.measure, numbers)}")
+            known = nearest(options.measure, numbers)
+            raise DeclarationError(f"set {name!r}: unknown measure {options.measure!r}: {known}")
         grid = {axis.name: axis.values() for axis in one.axes}
         if grid != {axis.name: axis.values() for axis in members[0].axes}:
-            raise DeclarationError(f"set {name!r}: {one.name} and {members[0].name} vary other values; give them one grid")
+            both = f"{members[0].name} and {one.name}"
+            raise DeclarationError(f"set {name!r}: {both} do not vary the same values; give them one grid")
         if options.over not in grid:
-            raise DeclarationError(f"set {name!r}: {one.name} does not vary {options.over}; it varies {', '.join(grid)}")
+            varied = ", ".join(grid) or "nothing"
+            raise DeclarationError(f"set {name!r}: {one.name} does not vary {options.over}; it varies {varied}")
         values = grid[options.over]
         width = max(values) / min(values) if min(values) > 0 else 0.0
         if width < high / low * (1 - 1e-9):
             raise DeclarationError(
-                f"set {name!r}: {one.name} varies {options.over} by a factor of {width:.4g}, the span is one of {high / low:.4g}"
+                f"set {name!r}: {one.name} varies {options.over} by a factor of {width:.4g}, "
+                f"the span is one of {high / low:.4g}"
             )
         if width > high / low * (1 + 1e-9) and ("G" in grid or one.params.get("G", 0.0) != 0):
             raise DeclarationError(
-                f"set {name!r}: {one.name} is tilted, so lengths have no free size; let it vary {options.over} over the "
-                f"span alone"
+                f"set {name!r}: {one.name} is tilted, so that lengths have no free size; "
+                f"let it vary {options.over} over the span alone"
             )
 
 
@@ -136,7 +142,7 @@ def _panel(cell: DesignsCell, found: Mapping[str, Designs], options: DesignsOpti
     from vines.figures import BandCurve, BandPanel, DesignMap, FactorPanel
 
     low, high = options.span
-    colours = {name: place for place, name in enumerate(options.sets)}
+    colours = {name: place for place, name in enumerate(cell.of)}
     if cell.show == "factor":
         widths = {name: _widths(found[name], high / low) for name in cell.of}
         curves = [
@@ -150,7 +156,16 @@ def _panel(cell: DesignsCell, found: Mapping[str, Designs], options: DesignsOpti
         best = designs.best(low, high)
         at = tuple(float(values[k]) for values, k in zip(designs.values, best.place, strict=True)) if best else None
         worst = designs.windows(high / low).min(axis=-1)
-        return DesignMap(designs.axes, *designs.values, worst.T, at, options.measure, title=cell.title, limits=cell.y)
+        return DesignMap(
+            axes=designs.axes,
+            x=designs.values[0],
+            y=designs.values[1],
+            worst=worst.T,
+            best=at,
+            quantity=options.measure,
+            title=cell.title,
+            limits=cell.y,
+        )
     bands = []
     for name in cell.of:
         designs, best = found[name], found[name].best(low, high)
@@ -161,7 +176,7 @@ def _panel(cell: DesignsCell, found: Mapping[str, Designs], options: DesignsOpti
                 x=designs.over * best.size,
                 least=designs.least[best.place],
                 worst=designs.worst[best.place],
-                label=f"{name}: {best.worst:.3f}",
+                label=f"{name}: worst {best.worst:.3f}",
                 colour=colours[name],
             )
         )

@@ -37,7 +37,7 @@ class MeasureCell(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
     show: Annotated[str, Meta(description="A column of numbers, such as reduction")]
     of: Annotated[tuple[str, ...], Meta(min_length=1, description="The stages that it shows")]
-    over: Annotated[str, Meta(description="The parameter along x; the carried axis or the last varied one if empty")] = ""
+    over: Annotated[str, Meta(description="What is along x; the carried axis or the last varied one if empty")] = ""
     where: Annotated[dict[str, float], Meta(description="Parameters that the shown points have")] = {}
     title: Annotated[str, Meta(description="Written above the panel")] = ""
     log: Annotated[Literal["", "x", "y", "xy"], Meta(description="Logarithmic axes")] = ""
@@ -51,7 +51,9 @@ class MeasuresOptions(PlotOptions, frozen=True, tag="measures"):
     """Columns of points or transients over one parameter: a panel a column, a curve a stage, of any systems."""
 
     cells: Annotated[tuple[MeasureCell, ...], Meta(description="The panels, row by row")] = ()
-    labels: Annotated[dict[str, str], Meta(description="What stages are called; their names if left out")] = {}
+    labels: Annotated[dict[str, str], Meta(description="What stages are called; their names if left out")] = (
+        msgspec.field(default_factory=dict)
+    )
     columns: Annotated[int, Meta(ge=1, description="Panels in a row")] = 2
     height: Annotated[float, Meta(gt=0, description="Height of a row [inch]")] = 2.3
 
@@ -84,7 +86,8 @@ def _check_cell(where: str, cell: MeasureCell, shown: Sequence[Stage]) -> None:
             raise DeclarationError(f"{where}: {one.name} is of kind {one.kind.name!r}; it shows sweeps and transients")
         numbers = [column.name for column in form.columns if column.dtype in ("float64", "int64")]
         if cell.show not in numbers:
-            raise DeclarationError(f"{where}: {one.name} has no column {cell.show!r} of numbers: {nearest(cell.show, numbers)}")
+            known = nearest(cell.show, numbers)
+            raise DeclarationError(f"{where}: {one.name} has no column {cell.show!r} of numbers: {known}")
         values = {axis.name: axis.values() for axis in one.axes}
         axis = cell.over or (one.carry.axis if one.carry is not None else next(reversed(values), ""))
         if axis not in values:
@@ -102,8 +105,8 @@ def _check_cell(where: str, cell: MeasureCell, shown: Sequence[Stage]) -> None:
         raise DeclarationError(f"{where} shows stages along {', '.join(sorted(along))}; name one of them, over = ...")
     if max(counts.values()) > _MOST:
         many = max(counts, key=lambda name: counts[name])
-        raise DeclarationError(f"{where}: {many} gives {counts[many]} curves, allowed are {_MOST}; choose some, where = ...")
-
+        told = f"{many} gives {counts[many]} curves, allowed are {_MOST}"
+        raise DeclarationError(f"{where}: {told}; choose some, where = ...")
 
 
 def _draw(inputs: Mapping[str, Input], options: MeasuresOptions) -> Figure:
@@ -124,7 +127,7 @@ def _told_once(panels: list[MeasurePanel]) -> list[MeasurePanel]:
     told = [tuple(dict.fromkeys(curve.label for curve in panel.curves)) for panel in panels]
     if len(set(told)) == 1:
         return panels
-    return [replace(panel, legend=told.index(labels) == k) for k, (panel, labels) in enumerate(zip(panels, told, strict=True))]
+    return [replace(panel, legend=told.index(told[k]) == k) for k, panel in enumerate(panels)]
 
 
 def _panel(cell: MeasureCell, inputs: Mapping[str, Input], labels: Mapping[str, str]) -> MeasurePanel:

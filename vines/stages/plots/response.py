@@ -11,7 +11,7 @@ from msgspec import Meta
 
 from vines.errors import DeclarationError
 from vines.model import most_balls, read_system
-from vines.stages.plots._checks import called, cells, one_system
+from vines.stages.plots._checks import called, cells, has_runs, one_system
 from vines.stages.plots._plot import Plot, PlotOptions
 
 if TYPE_CHECKING:
@@ -57,7 +57,7 @@ class ResponseOptions(PlotOptions, frozen=True, tag="response"):
 def _check(stage: Stage, pipeline: Pipeline) -> None:
     for where, cell, shown in cells(stage, pipeline, _SHOWN):
         carried = {one.carry.axis if one.carry is not None else "" for one in shown}
-        listed = all(one.kind.name == "sweep" and called(one.kind.tables, "impacts") for one in shown)
+        listed = all(called(one.kind.tables, "impacts") and not has_runs(one) for one in shown)
         if not listed or len(carried) != 1 or carried == {""}:
             raise DeclarationError(f"{where} shows stages of kind 'sweep' that are carried along one axis")
         system = one_system(shown, where)
