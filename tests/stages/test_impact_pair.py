@@ -130,7 +130,7 @@ def test_tables_hold_the_check_values(pair):
         (('kind = "branch"', 'kind = "reduced"'), "the kind 'reduced' cannot do the system 'impact_pair'"),
         (
             ('kind = "branch"\nword = "LR"\npoints = 5', 'kind = "curve"\nword = "LR"\ntype = "fold"'),
-            "in two parameters",
+            "a curve is followed in two parameters, this one varies B",
         ),
         (
             ('kind = "branch"\nword = "LR"\npoints = 5', 'kind = "transient"'),
