@@ -8,7 +8,7 @@ import pytest
 
 from tests.made_once import own_copy
 from tests.project import Project
-from vines.cli import COMMANDS
+from vines.cli._app import COMMANDS
 
 # name: (arguments, exit code); LOG is a log of the quickstart, OUT and RRD paths that are not there
 
@@ -41,7 +41,10 @@ WORKING = {
     "rig": (["rig", "--help"], 0),  # begins with how it was called
     "warm-up": (["warm-up"], 0),
 }
-ELSEWHERE = {"browse"}  # serves until Ctrl-C; that it says what is wrong is tested below
+ELSEWHERE = {
+    "browse",
+    "figure",
+}  # the one serves until Ctrl-C, that it says what is wrong is tested below; test_drawing
 
 
 def filled_in(arguments, project, tmp_path):

@@ -190,7 +190,7 @@ def test_rows_are_plain(curves):
         (("A", "A"), {"A": (0, 1)}, {}, "two different ones"),
         (("A", "mu"), {"A": (0, 1)}, {}, "ranges of A and mu"),
         (("A", "mu"), {"A": (0.5, 1), "mu": (0.001, 1)}, {}, "has to hold the bifurcation"),
-        (("A", "mu"), BOX, {"step": 2}, "0 < step <= 1"),
+        (("A", "mu"), BOX, {"step": 2}, "step is 2; give a finite number > 0 and <= 1"),
     ],
 )
 def test_bad_calls_are_refused_in_one_line(found, parameters, box, options, said):

@@ -158,7 +158,7 @@ def test_the_closure_follows_lazy_and_whole_imports_but_not_those_for_checkers(l
     found = modules(lab, start=start, deep="from vines.model import Params\n", other="import math\n")
     names = ("_conversion", "_declared", "_expression", "_parameters", "_params", "_system", "_vi_nes")
     model = {f"vines.model.{name}" for name in names}
-    assert found == {"toylab.start", "toylab.deep", "toylab.other", *model}
+    assert found == {"toylab.start", "toylab.deep", "toylab.other", "vines.bounds", *model}
 
 
 def test_cached_digests_are_used_and_a_change_is_seen(lab):

@@ -159,7 +159,7 @@ def test_what_a_plot_cannot_do_is_refused_with_what_it_can_and_what_can_do_it(de
         ("measures", "parallel", "two_down", "two_branch", "two_branch is of kind 'branch'; it shows"),
         ("bifurcation", "parallel", "two_branch", "pair_up", "one and the same parameter"),
         ("multipliers", "parallel", "branch", "up", "name a stage of kind 'branch' in needs"),
-        ("regimes", "parallel", "two_map", "two_up", "needs one sweep over two parameters"),
+        ("regimes", "parallel", "two_map", "two_up", "draws one sweep over two parameters"),
         ("designs", "parallel", "0.028,", "0.02,", "by a factor of 1.071, the span is one of 1.5"),
         ("designs", "parallel", "'reduction'", "'reductio'", "unknown measure 'reductio': did you mean"),
         ("designs", "parallel", "over = 'A'", "over = 'G'", "does not vary G; it varies A, Omega"),

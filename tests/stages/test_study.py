@@ -10,7 +10,7 @@ import pytest
 from click.testing import CliRunner
 
 import vines
-from vines.cli import app
+from vines.cli._app import app
 from vines.errors import FileMissingError, UnknownNameError
 from vines.stages import diff, export, list_pipelines, verify
 

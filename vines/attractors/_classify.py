@@ -114,10 +114,8 @@ def _of_another_system(
     params: Parameters | Sequence[Parameters] | Mapping[str, npt.ArrayLike],
 ) -> TypeGuard[Parameters | Sequence[Parameters]]:
     """Say whether parameters are objects of another system than the VI-NES."""
-    if isinstance(params, Mapping):
-        return False
-    first = params if isinstance(params, Parameters) else next(iter(params), None)
-    return first is not None and not isinstance(first, Params)
+    first = params[0] if isinstance(params, Sequence) and params else params
+    return isinstance(first, Parameters) and not isinstance(first, Params)
 
 
 class _Many:

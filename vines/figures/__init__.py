@@ -13,7 +13,11 @@ from vines.packages import need
 _attached, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)
 
 
+_DRAWS = frozenset({"fit_titles", "save", "save_as", "style_settings", "wearing"})
+"""What needs matplotlib beside the figures themselves."""
+
+
 def __getattr__(name: str) -> Any:
-    if name == "save" or name.endswith("_figure"):
+    if name in _DRAWS or name.endswith("_figure"):
         need("matplotlib")
     return _attached(name)

@@ -46,7 +46,7 @@ class Families(list[Branch]):
 
 @stated(
     ParameterError,
-    p=Parameters(any_system=False),
+    p=Parameters(),
     parameter=Name(),
     within=Interval(),
     seeds=Numbers(least=1),

@@ -54,7 +54,7 @@ _FIRST = 4
     ParameterError,
     bifurcation=Of("Bifurcation", how="one of Branch.bifurcations"),
     parameters=Names(2),
-    box=Named(Interval(), least=2),
+    box=Named(Interval()),
     step=Number(above=0, most=1),
     max_points=Whole(most=1_000_000),
 )

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Sequence
 
+from vines.domains import Name, Number, Numbers, Of, stated
 from vines.errors import OrbitNotFound, ParameterError
 from vines.orbits._branch import Bifurcation
 from vines.orbits._continuation import continue_orbit
@@ -12,7 +13,15 @@ from vines.orbits._orbit import Orbit
 __all__ = ["follow_end"]
 
 
-def follow_end(orbit: Orbit, parameter: str, stop: float, *, other: str, values: Iterable[float]) -> list[Bifurcation]:
+@stated(
+    ParameterError,
+    orbit=Of("Orbit", how="as vines.find_orbit returns it"),
+    parameter=Name(),
+    stop=Number(),
+    other=Name(),
+    values=Numbers(),
+)
+def follow_end(orbit: Orbit, parameter: str, stop: float, *, other: str, values: Sequence[float]) -> list[Bifurcation]:
     """Return where the family of an orbit that sticks ends in one parameter, at each value of another one.
 
     From one value to the next the orbit is followed in the other parameter, and at each of them in the first one to its
@@ -29,7 +38,7 @@ def follow_end(orbit: Orbit, parameter: str, stop: float, *, other: str, values:
         Its value up to which the family is followed.
     other : str
         The second parameter.
-    values : iterable of float
+    values : sequence of float
         Its values, in the order in which to go.
 
     Returns
@@ -55,6 +64,8 @@ def follow_end(orbit: Orbit, parameter: str, stop: float, *, other: str, values:
     """
     if not orbit.word.sticking:
         raise ParameterError(f"the orbit {orbit.word} does not stick; follow its bifurcations with follow_curve")
+    for name in (parameter, other):
+        orbit.params.system.parameter(name)
     if parameter == other:
         raise ParameterError(f"parameter and other are both {other}; give two")
     found: list[Bifurcation] = []

@@ -56,7 +56,7 @@ class Column:
         --------
         >>> from vines.schema import table
         >>> table("points").columns[1].allowed
-        '>= 0'
+        '>= 1e-12 and <= 1e+06'
         """
         if self.values:
             return ", ".join(self.values)

@@ -128,7 +128,7 @@ def _asked(
     of, _, stage = (name, "", "") if known else name.partition(".")
     given = dict(overrides or {})
     pipeline = load_pipeline(of, given, study=study)
-    figures = [each.name for each in pipeline.stages.values() if each.kind.name == "figure"]
+    figures = [each.name for each in pipeline.stages.values() if each.kind.pictures]
     if not stage:
         if len(figures) != 1:
             all_of_them = ", ".join(f"{pipeline.name}.{each}" for each in figures) or "none is declared"
