@@ -16,21 +16,25 @@ __all__ = ["load_pandas_late"]
 
 
 class _AfterImport:
-    """A finder that does something once, as soon as a module has been loaded."""
+    """A finder that does something once, as soon as a module has been loaded; who looks for it has not loaded it."""
 
     def __init__(self, name: str, then: Callable[[], None]) -> None:
-        self._name = name
+        self.name = name
         self._then = then
+        self._asks_others = False
 
     def find_spec(
         self, name: str, path: Sequence[str] | None = None, target: ModuleType | None = None
     ) -> ModuleSpec | None:
         """Find the module as others do, and see to it that loading it does one thing more."""
         del path, target
-        if name != self._name:
+        if name != self.name or self._asks_others:
             return None
-        sys.meta_path[:] = [finder for finder in sys.meta_path if finder is not self]
-        spec = importlib.util.find_spec(name)
+        self._asks_others = True
+        try:
+            spec = importlib.util.find_spec(name)
+        finally:
+            self._asks_others = False
         return None if spec is None else self._and_then(spec)
 
     def _and_then(self, spec: ModuleSpec) -> ModuleSpec:
@@ -39,6 +43,7 @@ class _AfterImport:
 
             def both(module: ModuleType) -> None:
                 load(module)
+                sys.meta_path[:] = [finder for finder in sys.meta_path if finder is not self]
                 self._then()
 
             setattr(spec.loader, "exec_module", both)  # noqa: B010 - a method for this loader alone
@@ -75,7 +80,8 @@ def load_pandas_late() -> None:
     >>> subprocess.run([sys.executable, "-c", program], capture_output=True, text=True).stdout
     'False 1\n'
     """
-    if "pandas" in sys.modules:
+    waits = any(isinstance(finder, _AfterImport) and finder.name in ("pandas", "pyarrow") for finder in sys.meta_path)
+    if waits or "pandas" in sys.modules:
         return
     if "pyarrow" in sys.modules:
         _hide()

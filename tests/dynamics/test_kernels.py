@@ -32,7 +32,11 @@ print(phasors(constants(Params(mu=0.1, A=0.3)).free, 1.0, 0.1, 0.2, 0.5)[2])
 
 def _run(program: str, folder: Path, cache: Path | None = None) -> str:
     environment = {k: v for k, v in os.environ.items() if k not in ("NUMBA_CACHE_DIR", "PYTHONPATH")}
-    environment |= {"PYTHONPATH": str(folder), "NUMBA_CACHE_DIR": str(cache or folder / "cache")}
+    environment |= {
+        "PYTHONDONTWRITEBYTECODE": "1",
+        "PYTHONPATH": str(folder),
+        "NUMBA_CACHE_DIR": str(cache or folder / "cache"),
+    }
     done = subprocess.run(
         [sys.executable, "-c", program], cwd=folder, env=environment, capture_output=True, text=True, check=True
     )
@@ -74,7 +78,11 @@ kernels = [f for m in (_advance, _flight, _totals) for f in vars(m).values() if 
 print(sum(len(f.signatures) for f in kernels))
 """
     root = Path(vines.dynamics.__file__).resolve().parent.parent.parent
-    environment = os.environ | {"PYTHONPATH": str(root), "NUMBA_CACHE_DIR": str(tmp_path)}
+    environment = os.environ | {
+        "PYTHONDONTWRITEBYTECODE": "1",
+        "PYTHONPATH": str(root),
+        "NUMBA_CACHE_DIR": str(tmp_path),
+    }
     done = subprocess.run(
         [sys.executable, "-c", program], env=environment, capture_output=True, text=True, check=True, cwd=tmp_path
     )

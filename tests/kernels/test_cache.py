@@ -53,7 +53,14 @@ def _run(folder: Path, helper: str, kernel: str = KERNEL, program: str = PROGRAM
     paths = os.pathsep.join([str(folder), *sys.path])
     done = subprocess.run(
         [sys.executable, "-c", program],
-        env={**os.environ, "PYTHONPATH": paths, "NUMBA_CACHE_DIR": str(folder / "cache"), **environment},
+        # Python takes a file for unchanged that was changed within its second and kept its length.
+        env={
+            **os.environ,
+            "PYTHONPATH": paths,
+            "PYTHONDONTWRITEBYTECODE": "1",
+            "NUMBA_CACHE_DIR": str(folder / "cache"),
+            **environment,
+        },
         capture_output=True,
         text=True,
         check=True,

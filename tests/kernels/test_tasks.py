@@ -47,6 +47,7 @@ def test_a_task_is_warm_until_one_of_its_kernels_changes(tmp_path: Path) -> None
     environment = {
         **os.environ,
         "PYTHONPATH": os.pathsep.join([str(tmp_path), *sys.path]),
+        "PYTHONDONTWRITEBYTECODE": "1",  # else a file changed within its second may be taken for the old one
         "NUMBA_CACHE_DIR": str(tmp_path / "cache"),
     }
 
