@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import re
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
@@ -123,12 +124,13 @@ def read_params(
     for name in made:
         if name in varied or name in mine or name in theirs:
             raise DeclarationError(f"{where}: {name} is given, and also follows from physical; keep one of them")
+    given = {**theirs, **made, **mine}
     values: dict[str, Fraction] = {}
     for name, default in spec.parameters.items():
         if name in varied or name in links:
             continue
-        if name in mine or name in made or name in theirs:
-            values[name] = {**theirs, **made, **mine}[name]
+        if name in given:
+            values[name] = given[name]
         elif default is not None:
             values[name] = exact(default, name)
         else:
@@ -178,18 +180,25 @@ def _from_physical(spec: Kind, own: Given, common: Given, where: str) -> dict[st
 
 def quantities(spec: Kind) -> list[str]:
     """Return the quantities in SI units that a kind may be given: none if it takes no parameters of its system."""
-    if not spec.system:
-        return []
-    system = read_system(spec.system, spec.balls)
-    if not set(spec.parameters) <= {each.name for each in system.parameters}:
-        return []
-    formulas = " ".join(each.physical for each in system.parameters)
-    return [each.name for each in (*system.rig, *system.run) if re.search(rf"\b{each.name}\b", formulas)]
+    return list(_quantities(spec.system, spec.balls, tuple(spec.parameters))) if spec.system else []
+
+
+@functools.cache
+def _quantities(system: str, balls: int, parameters: tuple[str, ...]) -> tuple[str, ...]:
+    declared = read_system(system, balls)
+    if not set(parameters) <= {each.name for each in declared.parameters}:
+        return ()
+    formulas = " ".join(each.physical for each in declared.parameters)
+    return tuple(each.name for each in (*declared.rig, *declared.run) if re.search(rf"\b{each.name}\b", formulas))
 
 
 def stems(parameters: Iterable[str]) -> list[str]:
     """Return names of parameters, and those that stand for one of each ball."""
-    names = list(parameters)
+    return list(_stems(tuple(parameters)))
+
+
+@functools.cache
+def _stems(names: tuple[str, ...]) -> list[str]:
     return [*names, *dict.fromkeys(name[:-2] for name in names if _NUMBERED.fullmatch(name) and name[:-2] not in names)]
 
 
