@@ -171,7 +171,16 @@ class PhasePlanePanel:
                     ax.plot(run.length * run.hit_side[mine], run.hit_w_dot[mine], color=COLOURS[name], zorder=3, **dot)
         if len(self.runs) > 1:
             # In the panel, since others of the sheet may have the same colours for other runs.
-            ax.legend(loc="best", handlelength=1.6, borderaxespad=2.4)
+            # Loops leave no empty corner: what lies under the labels shows through a little.
+            ax.legend(
+                loc="best",
+                handlelength=1.6,
+                borderaxespad=2.4,
+                frameon=True,
+                facecolor="white",
+                framealpha=0.85,
+                edgecolor="none",
+            )
         ax.set_xlim(-1.15 * lengths[-1], 1.15 * lengths[-1])
         ax.set_xlabel("gap  $w$")
         ax.set_ylabel(r"relative velocity  $\dot w$")
