@@ -249,17 +249,16 @@ class Interval:
 
 @dataclass(frozen=True)
 class Named:
-    """A mapping of names to values of one domain, of `least` names at least."""
+    """A mapping of names to values of one domain."""
 
     each: Domain
-    least: int = 0
     optional: bool = False
 
     def check(self, name: str, value: Any, error: type[VinesError]) -> None:
         """Raise `error` unless the value is such a mapping."""
         if value is None and self.optional:
             return
-        if not isinstance(value, Mapping) or len(value) < self.least:
+        if not isinstance(value, Mapping):
             raise error(f"{name} is {shown(value)}; give a mapping by name, such as {{'A': ...}}")
         for key, one in value.items():
             self.each.check(f"{name}[{shown(key)}]", one, error)

@@ -47,7 +47,6 @@ from ._runs import EndsPanel as EndsPanel
 from ._runs import GapPanel as GapPanel
 from ._runs import PhasePlanePanel as PhasePlanePanel
 from ._runs import RunCurves as RunCurves
-from ._saved import FORMATS as FORMATS
 from ._saved import save_as as save_as
 from ._sheet import Panel as Panel
 from ._sheet import sheet_figure as sheet_figure

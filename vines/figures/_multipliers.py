@@ -19,8 +19,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from vines.figures._fit import columns_in
-from vines.figures._legend import Entry
+    from vines.figures._legend import Entry
 
 __all__ = ["MultiplierLines", "MultiplierPanel", "multiplier_figure"]
 

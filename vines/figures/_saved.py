@@ -4,23 +4,15 @@ from __future__ import annotations
 
 import os
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from vines.errors import DeclarationError, FileMissingError
-from vines.figures._fit import fit_titles
-from vines.figures._style import look
+from vines.figures._style import FORMATS, look
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-__all__ = ["FORMATS", "save_as"]
-
-FORMATS: dict[str, dict[str, Any]] = {
-    ".pdf": {"Creator": "vines", "CreationDate": None, "ModDate": None},
-    ".png": {"Software": "vines"},
-    ".svg": {"Creator": "vines", "Date": None},
-}
-"""Endings of files, and what each says of its origin; without a date, so that a figure has the same bytes each time."""
+__all__ = ["save_as"]
 
 
 def save_as(figure: Figure, path: Path, *, dpi: int = 300) -> Path:
@@ -47,14 +39,13 @@ def save_as(figure: Figure, path: Path, *, dpi: int = 300) -> Path:
     ending = path.suffix.lower()
     if ending not in FORMATS:
         raise DeclarationError(
-            f"{path}: a figure ends in {', '.join(FORMATS)}, such as {path.with_suffix('.pdf').name}"
+            f"{path}: a figure ends in {', '.join(sorted(FORMATS))}, such as {path.with_suffix('.pdf').name}"
         )
     if not path.absolute().parent.is_dir():
         raise FileMissingError(f"{path}: the folder {path.parent} does not exist; make it first")
     beside = path.with_name(f".{path.stem}-{os.getpid()}{ending}")
     try:
         with mpl.rc_context({**look(), "svg.fonttype": "none", "pdf.fonttype": 42}):
-            fit_titles(figure)
             figure.savefig(beside, dpi=dpi, metadata=FORMATS[ending])
         beside.replace(path)
     finally:

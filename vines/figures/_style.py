@@ -13,7 +13,19 @@ from vines.figures._fit import fit_titles
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-__all__ = ["BALLS", "COLOURS", "FAMILIES", "LETTER", "PALETTE", "RC", "look", "new_figure", "save", "wearing"]
+__all__ = [
+    "BALLS",
+    "COLOURS",
+    "FAMILIES",
+    "FORMATS",
+    "LETTER",
+    "PALETTE",
+    "RC",
+    "look",
+    "new_figure",
+    "save",
+    "wearing",
+]
 
 COLOURS = {
     "L": "#c8102e",
@@ -72,6 +84,13 @@ RC: Any = {
     "pdf.fonttype": 42,
 }
 
+FORMATS: dict[str, dict[str, Any]] = {
+    ".png": {"Software": "vines"},
+    ".svg": {"Creator": "vines", "Date": None},
+    ".pdf": {"Creator": "vines", "CreationDate": None, "ModDate": None},
+}
+"""Endings of files, and what each says of its origin; without a date, so that a figure has the same bytes each time."""
+
 LETTER = (-37.0, 0.0)
 """Where the letter of a panel stands from its upper left corner [points]: beside its numbers, however wide it is."""
 
@@ -113,14 +132,13 @@ def save(figure: Figure, folder: Path, name: str = "picture") -> list[Path]:
     """
     import matplotlib as mpl
 
-    files = [folder / f"{name}.{ending}" for ending in ("png", "svg", "pdf")]
+    files = [folder / f"{name}{ending}" for ending in FORMATS]
     with mpl.rc_context(RC):
         engine = figure.get_layout_engine()
         if engine is not None:
             if fit_titles(figure):
                 engine.execute(figure)
             figure.set_layout_engine(None)  # "none" would keep a placeholder, for which each file is drawn twice
-        figure.savefig(files[0], metadata={"Software": "vines"})
-        figure.savefig(files[1], metadata={"Date": None, "Creator": "vines"})
-        figure.savefig(files[2], metadata={"CreationDate": None, "ModDate": None, "Creator": "vines"})
+        for file in files:
+            figure.savefig(file, metadata=FORMATS[file.suffix])
     return files

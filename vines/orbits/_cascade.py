@@ -79,8 +79,6 @@ def follow_cascade(
     LR [('period_doubling', 0.0205), ('grazing', 0.0233)]
     LRLR/2T [('period_doubling', 0.0213), ('grazing', 0.0217)]
     """
-    if depth < 0:
-        raise ParameterError(f"depth is {depth}, allowed is depth >= 0")
     start = getattr(orbit.params, parameter, stop)
     low, high = sorted((start, stop) if within is None else within)
     options = {"at": at, "step": step, "beyond_grazing": beyond_grazing, "max_points": max_points}

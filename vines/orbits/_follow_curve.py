@@ -107,8 +107,6 @@ def follow_curve(
     """
     word_for(bifurcation.word, bifurcation.orbit.params.system, sticking=False)
     low, high = _bounds(bifurcation, parameters, box)
-    if not 0 < step <= 1:
-        raise ParameterError(f"step is {step!r}, allowed is 0 < step <= 1")
     problem = _problem(bifurcation, parameters, high - low)
     zero = ZeroSet(problem, *problem.spans)
     _, sizes, directions = np.linalg.svd(zero.problem.equations(problem.start)[1] * zero.scale)

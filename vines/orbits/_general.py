@@ -18,7 +18,7 @@ from vines.orbits._equations import newton_kernel
 from vines.orbits._orbit import Orbit
 from vines.orbits._values import frequency_of, marks_of, unit_of
 
-__all__ = ["ITERATIONS", "origin", "proper", "refine", "same", "search"]
+__all__ = ["ITERATIONS", "check_word", "origin", "proper", "refine", "same", "search"]
 
 Floats = npt.NDArray[np.float64]
 
@@ -29,6 +29,12 @@ _SAME = 1e-6
 
 _NEAR = 1e-3
 """The same at a point where families join, which the degenerate equations there give to half the digits only."""
+
+
+def check_word(guess: Orbit, word: Word) -> None:
+    """Raise `ParameterError` if a guess is an orbit of another word."""
+    if guess.word != word:
+        raise ParameterError(f"the guess is an orbit of {guess.word}, not of {word}; give one of the same word")
 
 
 def refine(word: Word, p: Any, guess: Orbit | npt.ArrayLike) -> Orbit:
@@ -43,8 +49,7 @@ def refine(word: Word, p: Any, guess: Orbit | npt.ArrayLike) -> Orbit:
     """
     refuse_resonance(p)
     if isinstance(guess, Orbit):
-        if guess.word != word:
-            raise ParameterError(f"the guess is an orbit of {guess.word}, not of {word}; give one of the same word")
+        check_word(guess, word)
         times = guess.t * frequency_of(guess.params) / frequency_of(p)
     else:
         Numbers(most=2 * len(word)).check("guess", guess, ParameterError)

@@ -13,7 +13,7 @@ from vines.dynamics.kernels import constants
 from vines.dynamics.kernels import rows as col
 from vines.errors import OrbitNotFound, ParameterError
 from vines.model import STATE_NAMES, Params, Word
-from vines.orbits._general import same
+from vines.orbits._general import check_word, same
 from vines.orbits._orbit import Orbit
 from vines.orbits._seeds import STARTS
 from vines.orbits._sticking_map import ROOM, search_rounds
@@ -155,8 +155,7 @@ def refine_sticking(word: Word, p: Params, guess: Orbit | npt.ArrayLike) -> Orbi
         If the guess does not fit the word.
     """
     if isinstance(guess, Orbit):
-        if guess.word != word:
-            raise ParameterError(f"the guess is an orbit of {guess.word}, not of {word}; give one of the same word")
+        check_word(guess, word)
         begin = release_of(guess)
     else:
         given = np.asarray(guess, dtype=np.float64)

@@ -42,10 +42,6 @@ def words_up_to(length: int, period: int = 1) -> list[Word]:
     >>> [str(word) for word in words_up_to(3, period=2)]
     ['LR', 'LLR', 'LR/2T', 'LLR/2T']
     """
-    if not 2 <= length <= _LONGEST:
-        raise ParameterError(f"length is {length}, allowed is 2 <= length <= {_LONGEST}")
-    if period < 1:
-        raise ParameterError(f"period is {period}, allowed is period >= 1")
     found: list[Word] = []
     for p, n in itertools.product(range(1, period + 1), range(2, length + 1)):
         words = {Word(f"{''.join(letters)}/{p}T") for letters in itertools.product(VI_NES.alphabet, repeat=n)}

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from contextlib import AbstractContextManager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -17,7 +18,7 @@ if TYPE_CHECKING:
 
     from vines.pipeline import Pipeline
 
-__all__ = ["figure", "figure_name", "save_figure"]
+__all__ = ["figure", "save_figure"]
 
 
 def figure(
@@ -60,15 +61,10 @@ def figure(
     StoreError
         If a stage that is drawn is not computed as it is declared now.
     """
-    from vines.figures import fit_titles, style_settings, wearing
-
     study = study or current()
     pipeline, stage = _asked(name, width, overrides, study)
-    options: Any = pipeline.stages[stage].options
-    with wearing({} if style is None else style_settings(style)):
-        drawn = plot_of(options).draw(stored_inputs(pipeline, stage, study.store), options)
-        fit_titles(drawn)
-    return drawn
+    with _worn(style):
+        return _drawn(pipeline, stage, study)
 
 
 def save_figure(
@@ -99,25 +95,30 @@ def save_figure(
     VinesError
         As :func:`figure`, and if there is no such format or folder.
     """
-    from vines.figures import save_as, style_settings, wearing
+    from vines.figures import save_as
 
     study = study or current()
-    path = Path(f"{figure_name(name, overrides, study=study)}.pdf") if out is None else out
-    drawn = figure(name, width=width, style=style, overrides=overrides, study=study)
-    with wearing({} if style is None else style_settings(style)):
-        return save_as(drawn, path, dpi=dpi)
+    pipeline, stage = _asked(name, width, overrides, study)
+    path = Path(f"{pipeline.name}.{stage}.pdf") if out is None else out
+    with _worn(style):
+        return save_as(_drawn(pipeline, stage, study), path, dpi=dpi)
 
 
-def figure_name(name: str, overrides: Mapping[str, Any] | None = None, *, study: Home | None = None) -> str:
-    """Return ``<pipeline>.<stage>`` of the figure that a name stands for.
+def _worn(style: str | Path | None) -> AbstractContextManager[None]:
+    """Return the context in which figures have a style."""
+    from vines.figures import style_settings, wearing
 
-    Raises
-    ------
-    UnknownNameError
-        If there is no such pipeline, or no such figure in it.
-    """
-    pipeline, stage = _asked(name, None, overrides, study or current())
-    return f"{pipeline.name}.{stage}"
+    return wearing({} if style is None else style_settings(style))
+
+
+def _drawn(pipeline: Pipeline, stage: str, study: Home) -> Figure:
+    """Draw a figure and fit what is written around its panels to its width."""
+    from vines.figures import fit_titles
+
+    options: Any = pipeline.stages[stage].options
+    drawn = plot_of(options).draw(stored_inputs(pipeline, stage, study.store), options)
+    fit_titles(drawn)
+    return drawn
 
 
 def _asked(
