@@ -17,6 +17,7 @@ from vines.kernels._operators import remember_operators
 from vines.kernels._references import count_only_what_counts
 from vines.kernels._settings import numba
 from vines.kernels._subroutines import keep_subroutines_apart
+from vines.kernels._timers import time_outermost
 
 __all__ = ["cold_njit", "entry_njit", "fused_njit", "linked_njit", "loop_njit", "njit"]
 
@@ -24,6 +25,7 @@ _Function = TypeVar("_Function", bound=Callable[..., Any])
 
 remember_operators()
 count_only_what_counts()
+time_outermost()
 keep_subroutines_apart()
 
 _FUSED = {"contract", "nsz"}
