@@ -69,10 +69,10 @@ def riders(modes, balls):
 
 @pytest.mark.parametrize("balls", BALLS)
 def test_ties_with_sticking_keep_momentum_and_go_on(balls):
-    """Random systems and starts: no run ends at a cap, momentum is kept at each instant, energy only lost, nobody leaves."""
+    """Random starts: no run ends at a cap, each instant keeps momentum and loses energy, nobody leaves its cavity."""
     rng = np.random.default_rng(balls)
     ties = merges = 0
-    for _ in range(120):
+    for _ in range(60):
         p, start = tied(rng, balls)
         run = vines.simulate(p, periods=12, **start)
         assert run.status == "complete", (p, start)
@@ -83,12 +83,12 @@ def test_ties_with_sticking_keep_momentum_and_go_on(balls):
         at = run.sample(600)
         size = 1.0 + np.abs(at["x1"]).max()
         assert max(np.abs(at[f"w_{k}"]).max() for k in range(1, balls + 1)) <= 1 + 1e-13 * size
-    assert ties > 300
-    assert merges > 300
+    assert ties > 150
+    assert merges > 150
 
 
 def test_a_tie_of_unequal_masses_that_stick_does_not_end_the_run():
-    """Once a run like this ended at the cap of impacts: the balls chattered on one wall in hops of 1e-15 of each other."""
+    """Runs like this ended at the cap of impacts once: balls on one wall chattered in hops of 1e-15 of each other."""
     p = Parallel(mu=(0.015, 0.005), beta=(1.0, 1.0), A=0.012340677254400193)
     for start in ({"v2": (1.0, 0.0)}, {"v1": 2.0}, {"v1": 2.0, "v2": (0.0, 1e-9)}, {"v2": (0.1, 0.1)}):
         run = vines.simulate(p, periods=1000, **start)

@@ -268,7 +268,8 @@ def lyapunov_spectrum(run: Trajectory, *, skip: float = 0.0) -> tuple[npt.NDArra
     if not start < run.t_end:
         raise StateError(f"skip is {skip!r} periods; allowed is less than the length of the run")
     c = constants(run.params)
-    grown = lyapunov_blocks(c, run.rows, len(run.rows), start, run.t_end, GROWTHS, np.eye(room_of(run.params).layout(run.params).directions))
+    every = np.eye(room_of(run.params).layout(run.params).directions)
+    grown = lyapunov_blocks(c, run.rows, len(run.rows), start, run.t_end, GROWTHS, every)
     return exponents_of(grown)
 
 

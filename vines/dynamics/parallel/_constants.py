@@ -40,7 +40,6 @@ class Frame(NamedTuple):
 
 
 class _Fields(NamedTuple):
-
     A: float
     Omega: float
     lam: float
@@ -56,10 +55,10 @@ class _Fields(NamedTuple):
 
 
 class ParallelConstants(_Fields):
-    """As `Constants`; what there is once a ball stands in a table, `each` is its address and `balls` how many there are.
+    """As `Constants`; what there is once a ball stands in a table of `balls` rows, and `each` is its address.
 
-    So a kernel is compiled once for all numbers of balls. The table lives as long as these constants do, who are not
-    slotted for that: `table` is no field.
+    So a kernel is compiled once for all numbers of balls. The table lives as long as the constants do: it is an
+    attribute of them, no field.
     """
 
     table: npt.NDArray[np.float64]
@@ -107,7 +106,7 @@ def _constants_at(table, k):
 @fused_njit
 def of_ball(each, i, what):
     """Return a number of ball i, from 0 on, in the table of balls at an address."""
-    return constant_at(each, NUMBERS * i + what)
+    return constant_at(each, NUMBERS * i + what)  # pyright: ignore[reportCallIssue]
 
 
 @fused_njit
@@ -115,7 +114,7 @@ def law_of_ball(each, i):
     """Return the `ImpactLaw` of ball i, from 0 on."""
     first = NUMBERS * i
     return ImpactLaw(
-        constant_at(each, first + KEEP1),
+        constant_at(each, first + KEEP1),  # pyright: ignore[reportCallIssue]
         constant_at(each, first + PASS1),
         constant_at(each, first + KEEP2),
         constant_at(each, first + PASS2),
