@@ -1,5 +1,7 @@
 """Logs of several balls: every channel is what the run says, damage is told, and other logs are as before."""
 
+from xml.etree import ElementTree
+
 import numpy as np
 import pytest
 from mcap.reader import make_reader
@@ -32,9 +34,10 @@ def path(run, states, tmp_path_factory):
     return write(tmp_path_factory.mktemp("balls") / "two.mcap", run, states)
 
 
-def write(path, run, states):
+def write(path, run, states, **more):
     return logs.write_run(
         path,
+        **more,
         states=states,
         impacts=run.impacts,
         sticks=run.sticks,
@@ -66,7 +69,8 @@ def test_every_channel_is_what_the_run_says(run, states, path):
         summary = make_reader(stream).get_summary()
     assert summary is not None
     topics = sorted(channel.topic for channel in summary.channels.values())
-    assert topics == ["/ball/1", "/ball/2", "/impact", "/oscillator", "/stick"]
+    bare = {"/curves", "/impact_log", "/robot_description", "/tf", "/tf_static"}
+    assert set(topics) - bare == {"/ball/1", "/ball/2", "/impact", "/oscillator", "/stick"}
 
 
 def test_the_same_run_gives_the_same_bytes(run, states, path, tmp_path):
@@ -131,3 +135,32 @@ def test_a_log_has_channels_for_as_many_balls_as_a_system_may_have(tmp_path):
     for wrong in (-1, 9):
         with pytest.raises(SchemaError, match="give 1 to 8"):
             logs.LiveWriter(tmp_path / "x.mcap", name="x", provenance={}, parameters={}, balls=wrong)
+
+
+def test_the_profile_for_bare_viewers_shows_every_ball_in_its_cavity(run, states, path, tmp_path):
+    seen = {}
+    with path.open("rb") as stream:
+        for _, channel, message in make_reader(stream, validate_crcs=True).iter_messages():
+            seen.setdefault(channel.topic, []).append((message.log_time, message.data))
+    kept = {}  # at an event there are two states, before and after
+    for row in states:
+        kept.setdefault(round(row["t"] * 1e9), []).append(row)
+    assert len(seen["/tf"]) == len(seen["/curves"]) > 1000
+    names = ("kinetic_1", "kinetic_2_1", "kinetic_2_2", "potential_2_1", "potential_2_2")
+    for time, data in seen["/curves"]:
+        last = np.frombuffer(data[-40:], "<f8")
+        assert any(last == pytest.approx([row[name] for name in names], rel=1e-6) for row in kept[time])
+    text = seen["/robot_description"][0][1].decode("utf-8", "ignore")
+    geometry = ElementTree.fromstring(text[text.index("<robot") : text.rindex(">") + 1])
+    assert [link.get("name") for link in geometry.iter("link")] == ["rig", "mass", "base", "ball_1", "ball_2"]
+    ends = [float(each.get("xyz").split()[0]) for each in geometry.findall("link[@name='mass']/visual/origin")]
+    # the ball's radius and half an end farther out than where the ball turns
+    assert ends == [-1.16, 1.16, 0.0, -1.56, 1.56, 0.0]
+    heights = {link: geometry.find(f"link[@name='{link}']/visual/origin").get("xyz") for link in ("ball_1", "ball_2")}
+    assert heights == {"ball_1": "0 0 0", "ball_2": "0 0 -1"}
+    assert all(f"ball_{k}".encode() in seen["/tf"][0][1] for k in (1, 2))
+    lines = b" ".join(data for _, data in seen["/impact_log"])
+    assert all(letter in lines for letter in (b"L1 impact", b"R1 impact", b"L2 impact", b"R2 impact", b"sticks after"))
+    without = write(tmp_path / "without.mcap", run, states, bare=False)
+    assert without.stat().st_size < path.stat().st_size
+    assert logs.read(without).states.equals(logs.read(path).states)

@@ -76,3 +76,43 @@ def test_the_pair_at_the_end_of_its_doubled_family_leads_back():
     assert back.bifurcations[-1].value == pytest.approx(0.96031987596, abs=1e-8)
     (left,) = switch_branch(back.bifurcations[-1])
     assert str(left.word) == "LR"
+
+
+def doubled(p, word, parameter, *stops):
+    """Return the period doubling at the end of a family and an orbit of the doubled one; stops lead to it."""
+    branch = vines.continue_orbit(vines.find_orbit(word, p), parameter, stops[0])
+    for stop in stops[1:]:
+        branch = vines.continue_orbit(switch_branch(branch.bifurcations[0])[0], parameter, stop)
+    at = next(each for each in branch.bifurcations if each.type == "period_doubling")
+    return at, switch_branch(at)[0]
+
+
+@pytest.mark.parametrize(
+    ("word", "p", "stops", "back"),
+    [
+        ("LR", ImpactPair(B=0.95, G=0.05, r=0.5), (0.97,), (0.95, 0.9)),
+        ("LR", vines.Params(mu=0.01, A=0.0175), (0.0185, 0.021), (0.0204, 0.019)),
+        ("L1R1", Parallel(mu=(0.01,), A=0.0175), (0.0185, 0.021), (0.0204, 0.019)),
+    ],
+    ids=["pair", "vi-nes", "parallel"],
+)
+@pytest.mark.parametrize("step", [0.02, pytest.param(0.1, marks=pytest.mark.full)])
+def test_a_doubled_family_ends_at_its_joint_whatever_the_step(word, p, stops, back, step):
+    """Beyond it the old orbits, gone through twice, solve the same equations: a long step may come down on them."""
+    parameter = "B" if isinstance(p, ImpactPair) else "A"
+    at, orbit = doubled(p, word, parameter, *stops)
+    for stop in back:
+        ends = vines.continue_orbit(orbit, parameter, stop, step=step)
+        assert ends.ends == ("range", "period_doubling")
+        (joint,) = ends.bifurcations
+        assert joint.value == pytest.approx(at.value, rel=1e-7)
+        assert all(flown(each) < 1e-9 * max(1, each.max_multiplier) for each in ends.orbits[:-1])
+
+
+def test_a_family_that_broke_its_symmetry_ends_where_it_did():
+    p = vines.Params(mu=0.01, A=0.0175)
+    at = vines.continue_orbit(vines.find_orbit("LR", p), "A", 0.0185).bifurcations[0]
+    for step in (0.02, 0.1):
+        ends = vines.continue_orbit(switch_branch(at)[0], "A", 0.01, step=step)
+        assert ends.ends[1] == "symmetry_breaking"
+        assert ends.bifurcations[-1].value == pytest.approx(at.value, rel=1e-7)

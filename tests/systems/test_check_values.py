@@ -12,7 +12,7 @@ from vines.systems import ImpactPair, Parallel
 pytestmark = pytest.mark.long(20)
 
 PAGE = (REPOSITORY / "docs" / "systems.md").read_text("utf-8").partition("## Check values")[2]
-ROWS = {row[0]: row[1:] for row in re.findall(r"^\| ([ad]\w+) \| (.*?) \| (.*?) \| (.*?) \|$", PAGE, re.MULTILINE)}
+ROWS = {row[0]: row[1:] for row in re.findall(r"^\| ([adf]\w+) \| (.*?) \| (.*?) \| (.*?) \|$", PAGE, re.MULTILINE)}
 
 
 def numbers(text):
@@ -47,6 +47,19 @@ def symmetric():
     return [abs(orbit.impacts["w_dot"][0]), first.real, abs(first.imag)]
 
 
+def tilted():
+    p = Parallel(mu=(0.01,), A=0.02, G=0.01)
+    m = vines.simulate(p, v2=0.0, periods=1500).measures(last=100)
+    return [m.balls[0].kinetic_ratio, m.max_abs_x1, *vines.find_orbit("L1R1", p).w_dot.tolist()]
+
+
+def nearly_massless():
+    """The VI-NES whose oscillator, without a ball, has the amplitude of the capsule."""
+    given = {"mu": 1e-8, "Omega": 1.3, "r": 0.5}
+    A = 0.5 / vines.dynamics.no_ball(vines.Params(A=1.0, **given))
+    return [abs(vines.find_orbit("LR", vines.Params(A=A, **given)).w_dot[0]) / 1.3]
+
+
 OURS = {
     "a1": lambda: balls((0.01, 0.01), (1.0, 1.0), 0.03, [0.1, -0.3]),
     "a3": lambda: balls((0.01, 0.01), (1.0, 1.4), 0.03, [0.1, -0.3]),
@@ -58,6 +71,8 @@ OURS = {
     "d2": lambda: bifurcation(ImpactPair(B=0.6, G=0.0, r=0.5), "B", 0.9, "symmetry_breaking"),
     "d3": lambda: pair(0.6, 0.05, "LR"),
     "d4": lambda: pair(0.95, 0.15, "LLR"),
+    "d6": nearly_massless,
+    "f1": tilted,
     "d5": lambda: bifurcation(ImpactPair(B=0.8, G=0.05, r=0.5), "B", 1.0, "period_doubling"),
 }
 

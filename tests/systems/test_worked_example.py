@@ -81,9 +81,12 @@ def test_the_table_of_what_a_system_took_is_about_right():
     }
     files["impact_pair"] += ["vines/orbits/_capsule.py", "vines/logs/_capsule.py"]
     files["parallel"] += ["vines/orbits/_balls.py", "vines/[lv]*/_balls.py"]
-    told = re.findall(r"^\| `[\w/]+`(?:, `[\w/]+`)? \| (\d+) \| (\d+) \|$", PAGE.read_text("utf-8"), re.MULTILINE)
+    row = r"^\| `[\w/]+`(?:, `[\w/]+`)? \| (\d+) in (\d+) \| (\d+) in (\d+) \|$"
+    told = re.findall(row, PAGE.read_text("utf-8"), re.MULTILINE)
     assert len(told) == 5
-    for system, column in (("impact_pair", 0), ("parallel", 1)):
+    for system, column in (("impact_pair", 0), ("parallel", 2)):
         for pattern, row in zip(files[system], told, strict=True):
-            lines = sum(len(file.read_text("utf-8").splitlines()) for file in root.glob(pattern))
+            found = list(root.glob(pattern))
+            lines = sum(len(file.read_text("utf-8").splitlines()) for file in found)
             assert lines == pytest.approx(int(row[column]), rel=0.2), pattern
+            assert len(found) == int(row[column + 1]), pattern

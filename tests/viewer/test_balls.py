@@ -5,8 +5,8 @@ import pytest
 import rerun as rr
 
 import vines
+from tests.viewer.conftest import write
 from vines import logs, viewer
-from vines.errors import ViewerError
 from vines.systems import Parallel
 from vines.viewer._balls import track_labels
 from vines.viewer._layout import Shown, blueprint
@@ -84,9 +84,17 @@ def test_views_of_cavities_show_the_longest():
     assert np.allclose((short_left - left, right - short_right), 0.4)
 
 
-def test_runs_of_several_balls_are_not_laid_over_each_other(path, tmp_path):
-    with pytest.raises(ViewerError, match="has 3 balls"):
-        viewer.save_rrd([path, path], tmp_path / "run.rrd", overlay=True)
+def test_runs_of_several_balls_are_laid_over_each_other(path, tmp_path):
+    """A view a ball; a run of one ball laid over it shares the view of ball 1."""
+    one = write(tmp_path / "one.mcap", vines.simulate(vines.Params(mu=0.01, A=0.03), periods=4))
+    counts: dict[str, int] = {}
+    both = viewer.save_rrd([path, one], tmp_path / "both.rrd", overlay=True)
+    for chunk in rr.chunk.RrdReader(str(both)).stream().to_chunks():
+        counts[chunk.entity_path] = max(counts.get(chunk.entity_path, 0), chunk.num_rows)
+    drawn = {name.removeprefix("/overlay/") for name in counts if name.startswith("/overlay/")}
+    assert {"w_1/run_0", "w_2/run_0", "w_3/run_0", "x1/run_0", "w_1/run_1", "x1/run_1", "plane/up/run_0"} <= drawn
+    assert "w_2/run_1" not in drawn
+    assert counts["/overlay/w_3/run_0"] == logs.read(path).states.num_rows
 
 
 @pytest.mark.long(20)

@@ -18,7 +18,7 @@ from vines.dynamics._batches import GROWTHS, errors_of_rates
 from vines.dynamics._constants import Constants
 from vines.dynamics._flight import decay, derivatives, phasors
 from vines.dynamics._impact_law import after_impact_kernel
-from vines.dynamics._room import constants
+from vines.dynamics._room import constants, room_of
 from vines.dynamics._sincos import sincos
 from vines.dynamics._trajectory import Trajectory
 from vines.errors import StateError
@@ -46,7 +46,7 @@ DEAD = 1e-150
 @by_type(Constants)
 @njit
 def directions(c):
-    """Return a tuple as long as a disturbance: the numbers of the state that are not given by the time."""
+    """Return something as long as a disturbance: the numbers of the state that are not given by the time."""
     return 0, 0, 0, 0
 
 
@@ -143,7 +143,7 @@ def tangent_product(c, rows, first, last):
 def orthonormalise(directions, Y, gains):
     """Gram–Schmidt in place; the lengths before normalisation go to `gains` (0 where a direction has died).
 
-    `directions` is a tuple as long as there are columns, so that the loops are of a length that the compiler knows.
+    `directions` is as long as there are columns; of a tuple the compiler knows the length of the loops.
     """
     n = len(directions)
     for j in range(n):
@@ -268,7 +268,8 @@ def lyapunov_spectrum(run: Trajectory, *, skip: float = 0.0) -> tuple[npt.NDArra
     if not start < run.t_end:
         raise StateError(f"skip is {skip!r} periods; allowed is less than the length of the run")
     c = constants(run.params)
-    grown = lyapunov_blocks(c, run.rows, len(run.rows), start, run.t_end, GROWTHS, np.eye(len(directions(c))))
+    every = np.eye(room_of(run.params).layout(run.params).directions)
+    grown = lyapunov_blocks(c, run.rows, len(run.rows), start, run.t_end, GROWTHS, every)
     return exponents_of(grown)
 
 

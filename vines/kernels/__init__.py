@@ -24,7 +24,7 @@ from vines.kernels._arrays import (
 from vines.kernels._by_type import by_type
 from vines.kernels._cache import CACHE
 from vines.kernels._decorators import cold_njit, entry_njit, fused_njit, linked_njit, loop_njit, njit
-from vines.kernels._memory import doubles_at
+from vines.kernels._memory import constant_at, doubles_at
 from vines.kernels._rounded_once import rounded_once
 from vines.kernels._tasks import Task, compile_here, compile_tasks, is_warm
 
@@ -39,6 +39,7 @@ __all__ = [
     "compile_tasks",
     "complex_matrix",
     "complex_vector",
+    "constant_at",
     "copy_values",
     "doubles_at",
     "entry_njit",

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import contextlib
 import functools
+import gc
 import os
 import time
 from collections.abc import Callable, Iterator, Mapping
@@ -130,6 +131,18 @@ def is_there(module: str, name: str) -> bool:
     return any((CACHE / module).glob(f"*.{name}-{cache.digest}.*.nbi"))
 
 
+@contextlib.contextmanager
+def _few_collections() -> Iterator[None]:
+    """Let Python look for cycles rarely: compiling makes millions of small objects and few cycles."""
+    before = gc.get_threshold()
+    if 0 < before[0] < 200_000:
+        gc.set_threshold(200_000, 50, 100)
+    try:
+        yield
+    finally:
+        gc.set_threshold(*before)
+
+
 class LazyCache:
     """The cache of one kernel, which numba asks for machine code: made when it is first asked.
 
@@ -179,7 +192,7 @@ class LazyCache:
                 target_context.insert_user_function(found.entry_point, found.fndesc, [found.library])
             else:
                 announce(CACHE)
-                with gathered(self._function, sig):
+                with gathered(self._function, sig), _few_collections():
                     found = compile_it()
                 # That it can't be written does no harm.
                 with contextlib.suppress(OSError):

@@ -14,14 +14,18 @@ from vines.kernels._bodies import inherit
 from vines.kernels._cache import LazyCache
 from vines.kernels._linked import Linked
 from vines.kernels._operators import remember_operators
+from vines.kernels._references import count_only_what_counts
 from vines.kernels._settings import numba
 from vines.kernels._subroutines import keep_subroutines_apart
+from vines.kernels._timers import time_outermost
 
 __all__ = ["cold_njit", "entry_njit", "fused_njit", "linked_njit", "loop_njit", "njit"]
 
 _Function = TypeVar("_Function", bound=Callable[..., Any])
 
 remember_operators()
+count_only_what_counts()
+time_outermost()
 keep_subroutines_apart()
 
 _FUSED = {"contract", "nsz"}
@@ -41,22 +45,27 @@ def fused_njit(function: _Function) -> _Function:
 
 def loop_njit(function: _Function) -> _Function:
     """Compile a hot loop itself: as `linked_njit`, and a product with a sum may be rounded once."""
-    return Linked(_compiled(function, _FULL, fastmath=_FUSED), entry_njit)  # pyright: ignore[reportReturnType]
+    return Linked(_compiled(function, _FULL, fastmath=_FUSED), _call_njit)  # pyright: ignore[reportReturnType]
 
 
 def linked_njit(function: _Function) -> _Function:
     """Compile a function once: kernels that call it do so by its symbol and hold no copy of it."""
-    return Linked(_compiled(function, _FULL), entry_njit)  # pyright: ignore[reportReturnType]
+    return Linked(_compiled(function, _FULL), _call_njit)  # pyright: ignore[reportReturnType]
 
 
 def cold_njit(function: _Function) -> _Function:
     """Compile what runs once a window or once a run: as `linked_njit`, with little optimisation."""
-    return Linked(_compiled(function, _LITTLE), entry_njit)  # pyright: ignore[reportReturnType]
+    return Linked(_compiled(function, _LITTLE), _call_njit)  # pyright: ignore[reportReturnType]
 
 
 def entry_njit(function: _Function) -> _Function:
     """Compile what only Python calls."""
     return _dispatcher(CPUDispatcher, function, _FULL)
+
+
+def _call_njit(function: _Function) -> _Function:
+    """Compile what takes Python's objects apart for a linked kernel, and does nothing else."""
+    return _dispatcher(CPUDispatcher, function, _LITTLE)
 
 
 class _Dispatcher(CPUDispatcher):

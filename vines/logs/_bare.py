@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import struct
 from collections.abc import Mapping
+from dataclasses import dataclass
 from xml.sax.saxutils import escape
 
 import numpy as np
@@ -19,14 +20,12 @@ from vines.logs._form import Form, stamps
 from vines.model import VI_NES
 from vines.schema import WireFormat, foxglove_schema
 
-__all__ = ["bare_rows"]
+__all__ = ["Profile", "bare_rows"]
 
 _STRIDE = 3
 """Of the states in smooth motion, one in so many."""
 _LATEST = 2.0**31
 """Times of ROS are seconds in 32 bits; a log that goes on for longer has no such profile."""
-_MOUNT = -2.9
-"""Where the shaken base is drawn; only its displacement is to scale."""
 _VIEW = "tf#/"
 """The frame in which Rerun's 3-D view looks when nobody has told it another."""
 
@@ -86,8 +85,36 @@ state every unit. https://github.com/foxglove/mcap reads them in many languages.
 """
 
 
+@dataclass(frozen=True)
+class Profile:
+    """What the profile shows of a run.
+
+    Attributes
+    ----------
+    geometry, about : str
+        The bodies, and what the log is, with room for `name` and `parameters`.
+    bodies : mapping of str to str
+        Columns of the places of bodies.
+    mount : float
+        Where the shaken base is drawn; only its displacement is to scale.
+    series : mapping of str to tuple of str
+        Columns shown as position, velocity and effort of each curve; ``""`` is nothing, 0.
+    """
+
+    geometry: str
+    about: str
+    bodies: Mapping[str, str]
+    mount: float
+    series: Mapping[str, tuple[str, str, str]]
+
+
 def bare_rows(
-    states: np.ndarray, impacts: np.ndarray, sticks: np.ndarray, name: str, parameters: Mapping[str, float]
+    states: np.ndarray,
+    impacts: np.ndarray,
+    sticks: np.ndarray,
+    name: str,
+    parameters: Mapping[str, float],
+    profile: Profile | None = None,
 ) -> list[Rows]:
     """Return the rows of the channels with which a log explains itself; none where there is nothing to show.
 
@@ -99,12 +126,36 @@ def bare_rows(
         What the run is called.
     parameters : mapping of str to float
         Parameters of the model.
+    profile : Profile, optional
+        That of one ball in a cavity of half length 1 if left out.
     """
+    shown = _ONE if profile is None else profile
     if not len(states) or states["t"][-1] >= _LATEST:
         return []
     kept = states[_kept(states["t"])]
     start = log_times(kept["t"][:1])
-    return [_model(name, parameters, start), _placed(start), _moved(kept), _curves(kept), *_words(impacts, sticks)]
+    return [
+        _model(shown, name, parameters, start),
+        _placed(start),
+        _moved(shown, kept),
+        _curves(shown, kept),
+        *_words(impacts, sticks),
+    ]
+
+
+_ONE = Profile(
+    _GEOMETRY,
+    _ABOUT,
+    {"mass": "x1", "ball": "x2", "base": "base"},
+    -2.9,
+    dict(
+        zip(
+            ("mass", "ball", "gap; spring"),
+            zip(("x1", "x2", "w"), ("v1", "v2", "w_dot"), VI_NES.energies.stored, strict=True),
+            strict=True,
+        )
+    ),
+)
 
 
 def _kept(t: np.ndarray) -> np.ndarray:
@@ -122,11 +173,11 @@ def _single(values: np.ndarray) -> np.ndarray:
         return values.astype(np.float32)
 
 
-def _model(name: str, parameters: Mapping[str, float], start: np.ndarray) -> Rows:
+def _model(shown: Profile, name: str, parameters: Mapping[str, float], start: np.ndarray) -> Rows:
     """Return the geometry, with what the log is as a comment on top: viewers show both."""
     listed = "   ".join(f"{key} = {parameters[key]:.10g}" for key in sorted(parameters))
-    about = escape(_ABOUT.format(name=name, parameters=listed)).replace("--", "- -")
-    text = f"<!--\n{about}-->\n{_GEOMETRY}".encode() + b"\0"
+    about = escape(shown.about.format(name=name, parameters=listed)).replace("--", "- -")
+    text = f"<!--\n{about}-->\n{shown.geometry}".encode() + b"\0"
     schema = ("ros2msg", b"string data")
     channel = Channel(20, "/robot_description", "std_msgs/msg/String", "", "", schema=schema, encoding="cdr")
     layout = Form().put(b"\0\1\0\0" + struct.pack("<I", len(text)) + text).layout()
@@ -154,28 +205,31 @@ def _placed(start: np.ndarray) -> Rows:
     return _filled(_foxglove(21, "/tf_static", "FrameTransforms"), layout, start, {})
 
 
-def _moved(states: np.ndarray) -> Rows:
+def _moved(shown: Profile, states: np.ndarray) -> Rows:
     form = Form()
-    for child, x in (("mass", "x1"), ("ball", "x2"), ("base", "base")):
+    for child, x in shown.bodies.items():
         _transform(form, "rig", child, x)
-    values = {"x1": states["x1"], "x2": states["x2"], "base": states["base"] + _MOUNT}
+    values = {x: states[x] + (shown.mount if x == "base" else 0.0) for x in shown.bodies.values()}
     channel = _foxglove(22, "/tf", "FrameTransforms")
     return _filled(channel, form.layout(), log_times(states["t"]), {key: _single(v) for key, v in values.items()})
 
 
-def _curves(states: np.ndarray) -> Rows:
+def _curves(shown: Profile, states: np.ndarray) -> Rows:
     form = Form().put(b"\0\1\0\0").slot("ros_sec", "<i4").slot("ros_nano", "<u4").cdr_text("rig")
-    series = ["mass", "ball", "gap; spring"]
-    form.align(4).put(struct.pack("<I", len(series)))
-    for name in series:
+    form.align(4).put(struct.pack("<I", len(shown.series)))
+    for name in shown.series:
         form.cdr_text(name)
-    groups = (["x1", "x2", "w"], ["v1", "v2", "w_dot"], list(VI_NES.energies.stored))
+    groups = [list(columns) for columns in zip(*shown.series.values(), strict=True)]
     for names in groups:
-        form.cdr_doubles(names)
+        form.cdr_doubles([name or f"none_{k}" for k, name in enumerate(names)])
     channel = Channel(
         *(23, "/curves", "sensor_msgs/msg/JointState", "", ""), schema=("ros2msg", _JOINT_STATE), encoding="cdr"
     )
-    values = {name: _single(states[name]) for names in groups for name in names}
+    values = {
+        name or f"none_{k}": _single(states[name]) if name else np.zeros(len(states))
+        for names in groups
+        for k, name in enumerate(names)
+    }
     return _filled(channel, form.layout(), log_times(states["t"]), values)
 
 
@@ -185,13 +239,14 @@ def _words(impacts: np.ndarray, sticks: np.ndarray) -> list[Rows]:
         after = impacts["v1_after"] - impacts["v2_after"]
     told = (impacts[name].tolist() for name in ("t", "index", "w_dot"))
     lines = [
-        (t, f"{letter} impact {index}   w' {before:+.4f} -> {left:+.4f}")
-        for letter, t, index, before, left in zip(VI_NES.letters(impacts["side"]), *told, after.tolist(), strict=True)
-    ]
-    for row in sticks:
-        text = (
-            f"{VI_NES.letters([row['side']])} sticks after {row['impacts']} impacts, released at {row['t_release']:.4f}"
+        (t, f"{letter}{ball} impact {index}   w' {before:+.4f} -> {left:+.4f}")
+        for letter, ball, t, index, before, left in zip(
+            VI_NES.letters(impacts["side"]), _numbers(impacts), *told, after.tolist(), strict=True
         )
+    ]
+    for row, ball in zip(sticks, _numbers(sticks), strict=True):
+        wall = f"{VI_NES.letters([row['side']])}{ball}"
+        text = f"{wall} sticks after {row['impacts']} impacts, released at {row['t_release']:.4f}"
         lines.append((float(row["t_start"]), text))
     if not lines:
         return []
@@ -202,6 +257,13 @@ def _words(impacts: np.ndarray, sticks: np.ndarray) -> list[Rows]:
     times = log_times(np.array([time for time, _ in lines]))
     padded = np.char.ljust(texts, size)
     return [_filled(_foxglove(24, "/impact_log", "Log"), form.layout(), times, {"text": padded})]
+
+
+def _numbers(events: np.ndarray) -> list[str]:
+    """Return the number of the ball of each event as text, nothing where there is one ball."""
+    if "ball" not in (events.dtype.names or ()):
+        return [""] * len(events)
+    return [str(ball) for ball in events["ball"].tolist()]
 
 
 def _filled(channel: Channel, layout: WireFormat, times: np.ndarray, values: Mapping[str, np.ndarray]) -> Rows:

@@ -15,6 +15,7 @@ import numpy as np
 from vines.errors import FileMissingError, SchemaError
 from vines.logs._balls import ball_rows, has_balls
 from vines.logs._bare import bare_rows
+from vines.logs._bare_balls import profile_of_balls
 from vines.logs._channels import CHANNELS, ORBIT, PARAMETERS, PROVENANCE, RUN, Rows, as_rows
 from vines.logs._file import LogFile
 from vines.logs._pack import cut
@@ -66,8 +67,7 @@ def write_run(
     system : str, optional
         The system of the run, kept in the metadata ``vines.run``; the VI-NES if left out.
     bare : bool
-        Whether the log also carries the channels with which it explains itself in a viewer without vines. They show
-        one ball: a log of several never has them.
+        Whether the log also carries the channels with which it explains itself in a viewer without vines.
 
     Returns
     -------
@@ -95,8 +95,11 @@ def write_run(
         about["attractor"] = attractor
     if system is not None:
         about["system"] = system
-    if bare and not several:
-        rows += bare_rows(*(each.values for each in rows[:3]), name, parameters)
+    if bare:
+        # Those of one ball as they are packed, those of several as they were given: packed they are a table a ball.
+        shown = [states, impacts, sticks] if several else [each.values for each in rows[:3]]
+        profile = profile_of_balls(states, parameters) if several else None
+        rows += bare_rows(shown[0], shown[1], shown[2], name, parameters, profile)
     return write_rows(path, rows, about, provenance, parameters, declaration)
 
 

@@ -38,6 +38,9 @@ class Walk:
         Whether the corrector is kept from looking beyond the border, where the model may not exist.
     reach : float
         A solution farther away than so many steps is on another part of the curve.
+    is_on : callable, optional
+        Of a point; whether it is on this curve. Where two curves cross, a step that is long beside the bend of the one
+        may end on the other; a shorter one is then taken.
     """
 
     zero: ZeroSet
@@ -48,6 +51,7 @@ class Walk:
     turn: float
     only_inside: bool = False
     reach: float = math.inf
+    is_on: Callable[[Point], bool] | None = None
 
     def follow(self, begin: Point, record: Callable[[Point, Point, bool], str | None], most: int) -> str:
         """Follow the curve from a point in the direction of its tangent, by at most so many steps.
@@ -91,6 +95,9 @@ class Walk:
             return None
         crossed = self._crossing(here.y, y)
         if crossed is not None:
+            if crossed[2] <= 0.0:
+                # The curve begins on this border, and turned back to it within the step.
+                return None
             y = self._at_border(here.y, y, *crossed)
             # Next to a corner another parameter may be beyond its range there.
             if y is None or not self._within(y):
@@ -101,7 +108,7 @@ class Walk:
             there = self.zero.point(y, (y - here.y) / self.zero.scale)
         except OrbitNotFound:
             return None
-        if here.tangent @ there.tangent < math.cos(self.turn):
+        if here.tangent @ there.tangent < math.cos(self.turn) or (self.is_on and not self.is_on(there)):
             return None
         return there, iterations, crossed is not None
 

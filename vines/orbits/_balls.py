@@ -7,7 +7,7 @@ import math
 from vines.dynamics.kernels import after_impact_kernel, derivatives, flight, tangent_product, turn
 from vines.dynamics.kernels import rows as col
 from vines.dynamics.parallel import ParallelConstants
-from vines.dynamics.parallel.kernels import BALL, R_V2, R_X2
+from vines.dynamics.parallel.kernels import BALL, BETA, R_V2, R_X2, law_of_ball, of_ball
 from vines.kernels import copy_values, linked_njit, new_cube, njit, zero_matrix
 from vines.orbits._budget import orbit_rows
 from vines.orbits._chains import ball_of, chain_closing, gravity, response, response_of, steady, steady_of
@@ -47,8 +47,8 @@ def _response(c, duration, tau):
 @ball_of.register(ParallelConstants)
 @njit
 def _ball_of(c, number):
-    law = c.law[number - 1]
-    return law.pass1, law.pass2, law.keep2, c.beta[number - 1]
+    law = law_of_ball(c.each, number - 1)
+    return law.pass1, law.pass2, law.keep2, of_ball(c.each, number - 1, BETA)
 
 
 @gravity.register(ParallelConstants)
@@ -61,7 +61,7 @@ def _gravity(c):
 @linked_njit
 def _orbit_rows(c, duration, side, t, states):
     N = t.size
-    rows = zero_matrix(N + 1, R_X2 + 2 * len(c.mu))
+    rows = zero_matrix(N + 1, R_X2 + 2 * c.balls)
     for k in range(N + 1):
         j = k % N
         b = abs(side[j]) - 1
@@ -71,18 +71,18 @@ def _orbit_rows(c, duration, side, t, states):
         row[col.TIME] = t[j] if k < N else t[0] + duration
         row[col.PHASE] = (c.Omega * t[j]) % (2.0 * math.pi)
         row[col.X1], row[col.V1], row[col.X2], row[col.V2] = x1, v1, x2, v2
-        row[col.A_V1], row[col.A_V2] = after_impact_kernel(c.law[b], v1, v2)
+        row[col.A_V1], row[col.A_V2] = after_impact_kernel(law_of_ball(c.each, b), v1, v2)
         if k > 0:
             row[col.TAU] = row[col.TIME] - rows[k - 1, col.TIME]
     # Where each ball is just after an impact follows from its own last one.
     for k in range(N + 1):
         j = k % N
-        for b in range(len(c.mu)):
+        for b in range(c.balls):
             for back in range(N):
                 i = (j - back) % N
                 if abs(side[i]) == b + 1:
                     since = t[j] - t[i] if i <= j else t[j] - t[i] + duration
-                    _, speed = after_impact_kernel(c.law[b], states[i, 1], states[i, 3])
+                    _, speed = after_impact_kernel(law_of_ball(c.each, b), states[i, 1], states[i, 3])
                     rows[k, R_X2 + 2 * b] = states[i, 2] + since * (speed - 0.5 * c.G * since)
                     rows[k, R_V2 + 2 * b] = speed - c.G * since
                     break
@@ -95,7 +95,7 @@ def _orbit_rows(c, duration, side, t, states):
 @linked_njit
 def _survey(c, duration, side, t, states):
     rows = orbit_rows(c, duration, side, t, states)
-    N, d = t.size, 2 + 2 * len(c.mu)
+    N, d = t.size, 2 + 2 * c.balls
     jacobians = new_cube(N, d, d)
     residual, clearance, violation, wall = 0.0, NO_TURNING, math.nan, 0
     for j in range(N):
@@ -106,11 +106,12 @@ def _survey(c, duration, side, t, states):
         tau = following[col.TAU]
         arrives = side[(j + 1) % N]
         next_ball = abs(arrives) - 1
-        for b in range(len(c.mu)):
+        for b in range(c.balls):
             own = (1 if side[j] > 0 else -1) if abs(side[j]) == b + 1 else 0
             distance, when, where = inspect_flight(
-                c, c.beta[b], own, row[col.X1], row[col.A_V1], row[R_X2 + 2 * b], row[R_V2 + 2 * b], row[col.PHASE], tau
-            )
+                c, of_ball(c.each, b, BETA), own, row[col.X1], row[col.A_V1],
+                row[R_X2 + 2 * b], row[R_V2 + 2 * b], row[col.PHASE], tau,
+            )  # fmt: skip
             clearance = min(clearance, distance)
             if where != 0 and wall == 0:
                 violation, wall = row[col.TIME] + when, where

@@ -40,6 +40,9 @@ _TURN = 0.15
 _MARGINS = {GRAZING: grazing_margin, TIE: tie_margin}
 """What has to be positive for orbits to be admissible."""
 
+_ELSEWHERE = 1e-6
+"""Distance of an orbit from its own repetition or mirror image below which it is one of the family that is left."""
+
 _TOLERANCE = 1e-14
 """Of the root of a defining equation, as a fraction of the step in which it lies."""
 
@@ -179,6 +182,7 @@ class _Branch:
             smallest=_SMALLEST_STEP,
             turn=_TURN,
             only_inside=True,
+            is_on=None if self.symmetric or origin(self.orbit, _ELSEWHERE) else self._is_on,
         ).follow(here, self._record, self.max_points)
         if end == "lost" and self.orbit.word.sticking:
             end = self._ended() or end
@@ -190,6 +194,11 @@ class _Branch:
             tuple(self.events),
             ("range", end),
         )
+
+    def _is_on(self, point: Point) -> bool:
+        """Say whether a point is not on the family that this one comes out of, whose orbits solve its equations too."""
+        found = origin(point.orbit, _ELSEWHERE)
+        return found is None or (found == "symmetry_breaking" and not self.orbit.params.mirrored)
 
     def _ended(self) -> str | None:
         """Add the bifurcation at which a family that sticks ends just behind its last orbit, and return its type."""

@@ -116,16 +116,16 @@ def _repetition(word: Word, duration: float, t: Floats, states: Floats) -> float
     return least
 
 
-def origin(orbit: Orbit) -> str | None:
+def origin(orbit: Orbit, within: float = _NEAR) -> str | None:
     """Return the bifurcation by which an orbit at a fold of its family comes out of another family, None if it is none.
 
     A family that broke the symmetry meets its mirror image there, a doubled one its own repetition; both look like
-    folds from within.
+    folds from within. `within` is how near to the other family counts as on it.
     """
     mirrored = orbit.params.mirrored and orbit.word.symmetric
-    if mirrored and asymmetry(orbit.word, orbit.period, orbit.t, orbit.states) < _NEAR:
+    if mirrored and asymmetry(orbit.word, orbit.period, orbit.t, orbit.states) < within:
         return "symmetry_breaking"
-    if _repetition(orbit.word, orbit.period, orbit.t, orbit.states) < _NEAR:
+    if _repetition(orbit.word, orbit.period, orbit.t, orbit.states) < within:
         return "period_doubling"
     return None
 

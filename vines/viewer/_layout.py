@@ -14,7 +14,7 @@ from vines.viewer._impacts import DIAL_BOUNDS, LANES
 from vines.viewer._scene import PHASE_BOUNDS, cavity_bounds
 from vines.viewer._style import CAVITY, PARAMETERS, PLANE
 
-__all__ = ["Shown", "blueprint", "cavity_view"]
+__all__ = ["Shown", "blueprint", "cavity_views"]
 
 _WINDOW = 20
 """Forcing cycles up to which curves show a whole run; longer runs scroll with the time cursor."""
@@ -101,7 +101,7 @@ def _alone(run: Shown, still: bool) -> rrb.Horizontal:
     ends, shares = ([], [1.8]) if run.several else ([_ends(run, still)], [2.3, 1.8])
     return rrb.Horizontal(
         rrb.Vertical(
-            *_cavities(run),
+            *cavity_views(run),
             *ends,
             _gap(run, still),
             _rate(run, still),
@@ -118,7 +118,7 @@ def _column(run: Shown, still: bool) -> rrb.Vertical:
     """Return one of several runs beside each other."""
     more = rrb.Tabs(_impacts(run), _about(run), _energy(run, still), _balance(run, still))
     return rrb.Vertical(
-        *_cavities(run),
+        *cavity_views(run),
         rrb.Horizontal(_phase(run), _dial(run), column_shares=[1.5, 1.0]),
         _gap(run, still),
         _rate(run, still),
@@ -128,10 +128,10 @@ def _column(run: Shown, still: bool) -> rrb.Vertical:
     )
 
 
-def _cavities(run: Shown) -> list[rrb.Spatial2DView | rrb.Grid]:
+def cavity_views(run: Shown) -> list[rrb.Spatial2DView | rrb.Grid]:
     """Return the views of cavity and ball: several above each other, many in two columns."""
     if not run.several:
-        return [cavity_view(run)]
+        return [_drawn(run, f"{run.root}/cavity", run.name)]
     tracks = [_track(run, ball, label) for ball, label in enumerate(run.parts, 1)]
     return [rrb.Grid(*tracks, grid_columns=2)] if len(tracks) > _STACKED else [*tracks]
 
@@ -152,11 +152,6 @@ def _measured(run: Shown, still: bool) -> rrb.Horizontal:
     """Return the views of a run of a rig: a curve a sensor."""
     curves = [_series(run, part, part.replace("_", " "), still) for part in run.parts]
     return rrb.Horizontal(rrb.Vertical(*curves), _about(run), column_shares=[4.0, 1.4])
-
-
-def cavity_view(run: Shown) -> rrb.Spatial2DView:
-    """Return the view of cavity and ball."""
-    return _drawn(run, f"{run.root}/cavity", run.name)
 
 
 def _track(run: Shown, ball: int, label: str) -> rrb.Spatial2DView:

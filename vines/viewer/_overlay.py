@@ -1,8 +1,13 @@
-"""Runs laid over each other: the curves of all of them in the same views, at the same phase of the forcing."""
+"""Runs laid over each other: the curves of all of them in the same views, at the same phase of the forcing.
+
+A run of several balls shows the gap of each in a view of its own, over half the length of its cavity; a run of one ball
+laid over it is its ball 1.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 import rerun as rr
@@ -10,8 +15,9 @@ import rerun.blueprint as rrb
 
 from vines.errors import ViewerError
 from vines.logs import Log
+from vines.viewer._balls import half_of
 from vines.viewer._clock import SIM_TIME, Clock
-from vines.viewer._layout import Shown, cavity_view
+from vines.viewer._layout import Shown, cavity_views
 from vines.viewer._style import GRID, OVERLAID, PLANE
 
 __all__ = ["check_overlay", "overlaid", "send_overlay"]
@@ -35,8 +41,8 @@ def check_overlay(logs: Sequence[Log]) -> None:
     Raises
     ------
     ViewerError
-        If there are fewer than two or more than there are colours, one is not of the model's quantities or has several
-        balls, or their forcing differs, so that their phases run apart.
+        If there are fewer than two or more than there are colours, one is not of the model's quantities, or their
+        forcing differs, so that their phases run apart.
     """
     if not 2 <= len(logs) <= len(OVERLAID):
         raise ViewerError(f"--overlay lays 2 to {len(OVERLAID)} runs over each other, {len(logs)} were named")
@@ -45,8 +51,6 @@ def check_overlay(logs: Sequence[Log]) -> None:
             raise ViewerError(
                 f"{log.name} is what sensors measured; its reconstructed run is in the stage of kind compare"
             )
-        if log.balls:
-            raise ViewerError(f"{log.name} has {len(log.balls)} balls; --overlay lays runs of one ball over each other")
     pace = [log.parameters.get("Omega") for log in logs]
     if len(set(pace)) > 1:
         raise ViewerError(f"Omega is {' and '.join(map(str, pace))}; runs laid over each other need one and the same")
@@ -64,7 +68,9 @@ def send_overlay(rec: rr.RecordingStream, logs: Sequence[Log], states: Sequence[
     states : sequence of dict of str to numpy.ndarray, shape (n,)
         Columns of their ``vines.v1.State``, n > 0.
     """
-    largest = max(float(np.abs(own["w_dot"]).max()) for own in states)
+    gaps = [_gaps(log, own) for log, own in zip(logs, states, strict=True)]
+    several = any(log.balls for log in logs)
+    largest = max(float(np.abs(w_dot).max()) for each in gaps for _, w_dot in each.values()) or 1.0
     plane = f"{_ROOT}/plane/up"
     rec.log(plane, rr.Transform3D(scale=[1.0, -1.0, 1.0]), static=True)
     walls = [[(w, -_HEIGHT), (w, _HEIGHT)] for w in (-1.0, 1.0)]
@@ -72,13 +78,22 @@ def send_overlay(rec: rr.RecordingStream, logs: Sequence[Log], states: Sequence[
     for k, (log, own) in enumerate(zip(logs, states, strict=True)):
         clock = Clock(float(own["t"][0]), float(own["phase"][0]), log.parameters.get("Omega"))
         width, colour = (3.6 if k == 0 else 1.3), OVERLAID[k]
-        for name in _CURVES:
+        drawn = {f"w_{ball}": w for ball, (w, _) in gaps[k].items()} | {"x1": own["x1"]}
+        for name, values in (drawn if several else {name: own[name] for name in _CURVES}).items():
             path = f"{_ROOT}/{name}/run_{k}"
             rec.log(path, rr.SeriesLines(colors=colour, widths=width, names=log.name), static=True)
-            rec.send_columns(path, indexes=clock.columns(own["t"]), columns=rr.Scalars.columns(scalars=own[name]))
-        drawn = np.column_stack([own["w"], own["w_dot"] * (_HEIGHT / largest)])
+            rec.send_columns(path, indexes=clock.columns(own["t"]), columns=rr.Scalars.columns(scalars=values))
+        loops = [np.column_stack([w, w_dot * (_HEIGHT / largest)]) for w, w_dot in gaps[k].values()]
         style = {"radii": rr.Radius.ui_points(width / 2), "colors": colour, "draw_order": 10.0 + k}
-        rec.log(f"{plane}/run_{k}", rr.LineStrips2D([drawn], **style), static=True)
+        rec.log(f"{plane}/run_{k}", rr.LineStrips2D(loops, **style), static=True)
+
+
+def _gaps(log: Log, states: dict[str, np.ndarray]) -> dict[int, tuple[np.ndarray, np.ndarray]]:
+    """Return of each ball its gap over half the length of its cavity, and the rate of the gap."""
+    if not log.balls:
+        return {1: (states["w"], states["w_dot"])}
+    tables = {ball: (table["w"].to_numpy(), table["w_dot"].to_numpy()) for ball, table in log.balls.items()}
+    return {ball: (w / half_of(log, ball), w_dot) for ball, (w, w_dot) in tables.items()}
 
 
 def overlaid(runs: Sequence[Shown], *, still: bool = False) -> rrb.Blueprint:
@@ -99,26 +114,31 @@ def overlaid(runs: Sequence[Shown], *, still: bool = False) -> rrb.Blueprint:
         if still
         else rrb.TimeRange(start=boundary.infinite(), end=boundary.infinite())
     )
+    balls = max(len(run.parts) for run in runs)
+    titles = {f"w_{ball}": f"Gap of ball {ball}, w/β: ±1 is an impact" for ball in range(1, balls + 1)}
+    shown = titles | {"x1": _CURVES["x1"]} if balls else _CURVES
     curves = [
         rrb.TimeSeriesView(
             origin=f"{_ROOT}/{name}",
             name=title,
             axis_x=rrb.TimeAxis(view_range=span),
-            plot_legend=rrb.PlotLegend(corner=rrb.Corner2D.RightTop, visible=name == "w"),
+            plot_legend=rrb.PlotLegend(corner=rrb.Corner2D.RightTop, visible=name == next(iter(shown))),
         )
-        for name, title in _CURVES.items()
+        for name, title in shown.items()
     ]
     plane = rrb.Spatial2DView(
         origin=f"{_ROOT}/plane",
-        name=f"{PLANE}: w across, w' up",
+        name=f"{PLANE}: {'w/β' if balls else 'w'} across, w' up",
         background=_DARK,
         visual_bounds=rrb.VisualBounds2D(x_range=(-1.3, 1.3), y_range=(-1.35, 1.35)),
     )
-    cavities = [cavity_view(run) for run in runs]
+    named = [replace(run, parts=tuple(f"{run.name}, {part}" for part in run.parts)) for run in runs]
+    cavities = [rrb.Vertical(*cavity_views(run)) if run.several else cavity_views(run)[0] for run in named]
+    heights = [max(1.0, 0.7 * len(run.parts)) for run in runs]
     abouts = rrb.Tabs(*(rrb.TextDocumentView(origin=f"{run.root}/about", name=run.name) for run in runs))
     body = rrb.Horizontal(
         rrb.Vertical(*curves),
-        rrb.Vertical(plane, *cavities, abouts, row_shares=[2.2, *([1.0] * len(runs)), 0.9]),
+        rrb.Vertical(plane, *cavities, abouts, row_shares=[2.2, *heights, 0.9]),
         column_shares=[3.0, 2.0],
     )
     panel = rrb.TimePanel(state="collapsed", timeline=SIM_TIME, play_state="paused")

@@ -30,7 +30,7 @@ from vines.dynamics._advance import (
 from vines.dynamics._contact import CONTACT, NO_CONTACT, STEP_CAP
 from vines.dynamics._flight import derivatives, flight, flown
 from vines.dynamics._sticking import merges, release_within
-from vines.dynamics.parallel._constants import ParallelConstants, frame_with, riding
+from vines.dynamics.parallel._constants import BETA, CORRECTION, MU, ParallelConstants, R, frame_with, of_ball, riding
 from vines.dynamics.parallel._contacts import first_hits
 from vines.dynamics.parallel._layout import (
     B_BETA,
@@ -57,8 +57,8 @@ def set_balls(c, state, x1, v1, x2, v2, phase, t):
     state[:] = 0.0
     state[S_X1], state[S_V1] = x1, v1
     state[S_PHASE], state[S_T], state[S_PERIOD_START] = advance_phase(phase, 0.0), t, t
-    for i in range(len(c.mu)):
-        w, beta = x1 - x2[i], c.beta[i]
+    for i in range(c.balls):
+        w, beta = x1 - x2[i], of_ball(c.each, i, BETA)
         side = 0
         if abs(w) >= beta - SNAP * (beta + abs(x1) + abs(x2[i])):
             side = 1 if w > 0.0 else -1
@@ -74,30 +74,32 @@ def set_balls(c, state, x1, v1, x2, v2, phase, t):
 @begin.register(ParallelConstants)
 @linked_njit
 def _begin(c, state, rows):
-    write(c.mu, rows[0], state, START, state[at(0, B_WALL)], 0.0, 0, state[S_V1], state[at(0, B_V2)], 0.0, 0.0)
+    write(c.balls, rows[0], state, START, state[at(0, B_WALL)], 0.0, 0, state[S_V1], state[at(0, B_V2)], 0.0, 0.0)
 
 
 @fused_njit
 def _merge(c, o, motion, modes, state, rows, count):
     """Let the first ball that is to ride from now on do so; return how many rows there are then."""
-    for i in range(len(c.mu)):
+    for i in range(c.balls):
         if state[at(i, B_DECIDE)] == 0.0:
             continue
         state[at(i, B_DECIDE)] = 0.0
         wall, v1, v2 = state[at(i, B_WALL)], state[S_V1], state[at(i, B_V2)]
         speed = max(wall * (v2 - v1), 0.0)
-        if not merges(c, o, c.r[i], c.correction[i], int(wall), speed, motion, state[at(i, B_X2)]):
+        r, correction = of_ball(c.each, i, R), of_ball(c.each, i, CORRECTION)
+        if not merges(c, o, r, correction, int(wall), speed, motion, state[at(i, B_X2)]):
             continue
         mass = 1.0 + riding(c, modes)
-        common = rounded_once(c.mu[i], v2, mass * v1) / (mass + c.mu[i])
+        mu = of_ball(c.each, i, MU)
+        common = rounded_once(mu, v2, mass * v1) / (mass + mu)
         state[S_V1] = common
         state[at(i, B_MODE)], state[at(i, B_RELEASED)] = wall, 0.0
-        for k in range(len(c.mu)):
+        for k in range(c.balls):
             if state[at(k, B_MODE)] != 0.0:
                 state[at(k, B_V2)] = common
-        count_riding(c.mu, state)
+        count_riding(c.balls, state)
         state[at(i, B_X2)] = state[S_X1] - wall * state[at(i, B_BETA)]
-        write(c.mu, rows[count], state, STICK, wall, 0.0, i, v1, v2, 0.0, modes)
+        write(c.balls, rows[count], state, STICK, wall, 0.0, i, v1, v2, 0.0, modes)
         state[at(i, B_RUN)] = 0.0
         return count + 1
     state[S_DECIDE] = 0.0
@@ -109,16 +111,16 @@ def _let_go(c, side, state, tau, rows, count):
     """Release all balls that ride; return how many rows there are then."""
     after = flight(c, c.free, state[S_X1], state[S_V1], state[S_PHASE], state[S_T])
     _, _, _, j, _ = derivatives(c.free, c.Omega, *after)
-    for i in range(len(c.mu)):
+    for i in range(c.balls):
         if state[at(i, B_MODE)] != 0.0:
             state[at(i, B_MODE)], state[at(i, B_WALL)] = 0.0, side
             # Contact may be lost at once, with a push away from the wall that is not zero.
             state[at(i, B_RELEASED)] = 0.0 if side * j >= 0.0 else 1.0
     state[S_MODE] = 0.0
-    for i in range(len(c.mu)):
+    for i in range(c.balls):
         if state[at(i, B_STEP)] == RIDES:
             v1, v2 = state[S_V1], state[at(i, B_V2)]
-            write(c.mu, rows[count], state, RELEASE, side, tau, i, v1, v2, 0.0, 0.0)
+            write(c.balls, rows[count], state, RELEASE, float(side), tau, i, v1, v2, 0.0, 0.0)
             tau = 0.0
             count += 1
     return count
@@ -131,7 +133,7 @@ RIDES = 2.0
 @advance.register(ParallelConstants)
 @loop_njit
 def _advance(c, state, stop, cap, rows, first):
-    n = len(c.mu)
+    n = c.balls
     count = first
     # One instant may write this many rows.
     size = rows.shape[0] - (PASSES + 1) * n
@@ -207,5 +209,5 @@ def _advance(c, state, stop, cap, rows, first):
             if too_many(state, cap, c.period):
                 return count, EVENT_CAP
         else:
-            write(c.mu, rows[count], state, START, 0.0, tau, 0, v, state[at(0, B_V2)], 0.0, modes)
+            write(c.balls, rows[count], state, START, 0.0, tau, 0, v, state[at(0, B_V2)], 0.0, modes)
             count += 1

@@ -1,14 +1,35 @@
-"""The numbers that the kernels need for balls in parallel cavities; how many there are is known when they compile."""
+"""The numbers that the kernels need for balls in parallel cavities; one kernel serves any number of balls."""
 
 from __future__ import annotations
 
 from typing import NamedTuple
 
-from vines.dynamics._constants import Oscillator, constants_at, constants_kernel, oscillator
-from vines.dynamics._impact_law import ImpactLaw, impact_law
-from vines.kernels import linked_njit, njit
+import numpy as np
+import numpy.typing as npt
 
-__all__ = ["Frame", "ParallelConstants", "ParallelTable", "frame_with", "parallel_constants", "riding"]
+from vines.dynamics._constants import Oscillator, constants_at, constants_kernel, oscillator
+from vines.dynamics._impact_law import ImpactLaw
+from vines.kernels import constant_at, fused_njit, linked_njit, njit
+
+__all__ = [
+    "BETA",
+    "CORRECTION",
+    "MU",
+    "Frame",
+    "ParallelConstants",
+    "ParallelTable",
+    "R",
+    "frame_with",
+    "law_of_ball",
+    "of_ball",
+    "parallel_constants",
+    "riding",
+]
+
+MU, BETA, R, CORRECTION, KEEP1, PASS1, KEEP2, PASS2 = range(8)
+"""What stands of each ball in the table of balls: its parameters, `Constants.correction` and the law of its impacts."""
+
+NUMBERS = 8
 
 
 class Frame(NamedTuple):
@@ -18,9 +39,7 @@ class Frame(NamedTuple):
     sag: float
 
 
-class ParallelConstants(NamedTuple):
-    """As `Constants`, with a tuple where there is one number for each ball."""
-
+class _Fields(NamedTuple):
     A: float
     Omega: float
     lam: float
@@ -31,11 +50,18 @@ class ParallelConstants(NamedTuple):
     window: float
     near: float
     free: Frame
-    mu: tuple[float, ...]
-    beta: tuple[float, ...]
-    r: tuple[float, ...]
-    correction: tuple[float, ...]
-    law: tuple[ImpactLaw, ...]
+    balls: int
+    each: int
+
+
+class ParallelConstants(_Fields):
+    """As `Constants`; what there is once a ball stands in a table of `balls` rows, and `each` is its address.
+
+    So a kernel is compiled once for all numbers of balls. The table lives as long as the constants do: it is an
+    attribute of them, no field.
+    """
+
+    table: npt.NDArray[np.float64]
 
 
 class ParallelTable(NamedTuple):
@@ -50,7 +76,10 @@ def parallel_constants(A: float, Omega: float, lam: float, G: float, *balls: flo
     mu, beta, r = balls[:n], balls[n : 2 * n], balls[2 * n :]
     each = [constants_kernel(mass, A, Omega, restitution, lam) for mass, restitution in zip(mu, r, strict=True)]
     one = each[0]
-    return ParallelConstants(
+    table = np.empty((n, NUMBERS))
+    for row, c, length in zip(table, each, beta, strict=True):
+        row[:] = c.mu, length, c.r, c.correction, c.law.keep1, c.law.pass1, c.law.keep2, c.law.pass2
+    found = ParallelConstants(
         A,
         Omega,
         lam,
@@ -61,12 +90,11 @@ def parallel_constants(A: float, Omega: float, lam: float, G: float, *balls: flo
         one.window,
         one.near,
         Frame(one.free, 0.0),
-        mu,
-        beta,
-        r,
-        tuple(c.correction for c in each),
-        tuple(impact_law(mass, restitution) for mass, restitution in zip(mu, r, strict=True)),
+        n,
+        table.ctypes.data,
     )
+    found.table = table
+    return found
 
 
 @constants_at.register(ParallelTable)
@@ -75,14 +103,33 @@ def _constants_at(table, k):
     return table.constants
 
 
+@fused_njit
+def of_ball(each, i, what):
+    """Return a number of ball i, from 0 on, in the table of balls at an address."""
+    return constant_at(each, NUMBERS * i + what)  # pyright: ignore[reportCallIssue]
+
+
+@fused_njit
+def law_of_ball(each, i):
+    """Return the `ImpactLaw` of ball i, from 0 on."""
+    first = NUMBERS * i
+    return ImpactLaw(
+        constant_at(each, first + KEEP1),  # pyright: ignore[reportCallIssue]
+        constant_at(each, first + PASS1),
+        constant_at(each, first + KEEP2),
+        constant_at(each, first + PASS2),
+        constant_at(each, first + MU),
+    )
+
+
 @njit
 def riding(c, modes):
     """Return the mass of the balls that ride on a wall, from the number of their set, bit i for ball i."""
     left = int(abs(modes))
     mass = 0.0
-    for i in range(len(c.mu)):
+    for i in range(c.balls):
         if left & (1 << i):
-            mass += c.mu[i]
+            mass += of_ball(c.each, i, MU)
     return mass
 
 

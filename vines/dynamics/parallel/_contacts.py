@@ -105,7 +105,7 @@ def _first_of(c, o, motion, state, soonest, tau, best, x, v):
     A ball's gap only falls until its root, so that it has not hit as long as there is one: no other root is closed in
     but those that come with it or before it.
     """
-    n = len(c.mu)
+    n = c.balls
     for i in range(n):
         if i == soonest or state[at(i, B_MODE)] != 0.0 or state[at(i, B_FOUND)] == math.inf:
             continue
@@ -141,7 +141,7 @@ def first_hits(c, o, motion, state, tau, stop):
     (code, tau, hits, x1, v1)
         The set of the balls that hit, bit i for ball i; the wall of each is left in the state, at B_STEP.
     """
-    n = len(c.mu)
+    n = c.balls
     if state[S_MODE] != 0.0 and not _any_flies(n, state):
         return NO_CONTACT, stop, 0, 0.0, 0.0
     forced = forced_fifth(c, *motion) * c.window

@@ -13,7 +13,7 @@ from vines.dynamics._advance import A_V1, A_V2, IMPACT, KIND, MODE, PHASE, SIDE,
 from vines.dynamics._flight import advance_phase, derivatives, flight, flown, free_ball
 from vines.dynamics._integrals import frame_energies, peak_between
 from vines.dynamics._totals import TOTALS, ball_mass, base_at, event_loss, event_work, window_totals
-from vines.dynamics.parallel._constants import ParallelConstants, frame_with, riding
+from vines.dynamics.parallel._constants import BETA, MU, ParallelConstants, frame_with, of_ball, riding
 from vines.dynamics.parallel._layout import BALL, R_V2, R_X2, TIES
 from vines.kernels import linked_njit, njit, zero_vector
 
@@ -45,7 +45,7 @@ def _base_at(c, phase):
 @njit
 def _event_loss(c, row):
     # What a contact takes is its impulse times the mean relative velocity, however many act together.
-    impulse = c.mu[int(row[BALL]) - 1] * (row[A_V2] - row[V2])
+    impulse = of_ball(c.each, int(row[BALL]) - 1, MU) * (row[A_V2] - row[V2])
     return 0.5 * impulse * ((row[V1] - row[V2]) + (row[A_V1] - row[A_V2]))
 
 
@@ -82,7 +82,7 @@ def add_motion(c, out, row, begins, low, length):
     out[entry.BASE_WORK] += (1.0 + mass) * work + o.sag * c.A * (math.sin(later) - math.sin(phase))
     out[entry.DAMPER_LOSS] += loss
     ride = int(abs(mode))
-    for i in range(len(c.mu)):
+    for i in range(c.balls):
         if ride & (1 << i):
             square = v_square
         else:
@@ -90,7 +90,7 @@ def add_motion(c, out, row, begins, low, length):
             fall = c.G * lasts
             square = lasts * (v2 * v2 - fall * (v2 - fall / 3.0))
         out[V2_SQUARE + EACH * i] += square
-        out[entry.V2_SQUARE] += c.mu[i] * square
+        out[entry.V2_SQUARE] += of_ball(c.each, i, MU) * square
     if out[entry.MAX_ABS_X1] < abs(x0):
         out[entry.MAX_ABS_X1], out[entry.T_MAX_ABS_X1] = abs(x0), begins + low
     best, when = peak_between(c, o, start, end, 0.0, lasts, out[entry.MAX_ABS_X1])
@@ -110,13 +110,13 @@ def _energy(c, row, tau):
     stretch = x - base_at(c, row[PHASE] + c.Omega * tau)
     total = 0.5 * (v * v + stretch * stretch)
     ride = int(abs(mode))
-    for i in range(len(c.mu)):
+    for i in range(c.balls):
         if ride & (1 << i):
-            x2, v2 = x - math.copysign(c.beta[i], mode), v
+            x2, v2 = x - math.copysign(of_ball(c.each, i, BETA), mode), v
         else:
             way, v2 = free_ball(c, row[R_V2 + 2 * i], tau)
             x2 = row[R_X2 + 2 * i] + way
-        total += c.mu[i] * (0.5 * v2 * v2 + c.G * x2)
+        total += of_ball(c.each, i, MU) * (0.5 * v2 * v2 + c.G * x2)
     return total
 
 
@@ -138,7 +138,7 @@ def _count(c, out, row):
 @window_totals.register(ParallelConstants)
 @linked_njit
 def _window_totals(c, rows, n, start, stop):
-    out = zero_vector(TOTALS + 1 + EACH * len(c.mu))
+    out = zero_vector(TOTALS + 1 + EACH * c.balls)
     opened = False
     energy = 0.0
     for i in range(n):

@@ -31,16 +31,16 @@ __all__ = ["count_riding", "place_balls", "write"]
 
 
 @linked_njit
-def count_riding(mu, state):
+def count_riding(balls, state):
     """Let S_MODE be the number of the set of balls that ride on a wall, with the sign of the wall."""
     modes = 0.0
-    for i in range(len(mu)):
+    for i in range(balls):
         modes += state[at(i, B_MODE)] * (1 << i)
     state[col.S_MODE] = modes
 
 
 @linked_njit
-def write(mu, row, state, kind, side, tau, i, v1, v2, ties, before):
+def write(balls, row, state, kind, side, tau, i, v1, v2, ties, before):
     """Write a row for ball i: v1, v2 and the set of riding balls are those just before, all else is as it is now.
 
     As all balls are looked at here, the one that the search for the next contact begins with is noted, too.
@@ -53,7 +53,7 @@ def write(mu, row, state, kind, side, tau, i, v1, v2, ties, before):
     row[col.RUN] = state[at(i, B_RUN)] if kind == col.STICK else 0.0
     row[BALL], row[TIES], row[BEFORE] = i + 1.0, ties, before
     first, soonest = 0, math.inf
-    for k in range(len(mu)):
+    for k in range(balls):
         x2, v2, beta = state[at(k, B_X2)], state[at(k, B_V2)], state[at(k, B_BETA)]
         row[R_X2 + 2 * k], row[R_V2 + 2 * k] = x2, v2
         w, rate = state[col.S_X1] - x2, state[col.S_V1] - v2
@@ -73,7 +73,7 @@ def place_balls(c, state, x, v, tau):
     if not tau > 0.0:
         return True
     on_wall = False
-    for i in range(len(c.mu)):
+    for i in range(c.balls):
         wall, beta = state[at(i, B_MODE)], state[at(i, B_BETA)]
         if wall != 0.0:
             state[at(i, B_X2)], state[at(i, B_V2)] = x - wall * beta, v
@@ -97,7 +97,7 @@ def place_balls(c, state, x, v, tau):
 @width_of.register(ParallelTable)
 @njit
 def _width_of(table):
-    return R_X2 + 2 * len(table.constants.mu)
+    return R_X2 + 2 * table.constants.balls
 
 
 @write_end.register(ParallelConstants)
@@ -113,7 +113,7 @@ def _write_end(c, state, end, last):
     last[col.KIND], last[col.TIME], last[col.TAU], last[col.MODE] = col.END, end, tau, modes
     last[col.PHASE] = advance_phase(state[col.S_PHASE], c.Omega * tau)
     last[col.X1], last[col.V1], last[col.A_V1] = x, v, v
-    for i in range(len(c.mu)):
+    for i in range(c.balls):
         wall = state[at(i, B_MODE)]
         if wall != 0.0:
             last[R_X2 + 2 * i], last[R_V2 + 2 * i] = x - wall * state[at(i, B_BETA)], v

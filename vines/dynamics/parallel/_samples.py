@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import math
+
 from vines.dynamics import _advance as col
 from vines.dynamics import _totals as entry
 from vines.dynamics._flight import advance_phase, derivatives, flight, flown, free_ball
 from vines.dynamics._totals import event_loss
-from vines.dynamics.parallel._constants import frame_with
+from vines.dynamics.parallel._constants import BETA, frame_with, of_ball
 from vines.dynamics.parallel._energies import EACH, add_motion
 from vines.dynamics.parallel._layout import BALL, R_V2, R_X2
 from vines.kernels import entry_njit, zero_vector
@@ -24,7 +26,7 @@ def sample_balls(c, rows, segment, tau, before, out):
     Places are as in `sample_rows`, in ascending order. Where `before` is set the state is the one just before the next
     row, exactly.
     """
-    balls = len(c.mu)
+    balls = c.balls
     sums = zero_vector(entry.TOTALS + 1 + EACH * balls)
     lost = 0.0
     done = 0
@@ -56,7 +58,7 @@ def sample_balls(c, rows, segment, tau, before, out):
         ride = int(abs(modes))
         for j in range(balls):
             if ride & (1 << j):
-                x2, v2 = x - (c.beta[j] if modes > 0.0 else -c.beta[j]), v
+                x2, v2 = x - math.copysign(of_ball(c.each, j, BETA), modes), v
             else:
                 way, v2 = free_ball(c, row[R_V2 + 2 * j], tau[k])
                 x2 = row[R_X2 + 2 * j] + way

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from vines.dynamics._advance import IMPACT, RELEASE, S_DECIDE, S_IMPACTS, S_MODE, S_V1
 from vines.dynamics._impact_law import after_impact_kernel
+from vines.dynamics.parallel._constants import MU, R, law_of_ball, of_ball
 from vines.dynamics.parallel._layout import (
     B_DECIDE,
     B_MODE,
@@ -44,7 +45,7 @@ def _count_hit(state, i, wall):
 def strike_alone(c, state, i, tau, rows, count):
     """Let one ball hit at the present instant, while no other is on a wall; return how many rows there are then."""
     wall, before, v2 = state[at(i, B_STEP)], state[S_V1], state[at(i, B_V2)]
-    law = c.law[i]
+    law = law_of_ball(c.each, i)
     # As the compiler rounds `after_impact_kernel` for the VI-NES: one ball is the VI-NES to the last bit.
     state[S_V1] = rounded_once(law.pass1, v2, law.keep1 * before)
     state[at(i, B_V2)] = rounded_once(law.keep2, v2, law.pass2 * before)
@@ -52,7 +53,7 @@ def strike_alone(c, state, i, tau, rows, count):
     _count_hit(state, i, wall)
     state[at(i, B_WALL)] = wall
     state[at(i, B_DECIDE)] = state[S_DECIDE] = 1.0
-    write(c.mu, rows[count], state, IMPACT, wall, tau, i, before, v2, 0.0, 0.0)
+    write(c.balls, rows[count], state, IMPACT, wall, tau, i, before, v2, 0.0, 0.0)
     return count + 1
 
 
@@ -77,7 +78,7 @@ def strike(c, state, hits, tau, rows, count):
     (count, whole)
         Whether no ball approached a wall any more when PASSES was reached.
     """
-    n = len(c.mu)
+    n = c.balls
     for i in range(n):
         if hits & (1 << i):
             state[at(i, B_WALL)] = state[at(i, B_STEP)]
@@ -91,11 +92,11 @@ def strike(c, state, hits, tau, rows, count):
             if now & (1 << i):
                 together += 1
                 only = i
-                momentum += c.mu[i] * (1.0 + c.r[i]) * (before - state[at(i, B_V2)])
-                mass += c.mu[i]
+                momentum += of_ball(c.each, i, MU) * (1.0 + of_ball(c.each, i, R)) * (before - state[at(i, B_V2)])
+                mass += of_ball(c.each, i, MU)
         after = before - momentum / mass
         if together == 1:
-            after, _ = after_impact_kernel(c.law[only], before, state[at(only, B_V2)])
+            after, _ = after_impact_kernel(law_of_ball(c.each, only), before, state[at(only, B_V2)])
         elif now == hits:
             state[S_TIES] += 1.0
         state[S_V1] = after
@@ -103,15 +104,15 @@ def strike(c, state, hits, tau, rows, count):
             if now & (1 << i):
                 wall, v2 = state[at(i, B_WALL)], state[at(i, B_V2)]
                 if together == 1:
-                    _, state[at(i, B_V2)] = after_impact_kernel(c.law[i], before, v2)
+                    _, state[at(i, B_V2)] = after_impact_kernel(law_of_ball(c.each, i), before, v2)
                 else:
-                    state[at(i, B_V2)] = after + c.r[i] * (before - v2)
+                    state[at(i, B_V2)] = after + of_ball(c.each, i, R) * (before - v2)
                 state[S_IMPACTS] += 1.0
                 _count_hit(state, i, wall)
                 state[at(i, B_MODE)] = 0.0
-                count_riding(c.mu, state)
+                count_riding(c.balls, state)
                 state[at(i, B_DECIDE)] = state[S_DECIDE] = 1.0
-                write(c.mu, rows[count], state, IMPACT, wall, tau, i, before, v2, together - 1.0, modes)
+                write(c.balls, rows[count], state, IMPACT, wall, tau, i, before, v2, together - 1.0, modes)
                 tau, modes = 0.0, 0.0
                 count += 1
         now = 0
@@ -128,7 +129,7 @@ def strike(c, state, hits, tau, rows, count):
             state[at(i, B_MODE)] = 0.0
             # It may have been so little that it rides on.
             state[at(i, B_DECIDE)] = state[S_DECIDE] = 1.0
-            count_riding(c.mu, state)
-            write(c.mu, rows[count], state, RELEASE, wall, 0.0, i, state[S_V1], state[at(i, B_V2)], 0.0, modes)
+            count_riding(c.balls, state)
+            write(c.balls, rows[count], state, RELEASE, wall, 0.0, i, state[S_V1], state[at(i, B_V2)], 0.0, modes)
             count += 1
     return count, now == 0

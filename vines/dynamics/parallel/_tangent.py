@@ -11,7 +11,7 @@ from vines.dynamics._flight import decay, derivatives, flight
 from vines.dynamics._impact_law import after_impact_kernel
 from vines.dynamics._sincos import sincos
 from vines.dynamics._tangent import directions, flow_basis, jump_basis, offset
-from vines.dynamics.parallel._constants import ParallelConstants, frame_with, riding
+from vines.dynamics.parallel._constants import BETA, MU, ParallelConstants, frame_with, law_of_ball, of_ball, riding
 from vines.dynamics.parallel._layout import BALL, BEFORE
 from vines.kernels import fused_njit, linked_njit, njit
 
@@ -21,7 +21,7 @@ __all__: list[str] = []
 @directions.register(ParallelConstants)
 @njit
 def _directions(c):
-    return (0.0, 0.0) + c.mu + c.mu  # noqa: RUF005 — numba knows the length of this sum only
+    return range(2 + 2 * c.balls)
 
 
 @flow_basis.register(ParallelConstants)
@@ -37,7 +37,7 @@ def _flow_basis(c, mode, tau, Y):
         x, v = Y[0, j], Y[1, j]
         Y[0, j] = (cosine + o.half * sine) * x + sine * v
         Y[1, j] = -o.stiffness * sine * x + (cosine - o.half * sine) * v
-        for i in range(len(c.mu)):
+        for i in range(c.balls):
             if ride & (1 << i):
                 Y[2 + 2 * i, j], Y[3 + 2 * i, j] = Y[0, j], Y[1, j]
             else:
@@ -57,7 +57,7 @@ def _jump_basis(c, row, Y):
     ride = int(abs(before))
     if row[KIND] == IMPACT:
         v1, v2 = row[V1], row[V2]
-        law = c.law[b]
+        law = law_of_ball(c.each, b)
         after1, after2 = after_impact_kernel(law, v1, v2)
         o = frame_with(c, before)
         a = _acceleration(c, o, row, v1)
@@ -66,7 +66,7 @@ def _jump_basis(c, row, Y):
         closing = v1 - v2
         for j in range(Y.shape[1]):
             shift = (Y[0, j] - Y[2 + 2 * b, j]) / closing if closing != 0.0 else 0.0
-            for i in range(len(c.mu)):
+            for i in range(c.balls):
                 if kicked and ride & (1 << i):
                     Y[3 + 2 * i, j] = Y[1, j] - (a + c.G) * shift
             x1, w1 = Y[0, j] - v1 * shift, Y[1, j] - a * shift
@@ -77,13 +77,13 @@ def _jump_basis(c, row, Y):
             Y[2 + 2 * b, j] = x2 + after2 * shift
             Y[3 + 2 * b, j] = w2 - c.G * shift
     elif row[KIND] == STICK:
-        mass = 1.0 + riding(c, before)
-        share = 1.0 / (mass + c.mu[b])
+        mass, mu = 1.0 + riding(c, before), of_ball(c.each, b, MU)
+        share = 1.0 / (mass + mu)
         for j in range(Y.shape[1]):
-            x = share * (mass * Y[0, j] + c.mu[b] * Y[2 + 2 * b, j])
-            v = share * (mass * Y[1, j] + c.mu[b] * Y[3 + 2 * b, j])
+            x = share * (mass * Y[0, j] + mu * Y[2 + 2 * b, j])
+            v = share * (mass * Y[1, j] + mu * Y[3 + 2 * b, j])
             Y[0, j], Y[1, j] = x, v
-            for i in range(len(c.mu)):
+            for i in range(c.balls):
                 if i == b or ride & (1 << i):
                     Y[2 + 2 * i, j], Y[3 + 2 * i, j] = x, v
 
@@ -93,12 +93,12 @@ def _jump_basis(c, row, Y):
 def _offset(c, row, event, late, scale, away):
     b = int(row[BALL]) - 1
     v1, v2 = event[V1], event[V2]
-    after1, after2 = after_impact_kernel(c.law[b], v1, v2)
+    after1, after2 = after_impact_kernel(law_of_ball(c.each, b), v1, v2)
     a = _acceleration(c, c.free, event, after1)
     for i in range(away.shape[0]):
         away[i] = 0.0
     # Of the other balls the closing equations give no state here.
     away[0] = (row[X1] - event[X1] - after1 * late) / scale
     away[1] = (row[A_V1] - after1 - a * late) / scale
-    away[2 + 2 * b] = (row[X2] - (event[X1] - event[SIDE] * c.beta[b]) - after2 * late) / scale
+    away[2 + 2 * b] = (row[X2] - (event[X1] - event[SIDE] * of_ball(c.each, b, BETA)) - after2 * late) / scale
     away[3 + 2 * b] = (row[A_V2] - after2 + c.G * late) / scale
