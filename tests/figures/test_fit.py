@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from matplotlib.text import Text
 
-from vines.figures import BranchLine, ImpactDots, Marker, bifurcation_figure, fit_titles
+from vines.figures import BranchLine, ImpactDots, Marker, bifurcation_figure, finish
 
 LABELS = ("simulation", "1:1 symmetric", "1:1 asymmetric, the branch that a broken symmetry begins", "2:1")
 CAPTION = r"$\mu = 0.01$,  $\Omega = 1$,  $r = 0.65$,  $\lambda = 0.012$,  and a word of what the study is about"
@@ -25,7 +25,7 @@ def drawn(width):
     ]
     marker = Marker("symmetry_breaking", 0.021, {k: np.array([0.2, 0.2]) for k in values})
     figure = bifurcation_figure("A", [dots], lines, [marker], caption=CAPTION, width=width / 25.4)
-    fit_titles(figure)
+    finish(figure)
     figure.draw_without_rendering()
     return figure
 

@@ -7,6 +7,8 @@ import re
 from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any
 
+from vines.figures._look import worn
+
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
@@ -18,6 +20,9 @@ _WORDS = re.compile(r"(?:\$[^$]*\$|[^\s$])+")
 """What a line is not broken within: a formula, and what is written to it without a space."""
 _NARROWEST = 1.7
 """Inches that a panel with its numbers and labels takes at least."""
+_PLACES: Any = {"below": "outside lower center", "above": "outside upper center", "right": "outside right upper"}
+_BESIDE = 0.35
+"""Part of the width that a legend on the right may take."""
 _EDGE = 4.0
 """Points that stay free at an edge of the figure."""
 
@@ -95,7 +100,9 @@ def fit_titles(figure: Figure) -> bool:
 def place_legend(
     figure: Figure, handles: Sequence[Any], labels: Sequence[str], *, ncols: int, handler_map: Any = None, **how: Any
 ) -> None:
-    """Write a legend below the panels, in as many columns as fit the width; what it takes the figure gets in height.
+    """Write a legend beside the panels, in as many columns as fit the width; what it takes the figure gets in height.
+
+    It stands where the look that is worn has it: below by default.
 
     Parameters
     ----------
@@ -112,15 +119,20 @@ def place_legend(
     **how
         Further options of :meth:`matplotlib.figure.Figure.legend`.
     """
+    place = worn().legend
+    if place == "none":
+        return
 
     def legend(columns: int, words: Sequence[str]) -> Any:
         for old in list(figure.legends):
             old.remove()
         return figure.legend(
-            list(handles), list(words), handler_map=handler_map, loc="outside lower center", ncols=columns, **how
+            list(handles), list(words), handler_map=handler_map, loc=_PLACES[place], ncols=columns, **how
         )
 
     room = figure.bbox.width - 2 * _EDGE * figure.dpi / 72
+    if place == "right":
+        ncols, room = 1, _BESIDE * room
     drawn = legend(ncols, labels)
     first = _extent(drawn).height
     columns = min(ncols, len(labels))
@@ -132,7 +144,7 @@ def place_legend(
         lost = wide - max(_width(each, each.get_text()) for each in drawn.get_texts())  # handles and gaps
         drawn = legend(columns, [broken(each, lambda line: _width(text, line) <= room - lost) for each in labels])
     taller = _extent(drawn).height - first
-    if taller > 0:
+    if place != "right" and taller > 0:
         width, height = figure.get_size_inches()
         figure.set_size_inches(width, height + taller / figure.dpi)
 

@@ -10,8 +10,9 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 import numpy.typing as npt
 
-from vines.figures._names import NAMES, QUANTITIES, SYMBOLS
-from vines.figures._style import COLOURS, PALETTE
+from vines.figures._axes import name_axis
+from vines.figures._colours import COLOURS, PALETTE
+from vines.figures._style import font
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -88,8 +89,8 @@ class MeasurePanel:
         for scale, wanted in zip((ax.set_xscale, ax.set_yscale), self.log, strict=True):
             if wanted:
                 scale("log")
-        ax.set_xlabel(f"{NAMES.get(self.axis, self.axis)}  ${SYMBOLS.get(self.axis, self.axis)}$")
-        ax.set_ylabel(QUANTITIES.get(self.quantity, self.quantity))
+        name_axis(ax, "x", self.axis)
+        name_axis(ax, "y", self.quantity)
         ends = [float(end) for curve in self.curves if len(curve.x) for end in (curve.x[0], curve.x[-1])]
         if self.window is not None:
             ax.set_xlim(*self.window)
@@ -104,7 +105,7 @@ class MeasurePanel:
         elif not self.log[1]:
             ax.set_ylim(bottom=min(0.0, ax.get_ylim()[0]))
         if self.title:
-            ax.set_title(self.title, fontsize=8.5)
+            ax.set_title(self.title, fontsize=font(8.5))
         if self.legend and (labels := self._labels()):
             ax.legend([line for _, (line,) in labels], [label for label, _ in labels], loc="best", handlelength=2.4)
 

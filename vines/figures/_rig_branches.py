@@ -9,11 +9,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
+from vines.figures._colours import COLOURS
 from vines.figures._diagram import BranchLine, Marker
 from vines.figures._diagram_panel import DiagramPanel
 from vines.figures._legend import Entry, add_legend
 from vines.figures._names import MEASURES
-from vines.figures._style import COLOURS, LETTER, look, new_figure
+from vines.figures._style import LETTER, font, look, new_figure
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -107,7 +108,7 @@ def rig_branches_figure(
         for ax in axes[:-1]:
             ax.set_xlabel("")
         figure.align_ylabels(axes)
-        axes[0].set_title("; ".join(filter(None, (caption, _BARS))), fontsize=8.5, loc="left", pad=6)
+        axes[0].set_title("; ".join(filter(None, (caption, _BARS))), fontsize=font(8.5), loc="left", pad=6)
         add_legend(figure, list(entries.items()))
     return figure
 
@@ -131,7 +132,8 @@ def rig_mark(protocol: str, colour: str, *, good: bool, size: float = 5.0) -> di
 
 
 def _draw(ax: Axes, own: RigPoints) -> None:
-    for side, colour in _SIDES.items():
+    for side, name in _SIDES.items():
+        colour = COLOURS[name]
         for protocol in DIRECTIONS:
             for good in (True, False):
                 at = (own.side == side) & (own.protocol == protocol) & (own.good == good)
@@ -158,20 +160,23 @@ def _draw(ax: Axes, own: RigPoints) -> None:
         elinewidth=2.2,
         alpha=0.75,
         zorder=3.5,
-        **_MODEL,
+        **_model(),
     )
 
 
 _BARS = "bars: two standard uncertainties"
-_SIDES = {1: COLOURS["L"], -1: COLOURS["R"], 0: COLOURS["ink"]}
-_MODEL: Any = {
-    "linestyle": "none",
-    "marker": "s",
-    "markersize": 8.5,
-    "markerfacecolor": "none",
-    "markeredgecolor": COLOURS["mark"],
-    "markeredgewidth": 0.9,
-}
+_SIDES = {1: "L", -1: "R", 0: "ink"}
+
+
+def _model() -> dict[str, Any]:
+    return {
+        "linestyle": "none",
+        "marker": "s",
+        "markersize": 8.5,
+        "markerfacecolor": "none",
+        "markeredgecolor": COLOURS["mark"],
+        "markeredgewidth": 0.9,
+    }
 
 
 def _entries(own: RigPoints) -> list[Entry]:
@@ -186,7 +191,7 @@ def _entries(own: RigPoints) -> list[Entry]:
         mark = Line2D([], [], **rig_mark(str(own.protocol[~own.good][0]), COLOURS["ink"], good=False))
         found.append(("empty: gates failed, or no pattern holds", (mark,)))
     if np.isfinite(own.model).any():
-        found.append(("model at the measured parameters", (Line2D([], [], **_MODEL),)))
+        found.append(("model at the measured parameters", (Line2D([], [], **_model()),)))
     return found
 
 
