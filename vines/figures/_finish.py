@@ -13,7 +13,7 @@ from vines.errors import DeclarationError, nearest
 from vines.figures._axes import shown_by
 from vines.figures._fit import fit_titles
 from vines.figures._look import worn
-from vines.figures._style import LETTER, font
+from vines.figures._style import look, write_letter
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -21,6 +21,12 @@ if TYPE_CHECKING:
 
 __all__ = ["finish"]
 
+_LEAST = 0.35
+"""Inches that a panel measures at least where a height is declared."""
+_TOO_SMALL = (
+    "panels, labels and legend do not fit the size of the figure: take a greater height or width, fewer columns, "
+    'a smaller font_size, or legend = "none"'
+)
 _LETTER = re.compile(r"\([a-z]\)\s*")
 
 
@@ -46,13 +52,22 @@ def finish(figure: Figure) -> Figure:
         for ax in figure.axes:
             if (legend := ax.get_legend()) is not None:
                 legend.remove()
+    import matplotlib as mpl
+
     engine = figure.get_layout_engine()
-    with _clear():
-        changed = fit_titles(figure)
+    with mpl.rc_context(look()), _clear():
+        for ax in figure.axes:
+            _keep_ticks(ax)
         if own.height is not None:
+            figure.set_size_inches(figure.get_size_inches()[0], own.height)
+        changed = fit_titles(figure)
+        if own.height is not None:  # whatever lines were added
             figure.set_size_inches(figure.get_size_inches()[0], own.height)
         if engine is not None and (changed or own.height is not None):
             engine.execute(figure)
+        panels = [ax.bbox for ax in figure.axes if shown_by(ax)]
+        if own.height is not None and min(min(box.width, box.height) for box in panels) < _LEAST * figure.dpi:
+            raise DeclarationError(_TOO_SMALL)
     return figure
 
 
@@ -66,10 +81,19 @@ def _clear() -> Iterator[None]:
     except ValueError as error:
         raise DeclarationError(f"a text of the figure cannot be set: {str(error).strip().splitlines()[-1]}") from None
     if any("collapsed" in str(each.message) for each in told):
-        raise DeclarationError(
-            "panels, labels and legend do not fit the size of the figure: take a greater height or width, "
-            'fewer columns, a smaller font_size, or legend = "none"'
-        )
+        raise DeclarationError(_TOO_SMALL)
+
+
+def _keep_ticks(ax: Axes) -> None:
+    """Give ticks that matplotlib makes later, as when somebody moves a limit, the look of those that are there."""
+    import matplotlib as mpl
+
+    rc: Any = mpl.rcParams
+    for along in ("x", "y"):
+        own = {name: rc[f"{along}tick.{name}"] for name in ("direction", "labelsize")}
+        for which in ("major", "minor"):
+            size, width, pad = (rc[f"{along}tick.{which}.{name}"] for name in ("size", "width", "pad"))
+            ax.tick_params(axis=along, which=which, length=size, width=width, pad=pad, **own)
 
 
 def _check_names(figure: Figure) -> None:
@@ -100,16 +124,7 @@ def _letter(figure: Figure, *, wanted: bool) -> None:
         return
     if wanted:
         for letter, ax in zip(ascii_lowercase, panels, strict=False):
-            ax.annotate(
-                f"({letter})",
-                (0.0, 1.0),
-                LETTER,
-                "axes fraction",
-                "offset points",
-                va="top",
-                weight="bold",
-                fontsize=font(8.5),
-            )
+            write_letter(ax, letter)
         return
     for ax in panels:
         for text in _lettered(ax):

@@ -14,7 +14,7 @@ from vines.figures._diagram import BranchLine, Marker
 from vines.figures._diagram_panel import DiagramPanel
 from vines.figures._legend import Entry, add_legend
 from vines.figures._names import MEASURES
-from vines.figures._style import LETTER, font, look, new_figure
+from vines.figures._style import font, look, new_figure, write_letter
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -101,9 +101,7 @@ def rig_branches_figure(
             panel.draw(ax)
             _draw(ax, own)
             if len(points) > 1:
-                ax.annotate(
-                    f"({letter})", (0.0, 1.0), LETTER, "axes fraction", "offset points", va="top", weight="bold"
-                )
+                write_letter(ax, letter)
             entries |= {label: entries.get(label, drawn) for label, drawn in (*_entries(own), *panel.entries())}
         for ax in axes[:-1]:
             ax.set_xlabel("")

@@ -84,7 +84,8 @@ def rig_waits_figure(cycles: Sequence[RigCycle], *, caption: str = "", width: fl
     width : float
         Width of the figure [inch].
     """
-    return _grid(cycles, _histogram, ("dt", r"time to next impact  $\Delta t/T$"), ("share", SHOWN["share"]), caption, width)
+    wait = ("dt", r"time to next impact  $\Delta t/T$")
+    return _grid(cycles, _histogram, wait, ("share", SHOWN["share"]), caption, width)
 
 
 def _grid(

@@ -7,9 +7,10 @@ from typing import TYPE_CHECKING, Any
 from vines.figures._look import worn
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-__all__ = ["FORMATS", "LETTER", "RC", "font", "look", "new_figure"]
+__all__ = ["FORMATS", "RC", "font", "look", "new_figure", "write_letter"]
 
 RC: Any = {
     "font.family": "DejaVu Sans",
@@ -42,9 +43,6 @@ FORMATS: dict[str, dict[str, Any]] = {
 }
 """Endings of files, and what each says of its origin; without a date, so that a figure has the same bytes each time."""
 
-LETTER = (-37.0, 0.0)
-"""Where the letter of a panel stands from its upper left corner [points]: beside its numbers, however wide it is."""
-
 
 def look() -> dict[Any, Any]:
     """Return matplotlib's settings for a figure: ours, and over them those of the look that is worn."""
@@ -65,6 +63,12 @@ def font(size: float) -> float:
     8.5
     """
     return size * look()["font.size"] / RC["font.size"]
+
+
+def write_letter(ax: Axes, letter: str) -> None:
+    """Write the letter of a panel beside its numbers, however wide it is."""
+    place = (font(-37.0), 0.0)
+    ax.annotate(f"({letter})", (0.0, 1.0), place, "axes fraction", "offset points", va="top", weight="bold")
 
 
 def new_figure(width: float, height: float) -> Figure:
