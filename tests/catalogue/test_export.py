@@ -12,7 +12,9 @@ import sys
 import sysconfig
 from pathlib import Path
 
+import frictionless
 import pytest
+from datacite import schema45
 from filelock import FileLock
 
 from tests.made_once import own_copy
@@ -230,7 +232,6 @@ def deposit(tmp_path_factory):
 
 
 def test_the_data_package_is_one_to_frictionless(deposit):
-    frictionless = pytest.importorskip("frictionless")
     _, folder = deposit
     descriptor = json.loads((folder / "datapackage.json").read_text("utf-8"))
     package = frictionless.Package.from_descriptor(descriptor, basepath=str(folder))
@@ -239,11 +240,11 @@ def test_the_data_package_is_one_to_frictionless(deposit):
     assert package.licenses == [{"name": "CC-BY-4.0", "path": "https://creativecommons.org/licenses/by/4.0/"}]
     assert [each["title"] for each in package.contributors] == ["Alex Doe", "A group"]
     assert package.keywords == ["vibro-impact", "nonlinear energy sink"]
-    assert {resource.name for resource in package.resources} == {f"small.up.{name}" for name in ("attractors", "impacts", "points")}
+    tables = ("attractors", "impacts", "points")
+    assert {resource.name for resource in package.resources} == {f"small.up.{name}" for name in tables}
 
 
 def test_the_fields_of_datacite_are_valid(deposit):
-    schema45 = pytest.importorskip("datacite.schema45")
     _, folder = deposit
     told = json.loads((folder / "datacite.json").read_text("utf-8"))
     assert schema45.validate(told)

@@ -30,7 +30,7 @@ LICENCES = {
 """Licences for data, by their identifiers in the SPDX list: name and address."""
 
 _Text = Annotated[str, Meta(min_length=1)]
-_Doi = Annotated[str, Meta(pattern=r"^10\.[0-9]{4,9}/\S+$")]
+_Doi = Annotated[str, Meta(extra_json_schema={"pattern": r"^10\.[0-9]{4,9}/\S+$"})]
 
 
 class Creator(msgspec.Struct, frozen=True, forbid_unknown_fields=True):

@@ -8,7 +8,7 @@ from typing import Any
 
 from vines.catalogue import LICENCES, Deposit
 from vines.errors import DeclarationError
-from vines.pipeline._options import read_options
+from vines.pipeline._options import known, option_names, read_options
 
 __all__ = ["read_deposit"]
 
@@ -43,6 +43,7 @@ def read_deposit(declared: object, where: str) -> Deposit | None:
     if not isinstance(declared, Mapping):
         raise DeclarationError(f"{where} is {declared!r}; it is a table, [study]")
     table: Any = declared
+    known(table, option_names(Deposit), where)
     found: Any = read_options(table, Deposit, where)
     if found.licence not in LICENCES:
         allowed = ", ".join(sorted(LICENCES))
@@ -53,6 +54,9 @@ def read_deposit(declared: object, where: str) -> Deposit | None:
                 f"{where}.creators[{number}].orcid is {creator.orcid!r}; an ORCID is 0000-0000-0000-0000, "
                 "its last character a check digit"
             )
+    for key, doi in (("doi", found.doi), *((f"related[{k}].doi", each.doi) for k, each in enumerate(found.related))):
+        if doi is not None and not re.fullmatch(r"10\.\d{4,9}/\S+", doi):
+            raise DeclarationError(f"{where}.{key} is {doi!r}; a DOI is 10.NUMBER/NAME, without the address before it")
     return found
 
 
