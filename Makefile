@@ -11,7 +11,7 @@ unexport PYTHONDONTWRITEBYTECODE
 PIP := "$(BIN)/python" -m pip install -qq --disable-pip-version-check --no-compile
 export RERUN_ANALYTICS = 0
 
-.PHONY: run test install lint types rooms acceptance system lock clean clean-results help
+.PHONY: run test install lint types rooms acceptance docs system lock clean clean-results help
 
 help:            ## list the targets
 	@grep -hE '^[a-z-]+:.*##' Makefile | sed 's/:.*##/\t/'
@@ -65,6 +65,10 @@ system:          ## Debian packages for tests: software Vulkan and Chromium for 
 # The widest first: the others take its versions.
 COMPILE := "$(BIN)/pip-compile" --quiet --generate-hashes --allow-unsafe --strip-extras \
   --no-emit-index-url --no-emit-find-links
+
+docs: $(INSTALLED_DEV)  ## make the pages of docs/ a site, in site/; a warning is an error
+	@"$(BIN)/python" -m sphinx --quiet --fail-on-warning -b html docs site
+	@echo "site/index.html"
 
 lock: $(INSTALLED_DEV)  ## renew requirements-dev.lock, requirements.lock and requirements-node.lock
 	@$(COMPILE) --upgrade --extra dev --build-deps-for wheel --output-file=requirements-dev.lock pyproject.toml

@@ -194,6 +194,10 @@ def printable(text: str) -> str:
     )
 
 
+_LISTED, _FEW = 40, 12
+"""Names up to which a message lists them all, and how many it lists of more."""
+
+
 def nearest(name: str, known: Iterable[str]) -> str:
     """Return the tail of a message that helps with a misspelt name.
 
@@ -207,7 +211,8 @@ def nearest(name: str, known: Iterable[str]) -> str:
     Returns
     -------
     str
-        ``"did you mean 'x'? Allowed: x, y"``, or only the list if nothing is near.
+        ``"did you mean 'x'? Allowed: x, y"``, or only the list if nothing is near. Of many names those that are most
+        alike are listed, and how many there are.
 
     Examples
     --------
@@ -220,6 +225,9 @@ def nearest(name: str, known: Iterable[str]) -> str:
     """
     names = sorted(known)
     listed = ", ".join(names) if names else "nothing"
+    if len(names) > _LISTED:
+        alike = sorted(names, key=lambda each: -difflib.SequenceMatcher(None, name.casefold(), each.casefold()).ratio())
+        listed = f"{', '.join(alike[:_FEW])}, ... ({len(names)} names)"
     folded = {known_name.casefold(): known_name for known_name in reversed(names)}
     close = difflib.get_close_matches(name.casefold(), folded, n=1, cutoff=0.6)
     return f"did you mean {folded[close[0]]!r}? Allowed: {listed}" if close else f"allowed: {listed}"

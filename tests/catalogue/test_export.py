@@ -5,13 +5,16 @@ import errno
 import hashlib
 import json
 import os
+import re
 import shutil
 import subprocess
 import sys
 import sysconfig
 from pathlib import Path
 
+import frictionless
 import pytest
+from datacite import schema45
 from filelock import FileLock
 
 from tests.made_once import own_copy
@@ -186,3 +189,96 @@ def test_what_is_declared_otherwise_now_is_said(quickstart, tmp_path):
     assert "the export holds what is stored" in said
     readme = (tmp_path / "other" / "README.md").read_text()
     assert "is stale: settle 400 → 401" in readme.partition("## Not as declared")[2]
+
+
+STUDY = """
+[study]
+title = "What a ball takes: settled impacts"
+creators = [{ name = "Doe, Alex", orcid = "0000-0002-1825-0097", affiliation = "A laboratory" }, { name = "A group" }]
+keywords = ["vibro-impact", "nonlinear energy sink"]
+description = "A sweep of the forcing amplitude."
+version = "1.2.0"
+licence = "CC-BY-4.0"
+publisher = "A repository"
+year = 2026
+doi = "10.1234/example"
+related = [{ doi = "10.1234/paper", relation = "IsSupplementTo" }]
+"""
+SMALL = """
+title = "Small"
+[params]
+mu = 0.01
+[stages.up]
+kind = "sweep"
+vary.A = [0.015, 0.016]
+settle = 50
+record = 16
+"""
+
+
+@pytest.fixture(scope="module")
+def deposit(tmp_path_factory):
+    """Give an export of a small pipeline that says who made it."""
+    project = Project(tmp_path_factory.mktemp("deposit"))
+    (project.root / "pipelines").mkdir()
+    (project.root / "pipelines" / "small.toml").write_text(SMALL)
+    project.vines("run", "small", "--jobs", "1")
+    before = {path.name for path in (project.data / "results").iterdir()}
+    (project.root / "pipelines" / "small.toml").write_text(STUDY + SMALL.replace('title = "Small"\n', ""))
+    assert "nothing to compute" in project.vines("run", "small").stdout  # who made it counts in no key
+    assert {path.name for path in (project.data / "results").iterdir()} == before
+    project.vines("export", project.root / "out", "small")
+    return project, project.root / "out"
+
+
+def test_the_data_package_is_one_to_frictionless(deposit):
+    _, folder = deposit
+    descriptor = json.loads((folder / "datapackage.json").read_text("utf-8"))
+    package = frictionless.Package.from_descriptor(descriptor, basepath=str(folder))
+    assert list(frictionless.Package.metadata_validate(descriptor)) == []
+    assert (package.title, package.version) == ("What a ball takes: settled impacts", "1.2.0")
+    assert package.licenses == [{"name": "CC-BY-4.0", "path": "https://creativecommons.org/licenses/by/4.0/"}]
+    assert [each["title"] for each in package.contributors] == ["Alex Doe", "A group"]
+    assert package.keywords == ["vibro-impact", "nonlinear energy sink"]
+    tables = ("attractors", "impacts", "points")
+    assert {resource.name for resource in package.resources} == {f"small.up.{name}" for name in tables}
+
+
+def test_the_fields_of_datacite_are_valid(deposit):
+    _, folder = deposit
+    told = json.loads((folder / "datacite.json").read_text("utf-8"))
+    assert schema45.validate(told)
+    assert told["creators"][0]["nameIdentifiers"][0]["nameIdentifier"] == "https://orcid.org/0000-0002-1825-0097"
+    assert told["rightsList"][0]["rightsIdentifier"] == "CC-BY-4.0"
+    assert told["relatedIdentifiers"][0]["relationType"] == "IsSupplementTo"
+
+
+def test_the_licence_is_that_of_the_data_and_the_citation_names_the_creators(deposit):
+    _, folder = deposit
+    assert "Creative Commons Attribution 4.0" in (folder / "LICENSE").read_text("utf-8")
+    assert "BSD" not in (folder / "LICENSE").read_text("utf-8")
+    cited = (folder / "CITATION.cff").read_text("utf-8")
+    assert '  - family-names: "Doe"\n    given-names: "Alex"' in cited
+    assert "type: dataset" in cited
+    assert "datacite.json" in (folder / "README.md").read_text("utf-8")
+
+
+@pytest.mark.parametrize(
+    ("wrong", "told"),
+    [
+        ('licence = "BSD-3-Clause"', "which is none for data; allowed: CC-BY-4.0"),
+        ('creators = [{ name = "Doe, A.", orcid = "0000-0002-1825-0098" }]', r"orcid is .*check digit"),
+        ("creators = []", "creators"),
+        ("keyword = ['a']", "unknown key 'keyword': did you mean 'keywords'"),
+        ("year = 26", "year is 26, allowed is year >= 1990"),
+        ('doi = "https://doi.org/10.1/a"', "doi is"),
+    ],
+)
+def test_what_a_repository_would_refuse_is_one_line(deposit, wrong, told):
+    project, _ = deposit
+    key = wrong.split()[0]
+    kept = "".join(line + "\n" for line in STUDY.splitlines() if not line.startswith(f"{key} ="))
+    (project.root / "pipelines" / "wrong.toml").write_text(kept + wrong + SMALL.replace('title = "Small"\n', ""))
+    done = project.vines("status", "wrong", check=False)
+    assert (done.returncode, done.stderr.count("\n")) == (2, 1), done.stderr
+    assert re.search(told, done.stderr), done.stderr

@@ -9,7 +9,8 @@ import pytest
 from matplotlib.colors import to_rgb
 
 from vines.figures import BasinMap, basins_figure
-from vines.figures._basins import CHAOS, HUES, SHADE, UNSETTLED
+from vines.figures._basins import SHADE, UNSETTLED
+from vines.figures._colours import CHAOS, HUES
 
 
 def _map(nx: int = 6, ny: int = 4) -> BasinMap:

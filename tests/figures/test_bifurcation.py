@@ -5,7 +5,7 @@ import pytest
 
 from vines.errors import DeclarationError
 from vines.figures import COLOURS, BranchLine, ImpactDots, Marker, bifurcation_figure, save
-from vines.figures._style import FAMILIES
+from vines.figures._colours import FAMILIES
 
 
 def drawing(**options):

@@ -6,13 +6,18 @@ import numpy as np
 import pytest
 from matplotlib.text import Text
 
-from vines.figures import BranchLine, ImpactDots, Marker, bifurcation_figure, fit_titles
+from vines.figures import BranchLine, ImpactDots, Look, Marker, bifurcation_figure, finish, wearing
 
 LABELS = ("simulation", "1:1 symmetric", "1:1 asymmetric, the branch that a broken symmetry begins", "2:1")
 CAPTION = r"$\mu = 0.01$,  $\Omega = 1$,  $r = 0.65$,  $\lambda = 0.012$,  and a word of what the study is about"
 
 
-def drawn(width):
+def drawn(width, look=None):
+    with wearing(look or Look()):
+        return laid_out(width)
+
+
+def laid_out(width):
     x = np.linspace(0.0201, 0.0219, 40)
     values = {"w_dot": 0.2 + x, "dt": np.full_like(x, 0.5), "x1": x, "phase": x}
     dots = ImpactDots(
@@ -25,7 +30,7 @@ def drawn(width):
     ]
     marker = Marker("symmetry_breaking", 0.021, {k: np.array([0.2, 0.2]) for k in values})
     figure = bifurcation_figure("A", [dots], lines, [marker], caption=CAPTION, width=width / 25.4)
-    fit_titles(figure)
+    finish(figure)
     figure.draw_without_rendering()
     return figure
 
@@ -44,9 +49,21 @@ def boxes(figure):
     return [(each.get_text(), each.get_window_extent(renderer)) for each in texts]
 
 
-@pytest.mark.parametrize("width", [60, 85, 120, 200])
-def test_nothing_is_cut_off_and_nothing_lies_on_another(width):
-    figure = drawn(width)
+LOOKS = {
+    "ours": Look(),
+    "above": Look(legend="above"),
+    "right": Look(legend="right"),
+    "large": Look(font_size=12.0),
+    "low": Look(height=5.2),
+}
+
+
+@pytest.mark.parametrize(
+    ("width", "look"),
+    [*((width, "ours") for width in (60, 85, 120, 200)), *((85, name) for name in LOOKS if name != "ours")],
+)
+def test_nothing_is_cut_off_and_nothing_lies_on_another(width, look):
+    figure = drawn(width, LOOKS[look])
     told = boxes(figure)
     assert len(told) > 20
     for text, box in told:

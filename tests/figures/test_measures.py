@@ -57,6 +57,23 @@ def test_lines_are_told_apart_by_colour_and_dashes_and_axes_may_be_logarithmic()
     assert [text.get_text() for text in ax.get_legend().get_texts()] == ["$r = 0$", "$r = 1$", "$r = 2$"]
 
 
+def test_branches_are_lines_dotted_where_unstable_over_paler_points():
+    turning = np.concatenate([X, X[::-1]])
+    branch = MeasureCurve(turning, np.linspace(0, 1, 42), "1:1 symmetric", 1, stable=np.arange(42) < 21)
+    up = MeasureCurve(X, np.full(21, 0.2), "simulation", 0, "up")
+    figure = sheet_figure([MeasurePanel("Omega", "max_abs_x1", [up, branch])])
+    dots, stable, unstable = figure.axes[0].lines
+    assert (dots.get_alpha(), stable.get_alpha()) == (0.35, None)
+    assert dots.get_zorder() < stable.get_zorder()
+    assert stable.get_color() == unstable.get_color() != dots.get_color()
+    assert (stable.get_linestyle(), unstable.get_linestyle()) == ("-", ":") or unstable._dash_pattern[1] is not None
+    assert stable.get_xdata()[-1] == unstable.get_xdata()[0]
+    assert figure.axes[0].get_xlim() == pytest.approx((0.897, 1.103))
+    (legend,) = figure.legends
+    said = [text.get_text() for text in legend.get_texts()]
+    assert said == ["simulation", "1:1 symmetric", "swept up", "stable", "unstable"]
+
+
 def points(rows):
     names = ("mu_1", "beta_2", "A", "reduction")
     return pa.table({name: [row[k] for row in rows] for k, name in enumerate(names)})

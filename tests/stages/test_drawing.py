@@ -54,6 +54,56 @@ def test_a_style_sheet_is_laid_over_the_look_of_vines(made, tmp_path):
     assert mpl.rcParams["axes.linewidth"] == 0.8
 
 
+def looked(made, **look):
+    return vines.figure(FIGURE, width="85mm", overrides={"stages.figure.look": look}, study=made)
+
+
+def test_the_look_of_a_declaration_has_size_letters_colours_labels_and_limits(made):
+    plain = looked(made)
+    figure = looked(
+        made,
+        height="150mm",
+        font_size=7,
+        letters=False,
+        labels={"A": "amplitude", "w_dot": "velocity"},
+        limits={"w_dot": [-3, 3], "A": [0.016, 0.02]},
+        colours={"L": "#117733", "symmetric L": "#117733"},
+    )
+    assert figure.get_size_inches() == pytest.approx((85 / 25.4, 150 / 25.4))
+    above, below = figure.axes
+    assert (above.get_ylabel(), below.get_xlabel()) == ("velocity", "amplitude")
+    assert (above.get_ylim(), above.get_xlim(), below.get_xlim()) == ((-3, 3), (0.016, 0.02), (0.016, 0.02))
+    assert not above.texts
+    assert [text.get_text() for text in plain.axes[0].texts] == ["(a)"]
+    used = {line.get_color() for line in above.lines}
+    assert {"#117733", "#0b4ea2"} <= used
+    assert "#c8102e" not in used
+    assert "#88bb99" in used  # impacts on L follow, halfway to white
+    assert above.title.get_fontsize() == pytest.approx(plain.axes[0].title.get_fontsize() * 7 / 8.5)
+    assert figure.legends[0].get_texts()[0].get_fontsize() == pytest.approx(8 * 7 / 8.5)
+
+
+def test_the_legend_stands_where_it_is_asked_for(made):
+    places = {place: looked(made, legend=place) for place in ("below", "above", "right", "none")}
+    for figure in places.values():
+        figure.draw_without_rendering()
+    below, above, right = (places[name].legends[0].get_window_extent() for name in ("below", "above", "right"))
+    panels = {name: figure.axes[0].get_window_extent() for name, figure in places.items()}
+    assert below.y1 < panels["below"].y0
+    assert above.y0 > panels["above"].y1
+    assert right.x0 > panels["right"].x1
+    assert places["none"].legends == []
+
+
+def test_ticks_that_come_when_a_limit_is_moved_look_as_those_that_were_there(made):
+    figure = vines.figure(FIGURE, study=made)
+    ax = figure.axes[0]
+    ax.set_ylim(-300, 300)
+    figure.draw_without_rendering()
+    assert {tick.get_tickdir() for tick in ax.yaxis.get_major_ticks()} == {"in"}
+    assert {tick.label1.get_fontsize() for tick in ax.yaxis.get_major_ticks()} == {8.5}
+
+
 SENSELESS = {
     "millimetres as inches": (["--width", "85"], r'width is 85 inch; allowed is 1\.5 to 20 .*; write "85mm" for mm'),
     "a poster": (["--width", "3m"], "mm, cm, in or pt"),
@@ -63,6 +113,26 @@ SENSELESS = {
     "no style": (["--style", "thesys"], "no style 'thesys'"),
     "no style sheet": (["--style", "none.mplstyle"], "no such style sheet"),
     "an unknown option": (["--set", "stages.figure.colour='red'"], "unknown key 'colour'"),
+    "a colour by name": (
+        ["--set", 'stages.figure.look.colours={L="red"}'],
+        "look.colours.L is 'red'; allowed is \"#rrggbb\"",
+    ),
+    "no colour": (["--set", 'stages.figure.look.colours={Lft="#ffffff"}'], "no colour 'Lft': .* names"),
+    "what no axis can show": (["--set", 'stages.figure.look.labels={w_dt="a"}'], "did you mean 'w_dot'"),
+    "what no axis shows": (
+        ["--set", "stages.figure.look.limits={reduction=[0, 1]}"],
+        "look.limits.reduction: no axis of this figure shows it: .*A, dt, w_dot",
+    ),
+    "limits the wrong way": (["--set", "stages.figure.look.limits={dt=[1, 0]}"], "give the lower end first"),
+    "millimetres as inches of height": (["--set", "stages.figure.look.height=60"], 'write "60mm" for mm'),
+    "too low for what is in it": (["--set", "stages.figure.look.height='45mm'"], "do not fit the size of the figure"),
+    "a letter of a poster": (["--set", "stages.figure.look.font_size=100"], "allowed is font_size <= 24"),
+    "a formula that is none": (
+        ["--set", "stages.figure.look.labels={A='$\\frac{$'}"],
+        "a text of the figure cannot be set",
+    ),
+    "a format that is none": (["--set", 'stages.figure.look.formats=["gif"]'], "allowed: pdf, png, svg"),
+    "a format twice": (["--set", 'stages.figure.look.formats=["pdf", "pdf"]'], "names a format twice"),
 }
 
 
@@ -119,6 +189,17 @@ kind = "figure"
 plot = "bifurcation"
 needs = ["up"]
 """
+
+
+def test_only_the_files_that_are_declared_are_written_and_named(project):
+    text = "[params]\nmu = 0.01\n" + SMALL + '[stages.picture.look]\nformats = ["png"]\ndpi = 60\n'
+    (project.root / "pipelines" / "small.toml").write_text(text)
+    said = project.vines("run", "small", "--jobs", "1").stdout
+    assert [path.name for path in (project.data / "figures").iterdir()] == ["small.picture.png"]
+    assert re.search(r"figures/small\.picture\.png\n", said)
+    assert matplotlib.image.imread(project.data / "figures" / "small.picture.png").shape[1] == 420
+    project.vines("report", "small", "--out", "small.html")
+    assert "data:image/png;base64," in (project.root / "small.html").read_text()
 
 
 def test_pictures_lie_under_the_names_of_their_stages_and_a_copy_that_is_changed_comes_back(project):

@@ -8,7 +8,7 @@ import pytest
 import vines
 from tests.stages.test_sheet import inputs
 from vines.errors import DeclarationError
-from vines.figures._style import BALLS
+from vines.figures._colours import BALLS
 from vines.model import system_names
 from vines.stages import load_pipeline, run
 from vines.stages.plots import PLOTS

@@ -5,7 +5,7 @@ import pytest
 
 import vines
 from vines.errors import DeclarationError
-from vines.figures._style import FAMILIES
+from vines.figures._colours import FAMILIES
 from vines.logs import read
 from vines.pipeline import Input
 from vines.stages import find_logs, load_pipeline, run

@@ -6,4 +6,8 @@ from ._diff import TableDifference as TableDifference
 from ._diff import compare_tables as compare_tables
 from ._export import Collected as Collected
 from ._export import export_results as export_results
+from ._study import LICENCES as LICENCES
+from ._study import Creator as Creator
+from ._study import Deposit as Deposit
+from ._study import Related as Related
 from ._views import stage_results as stage_results

@@ -17,7 +17,9 @@ from pathlib import Path
 from typing import Any
 
 from vines import schema
+from vines.catalogue._deposit import citation, datacite, licence, package_fields
 from vines.catalogue._readme import readme
+from vines.catalogue._study import Deposit
 from vines.catalogue._views import list_views
 from vines.errors import DamageError, StoreError
 from vines.store import Result, describe_file
@@ -48,6 +50,8 @@ class Collected:
         Whether the MCAP logs go along.
     stale : sequence of str
         Which stages are declared otherwise now, or not computed, a line each.
+    deposit : Deposit, optional
+        What a data repository is told, `[study]` of a declaration; its licence and citation then count.
     """
 
     results: Sequence[tuple[str, str, Result]]
@@ -57,6 +61,7 @@ class Collected:
     citation: str
     logs: bool = False
     stale: Sequence[str] = ()
+    deposit: Deposit | None = None
 
     def place(self, pipeline: str, stage: str, file: str) -> str | None:
         """Return where a file of a result lies in the export; None if it does not go along."""
@@ -105,12 +110,16 @@ def export_results(collected: Collected, target: Path) -> list[str]:
             _write(folder / "declarations" / name, text)
         for name in _tables(collected):
             _write(folder / "schemas" / f"{name}.toml", schema.toml(name))
-        _write(folder / "LICENSE", collected.licence)
-        _write(folder / "CITATION.cff", collected.citation)
+        told = collected.deposit
+        if told is not None:
+            _write(folder / "datacite.json", datacite(told))
+        _write(folder / "LICENSE", collected.licence if told is None else licence(told))
+        _write(folder / "CITATION.cff", collected.citation if told is None else citation(told))
         _write(folder / "load.sql", _load(collected))
         _write(folder / "dictionary.csv", _dictionary(collected))
         _write(folder / "datapackage.json", _datapackage(collected))
-        _write(folder / "README.md", readme(collected.results, collected.titles, collected.logs, collected.stale))
+        text = readme(collected.results, collected.titles, collected.logs, collected.stale, deposited=told is not None)
+        _write(folder / "README.md", text)
         names = sorted(path.relative_to(folder).as_posix() for path in folder.rglob("*") if path.is_file())
         _write(folder / "SHA256SUMS", "".join(f"{_sha256(folder / name)}  {name}\n" for name in names))
     return [*names, "SHA256SUMS"]
@@ -220,12 +229,14 @@ def _datapackage(collected: Collected) -> str:
                     "schema": {"fields": _fields(name, result.manifest["tables"][name]["columns"])},
                 }
             )
-    package = {
+    package: dict[str, Any] = {
         "name": "vines-results",
         "title": "; ".join(collected.titles[name] for name in sorted(collected.titles)),
         "licenses": [{"path": "LICENSE"}],
-        "resources": resources,
     }
+    if collected.deposit is not None:
+        package |= package_fields(collected.deposit)
+    package["resources"] = resources
     return json.dumps(package, indent=1, ensure_ascii=False) + "\n"
 
 

@@ -53,7 +53,7 @@ connection.sql("select pipeline, stage, count(*) from points group by all")
 | `dictionary.csv`, `schemas/` | every column with type, unit, description, source and allowed values |
 | `provenance/` | for each stage its kind, options, parameters, digest of the code, versions, checksums |
 | `declarations/` | the declared pipelines and published values |
-| `datapackage.json` | the same as a Data Package (Frictionless) |
+| `datapackage.json` | the same as a Data Package (Frictionless) |{datacite}
 | `SHA256SUMS` | checksums of all files: `sha256sum -c SHA256SUMS` |
 | `LICENSE`, `CITATION.cff` | how it may be used, and how to cite it |
 
@@ -63,7 +63,12 @@ Units stand in the metadata of each column, in the JSON text under the key `vine
 
 
 def readme(
-    results: Sequence[tuple[str, str, Result]], titles: Mapping[str, str], logs: bool, stale: Sequence[str] = ()
+    results: Sequence[tuple[str, str, Result]],
+    titles: Mapping[str, str],
+    logs: bool,
+    stale: Sequence[str] = (),
+    *,
+    deposited: bool = False,
 ) -> str:
     """Return the text of README.md.
 
@@ -77,9 +82,13 @@ def readme(
         Whether the logs are there.
     stale : sequence of str
         Stages that are declared otherwise now.
+    deposited : bool
+        Whether the fields of DataCite are there.
     """
     files = [f"{pipeline}.{stage}.{name}" for pipeline, stage, result in results for name in result.tables]
     text = _HEAD.replace("{first}", files[0] if files else "<pipeline>.<stage>.<table>")
+    of_datacite = "\n| `datacite.json` | title, creators, licence and so on for a repository (DataCite 4.5) |"
+    text = text.replace("{datacite}", of_datacite if deposited else "")
     lines = [text.replace("{logs}", "" if logs else ": not part of this export")]
     if stale:
         lines += ["## Not as declared", "", "`declarations/` asks for more or something else than what is here:", ""]

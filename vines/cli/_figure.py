@@ -17,13 +17,13 @@ from vines.cli._study import the_study
     help="The file, .pdf, .svg or .png; else NAME.STAGE.pdf here.",
 )
 @click.option("--width", metavar="W", help="Width with unit, e.g. 85mm, 8.5cm, 3.35in; else as declared.")
-@click.option("--dpi", type=click.IntRange(30, 2400), default=300, show_default=True, help="Pixels per inch of a PNG.")
+@click.option("--dpi", type=click.IntRange(30, 2400), help="Pixels per inch of a PNG; else 300.")
 @click.option("--style", metavar="S", help="A style sheet of matplotlib (.mplstyle), or the name of one.")
 @click.option(
     "--set", "settings", multiple=True, metavar="K=V", help="Replace a value, e.g. stages.response.title='A title'."
 )
 def command(
-    name: str, out: Path | None, width: str | None, dpi: int, style: str | None, settings: tuple[str, ...]
+    name: str, out: Path | None, width: str | None, dpi: int | None, style: str | None, settings: tuple[str, ...]
 ) -> None:
     """Draw a figure of a pipeline from what is stored, at the width and in the format of a paper; computes nothing.
 

@@ -1,3 +1,4 @@
+from ._axes import SHOWN as SHOWN
 from ._basins import BasinMap as BasinMap
 from ._basins import basins_figure as basins_figure
 from ._bifurcation import bifurcation_figure as bifurcation_figure
@@ -5,6 +6,10 @@ from ._chart import CurveLine as CurveLine
 from ._chart import Region as Region
 from ._chart import SpecialMark as SpecialMark
 from ._chart import chart_figure as chart_figure
+from ._colours import COLOURS as COLOURS
+from ._colours import PALETTE as PALETTE
+from ._colours import REGIME_CLASSES as REGIME_CLASSES
+from ._colours import colour_names as colour_names
 from ._designs import BandCurve as BandCurve
 from ._designs import BandPanel as BandPanel
 from ._designs import DesignMap as DesignMap
@@ -16,7 +21,9 @@ from ._diagram_panel import DiagramPanel as DiagramPanel
 from ._energy import FOUND as FOUND
 from ._energy import EnergyCurve as EnergyCurve
 from ._energy import EnergyPanel as EnergyPanel
-from ._fit import fit_titles as fit_titles
+from ._finish import finish as finish
+from ._look import Look as Look
+from ._look import wearing as wearing
 from ._measures import MeasureCurve as MeasureCurve
 from ._measures import MeasurePanel as MeasurePanel
 from ._multipliers import MultiplierLines as MultiplierLines
@@ -32,7 +39,6 @@ from ._names import RUN_PANELS as RUN_PANELS
 from ._names import SYMBOLS as SYMBOLS
 from ._reduced import ErrorMap as ErrorMap
 from ._reduced import reduced_figure as reduced_figure
-from ._regimes import REGIME_CLASSES as REGIME_CLASSES
 from ._regimes import RegimeMap as RegimeMap
 from ._regimes import regimes_figure as regimes_figure
 from ._response import VelocityPanel as VelocityPanel
@@ -47,11 +53,8 @@ from ._runs import EndsPanel as EndsPanel
 from ._runs import GapPanel as GapPanel
 from ._runs import PhasePlanePanel as PhasePlanePanel
 from ._runs import RunCurves as RunCurves
+from ._saved import save as save
 from ._saved import save_as as save_as
 from ._sheet import Panel as Panel
 from ._sheet import sheet_figure as sheet_figure
-from ._style import COLOURS as COLOURS
-from ._style import PALETTE as PALETTE
-from ._style import save as save
-from ._style import wearing as wearing
 from ._style_sheet import style_settings as style_settings

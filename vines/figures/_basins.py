@@ -9,8 +9,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 import numpy.typing as npt
 
+from vines.figures._axes import name_axis
+from vines.figures._colours import CHAOS, HUES
 from vines.figures._fit import place_legend
-from vines.figures._style import look, new_figure
+from vines.figures._style import font, look, new_figure
 from vines.model import VI_NES
 
 if TYPE_CHECKING:
@@ -21,8 +23,6 @@ __all__ = ["BasinMap", "basins_figure"]
 Floats = npt.NDArray[np.float64]
 
 SYMBOLS = {each.name: f"${each.symbol}$" for each in VI_NES.state} | {"phase": rf"phase ${VI_NES.phase.symbol}$"}
-HUES = ("#33658a", "#e07a1f", "#117733", "#aa4499", "#ddcc77", "#86bbd8")
-CHAOS = ("#d2d2d2", "#a9a9a9", "#808080")
 UNSETTLED = "#000000"
 """Colours as in the map of regimes: periodic attractors coloured, chaotic ones grey, what has not settled black."""
 
@@ -92,14 +92,14 @@ def basins_figure(data: BasinMap, *, title: str = "", width: float = 7.0) -> Fig
         figure = new_figure(width, 0.8 * width)
         ax = figure.add_subplot()
         ax.imshow(image, extent=extent, origin="lower", aspect="auto", interpolation="none")
-        ax.set_xlabel(f"{SYMBOLS[data.axes[0]]} at the start")
-        ax.set_ylabel(f"{SYMBOLS[data.axes[1]]} at the start")
+        name_axis(ax, "x", data.axes[0], f"{SYMBOLS[data.axes[0]]} at the start")
+        name_axis(ax, "y", data.axes[1], f"{SYMBOLS[data.axes[1]]} at the start")
         handles = [
             Patch(facecolor=colour, edgecolor="#777777", linewidth=0.5, label=name)
             for colour, name in zip((*colours, UNSETTLED), data.names, strict=False)
         ]
         place_legend(figure, handles, [str(each.get_label()) for each in handles], ncols=2)
-        ax.set_title(title, fontsize=9)
+        ax.set_title(title, fontsize=font(9))
     return figure
 
 

@@ -10,7 +10,7 @@ from vines.figures._diagram import BranchLine, ImpactDots, Marker
 from vines.figures._diagram_panel import DiagramPanel
 from vines.figures._legend import add_legend
 from vines.figures._names import PANELS
-from vines.figures._style import LETTER, look, new_figure
+from vines.figures._style import font, look, new_figure, write_letter
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -62,10 +62,10 @@ def bifurcation_figure(
         drawn = [DiagramPanel(axis, panel, dots, lines, markers, window=window) for panel in panels]
         for letter, panel, ax in zip("abcdefgh", drawn, axes, strict=False):
             panel.draw(ax)
-            ax.annotate(f"({letter})", (0.0, 1.0), LETTER, "axes fraction", "offset points", va="top", weight="bold")
+            write_letter(ax, letter)
         for ax in axes[:-1]:
             ax.set_xlabel("")
         if caption:
-            axes[0].set_title(caption, fontsize=8.5, loc="left", pad=6)
+            axes[0].set_title(caption, fontsize=font(8.5), loc="left", pad=6)
         add_legend(figure, drawn[0].entries())
     return figure

@@ -10,10 +10,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
+from vines.figures._axes import name_axis
+from vines.figures._colours import COLOURS, CURVES
 from vines.figures._legend import add_legend
 from vines.figures._marks import MARKS
-from vines.figures._names import NAMES, SYMBOLS
-from vines.figures._style import COLOURS, look, new_figure
+from vines.figures._style import font, look, new_figure
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -23,13 +24,6 @@ __all__ = ["CurveLine", "Region", "SpecialMark", "chart_figure", "curve_entries"
 
 Floats = npt.NDArray[np.float64]
 
-_COLOURS = {
-    "fold": "#333333",
-    "symmetry_breaking": "#c8102e",
-    "period_doubling": "#7a2bbf",
-    "neimark_sacker": "#0b7d6b",
-    "grazing": "#0b4ea2",
-}
 _STYLES = ("-", (0, (5, 1.5)), (0, (4, 1.5, 1, 1.5)), (0, (1.5, 1.2)))
 """Line styles of the families, in the order in which they come."""
 
@@ -104,10 +98,10 @@ def chart_figure(
         for mark in special:
             ax.plot([mark.x], [mark.y], linestyle="none", zorder=4, **_special_style(symbols.get(mark.type, "x")))
         _scale(ax, curves)
-        ax.set_xlabel(f"{NAMES.get(axes[0], axes[0])}  ${SYMBOLS.get(axes[0], axes[0])}$")
-        ax.set_ylabel(f"{NAMES.get(axes[1], axes[1])}  ${SYMBOLS.get(axes[1], axes[1])}$")
+        name_axis(ax, "x", axes[0])
+        name_axis(ax, "y", axes[1])
         if caption:
-            ax.set_title(caption, fontsize=8.5, loc="left", pad=6)
+            ax.set_title(caption, fontsize=font(8.5), loc="left", pad=6)
         add_legend(figure, _entries(curves, symbols, regions))
     return figure
 
@@ -119,7 +113,7 @@ def draw_curves(ax: Axes, curves: Sequence[CurveLine], *, cased: bool = False) -
     rim = [Stroke(linewidth=2.7, foreground="white"), Normal()] if cased else []
     for curve, style in zip(curves, _styles(curves), strict=True):
         width = 1.3 if cased else 1.5
-        drawn = ax.plot(curve.x, curve.y, color=_COLOURS[curve.type], linestyle=style, linewidth=width, zorder=2)
+        drawn = ax.plot(curve.x, curve.y, color=CURVES[curve.type], linestyle=style, linewidth=width, zorder=2)
         if rim:
             drawn[0].set_path_effects(rim)
 
@@ -130,7 +124,7 @@ def curve_entries(curves: Sequence[CurveLine]) -> list[tuple[str, Any]]:
 
     styles = {(curve.type, curve.family): style for curve, style in zip(curves, _styles(curves), strict=True)}
     return [
-        (f"{MARKS[kind][1]}, {family}", Line2D([], [], color=_COLOURS[kind], linewidth=1.5, linestyle=style))
+        (f"{MARKS[kind][1]}, {family}", Line2D([], [], color=CURVES[kind], linewidth=1.5, linestyle=style))
         for (kind, family), style in styles.items()
     ]
 

@@ -9,8 +9,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
-from vines.figures._names import NAMES, QUANTITIES, SYMBOLS
-from vines.figures._style import COLOURS, PALETTE
+from vines.figures._axes import name_axis
+from vines.figures._colours import COLOURS, PALETTE
+from vines.figures._names import QUANTITIES, SYMBOLS
+from vines.figures._style import font
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -72,8 +74,8 @@ class BandPanel:
         ax.set_xscale("log")
         ax.set_xlim(low / margin, high * margin)
         _plain_ticks(ax, low, high)
-        ax.set_xlabel(_name(self.axis))
-        ax.set_ylabel(QUANTITIES.get(self.quantity, self.quantity))
+        name_axis(ax, "x", self.axis)
+        name_axis(ax, "y", self.quantity)
         inside = [band.worst[(band.x >= low / margin) & (band.x <= high * margin)] for band in self.bands]
         shown = np.concatenate([*inside, np.zeros(1)])
         ax.set_ylim(*(self.y or (0.0, 1.08 * float(shown[np.isfinite(shown)].max(initial=1e-9)))))
@@ -110,8 +112,8 @@ class FactorPanel:
         ax.set_xlim(1.0, max(ends, default=self.factor))
         _plain_ticks(ax, 1.0, max(ends, default=self.factor))
         symbol = SYMBOLS.get(self.axis, self.axis)
-        ax.set_xlabel(rf"width of the range  ${symbol}_{{\max}}/{symbol}_{{\min}}$")
-        ax.set_ylabel(f"least worst {_short(self.quantity)}")
+        name_axis(ax, "x", "width", rf"width of the range  ${symbol}_{{\max}}/{symbol}_{{\min}}$")
+        name_axis(ax, "y", "factor", f"least worst {_short(self.quantity)}")
         if self.y is not None:
             ax.set_ylim(*self.y)
         else:
@@ -166,8 +168,8 @@ class DesignMap:
         ax.tick_params(which="both", color="white")
         ax.xaxis.set_major_locator(FixedLocator(MaxNLocator(4).tick_values(float(self.x[0]), float(self.x[-1]))))
         ax.set_xlim(*_edges(self.x))
-        ax.set_xlabel(_name(self.axes[0]))
-        ax.set_ylabel(_name(self.axes[1]))
+        name_axis(ax, "x", self.axes[0])
+        name_axis(ax, "y", self.axes[1])
         extend = {(False, False): "neither", (True, False): "min", (False, True): "max", (True, True): "both"}
         beyond = (bool(finite.min() < low - 1e-12), bool(finite.max() > high + 1e-12))
         bar = ax.figure.colorbar(mesh, ax=ax, pad=0.02, extend=extend[beyond])
@@ -192,10 +194,6 @@ def _line(number: int) -> Any:
 
     colour, style = _look(number)
     return Line2D([], [], color=colour, linestyle=style, linewidth=1.4)
-
-
-def _name(axis: str) -> str:
-    return f"{NAMES.get(axis, axis)}  ${SYMBOLS.get(axis, axis)}$"
 
 
 def _edges(x: Floats) -> tuple[float, float]:
@@ -223,4 +221,4 @@ def _plain_ticks(ax: Axes, low: float, high: float) -> None:
 
 def _frame(ax: Axes, title: str) -> None:
     if title:
-        ax.set_title(title, fontsize=8.5)
+        ax.set_title(title, fontsize=font(8.5))

@@ -9,11 +9,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
+from vines.figures._axes import name_axis
+from vines.figures._colours import BALLS, COLOURS, FAMILIES
 from vines.figures._diagram import BranchLine, ImpactDots, Marker, runs, within
 from vines.figures._legend import legend_entries
 from vines.figures._marks import DOTTED, mark_style
-from vines.figures._names import MEASURES, NAMES, PANELS, SYMBOLS
-from vines.figures._style import BALLS, COLOURS, FAMILIES
+from vines.figures._style import font
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -80,8 +81,8 @@ class DiagramPanel:
         self._dots(ax, dots)
         self._lines(ax, lines)
         self._markers(ax, markers)
-        ax.set_ylabel({**PANELS, **MEASURES}[self.quantity])
-        ax.set_xlabel(f"{NAMES.get(self.axis, self.axis)}  ${SYMBOLS.get(self.axis, self.axis)}$")
+        name_axis(ax, "y", self.quantity)
+        name_axis(ax, "x", self.axis)
         _widen(ax)
         _spare_outliers(ax, self.quantity, dots, lines)
         everything = [group.x for group in (*dots, *lines) if len(group.x)]
@@ -93,7 +94,7 @@ class DiagramPanel:
         if self.y is not None:
             ax.set_ylim(*self.y)
         if self.title:
-            ax.set_title(self.title, fontsize=8.5)
+            ax.set_title(self.title, fontsize=font(8.5))
 
     def entries(self) -> list[Entry]:
         """Return what the legend says of it."""
@@ -187,7 +188,7 @@ class DiagramPanel:
             if marker.type in self.names:
                 place = (marker.x, float(values.max()))
                 text = self.names[marker.type]
-                ax.annotate(text, place, (-4, 6), textcoords="offset points", fontsize=9, ha="right", zorder=4)
+                ax.annotate(text, place, (-4, 6), textcoords="offset points", fontsize=font(9), ha="right", zorder=4)
 
 
 def _widen(ax: Axes) -> None:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
-from vines.figures._style import COLOURS, PALETTE
+from vines.figures._colours import COLOURS, PALETTE
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

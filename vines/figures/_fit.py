@@ -7,6 +7,8 @@ import re
 from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any
 
+from vines.figures._look import worn
+
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
@@ -16,8 +18,12 @@ __all__ = ["broken", "columns_in", "fit_titles", "place_legend"]
 
 _WORDS = re.compile(r"(?:\$[^$]*\$|[^\s$])+")
 """What a line is not broken within: a formula, and what is written to it without a space."""
+_LETTER = re.compile(r"\([a-z]\)")
 _NARROWEST = 1.7
 """Inches that a panel with its numbers and labels takes at least."""
+_PLACES: Any = {"below": "outside lower center", "above": "outside upper center", "right": "outside right upper"}
+_BESIDE = 0.35
+"""Part of the width that a legend on the right may take."""
 _EDGE = 4.0
 """Points that stay free at an edge of the figure."""
 
@@ -79,23 +85,28 @@ def fit_titles(figure: Figure) -> bool:
     if engine is None:
         return False
     engine.execute(figure)  # places of the panels
-    thinned = [_thin(ax, figure) for ax in figure.axes]
     before = after = 0.0
     for title, room in _titles(figure):
         old = _height(title)
         title.set_text(broken(title.get_text(), lambda line, title=title, room=room: _width(title, line) <= room))
         if _height(title) > old:
             before, after = before + old, after + _height(title)
+    broke = [_break_label(ax) for ax in figure.axes]
     if after > before:
         width, height = figure.get_size_inches()
         figure.set_size_inches(width, height + (after - before) / figure.dpi)
-    return any(thinned) or after > before
+    if after > before or any(broke):
+        engine.execute(figure)  # panels are narrower beside a label of two lines, so that numbers stand closer
+    thinned = [_thin(ax, figure) for ax in figure.axes]
+    return any(thinned)
 
 
 def place_legend(
     figure: Figure, handles: Sequence[Any], labels: Sequence[str], *, ncols: int, handler_map: Any = None, **how: Any
 ) -> None:
-    """Write a legend below the panels, in as many columns as fit the width; what it takes the figure gets in height.
+    """Write a legend beside the panels, in as many columns as fit the width; what it takes the figure gets in height.
+
+    It stands where the look that is worn has it: below by default.
 
     Parameters
     ----------
@@ -112,15 +123,20 @@ def place_legend(
     **how
         Further options of :meth:`matplotlib.figure.Figure.legend`.
     """
+    place = worn().legend
+    if place == "none":
+        return
 
     def legend(columns: int, words: Sequence[str]) -> Any:
         for old in list(figure.legends):
             old.remove()
         return figure.legend(
-            list(handles), list(words), handler_map=handler_map, loc="outside lower center", ncols=columns, **how
+            list(handles), list(words), handler_map=handler_map, loc=_PLACES[place], ncols=columns, **how
         )
 
     room = figure.bbox.width - 2 * _EDGE * figure.dpi / 72
+    if place == "right":
+        ncols, room = 1, _BESIDE * room
     drawn = legend(ncols, labels)
     first = _extent(drawn).height
     columns = min(ncols, len(labels))
@@ -132,7 +148,7 @@ def place_legend(
         lost = wide - max(_width(each, each.get_text()) for each in drawn.get_texts())  # handles and gaps
         drawn = legend(columns, [broken(each, lambda line: _width(text, line) <= room - lost) for each in labels])
     taller = _extent(drawn).height - first
-    if taller > 0:
+    if place != "right" and taller > 0:
         width, height = figure.get_size_inches()
         figure.set_size_inches(width, height + taller / figure.dpi)
 
@@ -153,6 +169,26 @@ def _titles(figure: Figure) -> list[tuple[Text, float]]:
     return found
 
 
+def _break_label(ax: Axes) -> bool:
+    """Break the label of an axis upwards that is longer than its panel, below its letter; say whether it was."""
+    label = ax.yaxis.label
+    letters = [_height(text) for text in ax.texts if _LETTER.fullmatch(text.get_text())]
+    room = ax.bbox.height - 2 * max(letters, default=0.0)  # in the middle, so that the letter counts on both sides
+    text = label.get_text()
+    if text and _height(label) > room > 0:
+        label.set_text(broken(text, lambda line: _long(label, line) <= room))
+    return label.get_text() != text
+
+
+def _long(label: Text, line: str) -> float:
+    """Return how long a line is in the font of a label upwards, px."""
+    kept = label.get_text()
+    label.set_text(line)
+    length = _height(label)
+    label.set_text(kept)
+    return length
+
+
 def _thin(ax: Axes, figure: Figure) -> bool:
     """Take numbers from a linear axis along x until none touches the next; say whether any was taken."""
     locator: Any = ax.xaxis.get_major_locator()
@@ -165,7 +201,7 @@ def _thin(ax: Axes, figure: Figure) -> bool:
         boxes = [_extent(each) for each in shown]
         if all(one.x1 + gap <= other.x0 for one, other in itertools.pairwise(boxes)):
             return most < 7
-        locator.set_params(nbins=most)
+        locator.set_params(nbins=most, min_n_ticks=2 if most > 2 else 1)  # else a finer step for a second one
     return True
 
 
@@ -174,7 +210,8 @@ def _room(ax: Axes, figure: Figure) -> float:
     box = ax.bbox
     others = [other.bbox for other in figure.axes if other.get_label() != "<colorbar>"]
     beside = [each.x0 for each in others if each.x0 >= box.x1 and each.y0 < box.y1 and each.y1 > box.y0]
-    return min([figure.bbox.width, *beside]) - box.x0
+    legends = [_extent(each).x0 for each in figure.legends if worn().legend == "right"]
+    return min([figure.bbox.width, *beside, *legends]) - box.x0
 
 
 def _extent(artist: Any) -> Any:

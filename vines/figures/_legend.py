@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from vines.figures._colours import BALLS, COLOURS, FAMILIES
 from vines.figures._fit import place_legend
 from vines.figures._marks import DOTTED, MARKS, mark_style
-from vines.figures._style import BALLS, COLOURS, FAMILIES
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

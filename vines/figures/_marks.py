@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from vines.figures._style import COLOURS
+from vines.figures._colours import COLOURS
 
 __all__ = ["DOTTED", "MARKS", "mark_style"]
 

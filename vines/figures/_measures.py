@@ -10,8 +10,11 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 import numpy.typing as npt
 
-from vines.figures._names import NAMES, QUANTITIES, SYMBOLS
-from vines.figures._style import COLOURS, PALETTE
+from vines.figures._axes import name_axis
+from vines.figures._colours import COLOURS, PALETTE
+from vines.figures._diagram import runs
+from vines.figures._marks import DOTTED
+from vines.figures._style import font
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -30,6 +33,7 @@ _MARKS: dict[str, dict[str, Any]] = {
     "up": {"marker": "^", "markersize": 3.0, "markeredgewidth": 0.0, "zorder": 2},
     "down": {"marker": "v", "markersize": 3.8, "markeredgewidth": 0.6, "markerfacecolor": "none", "zorder": 3},
 }
+_PALE: dict[str, Any] = {"alpha": 0.35, "zorder": 1.5}
 _SWEEPS = {"up": "swept up", "down": "swept down"}
 
 
@@ -49,6 +53,8 @@ class MeasureCurve:
         Number of the curve, from 0; curves with one label share it.
     way : {"", "up", "down"}
         The way in which states were carried along the parameter; a line where they were not.
+    stable : (n,) array of bool, optional
+        Of a branch, which may turn back: solid where true, dotted where not.
     """
 
     x: Floats
@@ -56,6 +62,7 @@ class MeasureCurve:
     label: str
     colour: int
     way: Literal["", "up", "down"] = ""
+    stable: npt.NDArray[np.bool_] | None = None
 
 
 @dataclass(frozen=True)
@@ -83,14 +90,24 @@ class MeasurePanel:
             ax.axvline(place, color=COLOURS["mark"], linewidth=0.7, linestyle=(0, (1, 1.6)), zorder=0)
         if self.band:
             self._shade(ax)
+        branches = any(curve.stable is not None for curve in self.curves)
         for curve in self.curves:
-            ax.plot(curve.x, curve.y, **_look(curve))
+            if curve.stable is None:
+                # Below branches, and paler: they would hide them.
+                ax.plot(curve.x, curve.y, **_look(curve) | (_PALE if branches else {}))
+                continue
+            for start, stop, stable in runs(curve.stable):
+                # One point is shared with the next run, so that the line has no gap where stability changes.
+                part = slice(start, min(stop + 1, len(curve.x)))
+                ax.plot(
+                    curve.x[part], curve.y[part], color=_colour(curve), linestyle="-" if stable else DOTTED, zorder=3
+                )
         for scale, wanted in zip((ax.set_xscale, ax.set_yscale), self.log, strict=True):
             if wanted:
                 scale("log")
-        ax.set_xlabel(f"{NAMES.get(self.axis, self.axis)}  ${SYMBOLS.get(self.axis, self.axis)}$")
-        ax.set_ylabel(QUANTITIES.get(self.quantity, self.quantity))
-        ends = [float(end) for curve in self.curves if len(curve.x) for end in (curve.x[0], curve.x[-1])]
+        name_axis(ax, "x", self.axis)
+        name_axis(ax, "y", self.quantity)
+        ends = [float(end) for curve in self.curves if len(curve.x) for end in (curve.x.min(), curve.x.max())]
         if self.window is not None:
             ax.set_xlim(*self.window)
         elif ends and min(ends) < max(ends):
@@ -104,7 +121,7 @@ class MeasurePanel:
         elif not self.log[1]:
             ax.set_ylim(bottom=min(0.0, ax.get_ylim()[0]))
         if self.title:
-            ax.set_title(self.title, fontsize=8.5)
+            ax.set_title(self.title, fontsize=font(8.5))
         if self.legend and (labels := self._labels()):
             ax.legend([line for _, (line,) in labels], [label for label, _ in labels], loc="best", handlelength=2.4)
 
@@ -113,17 +130,29 @@ class MeasurePanel:
         from matplotlib.lines import Line2D
 
         ways = [way for way in _SWEEPS if any(curve.way == way for curve in self.curves)]
-        said = [
+        said: list[Entry] = [
             (_SWEEPS[way], (Line2D([], [], linestyle="none", color=COLOURS["ink"], **_bigger(way)),)) for way in ways
         ]
+        flags = [curve.stable for curve in self.curves if curve.stable is not None]
+        styles: tuple[tuple[str, Any, bool], ...] = (
+            ("stable", "-", any(flag.any() for flag in flags)),
+            ("unstable", DOTTED, any((~flag).any() for flag in flags)),
+        )
+        for word, style, there in styles:
+            if there:
+                said.append((word, (Line2D([], [], color=COLOURS["ink"], linewidth=1.4, linestyle=style),)))
         return [*(() if self.legend is not None else self._labels()), *said]
 
     def _labels(self) -> list[Entry]:
         from matplotlib.lines import Line2D
 
         found: dict[str, Entry] = {}
+        branches = any(curve.stable is not None for curve in self.curves)
         for curve in self.curves:
-            line = _look(curve) if not curve.way else {"color": _colour(curve), "linewidth": 3.0}
+            plain: dict[str, Any] = {"color": _colour(curve), "linewidth": 3.0 if curve.way else 1.4}
+            if curve.stable is None and branches:
+                plain |= _PALE
+            line = plain if curve.way or curve.stable is not None else _look(curve)
             found.setdefault(curve.label, (curve.label, (Line2D([], [], **line),)))
         return [entry for label, entry in found.items() if label]
 

@@ -9,11 +9,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
+from vines.figures._axes import SHOWN, name_axis
+from vines.figures._colours import COLOURS, FAMILIES
 from vines.figures._fit import columns_in
 from vines.figures._legend import add_legend, mark_entries
 from vines.figures._marks import mark_style
-from vines.figures._names import NAMES, SYMBOLS
-from vines.figures._style import COLOURS, FAMILIES, look, new_figure
+from vines.figures._style import font, look, new_figure
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -82,7 +83,8 @@ class MultiplierPanel:
             ax.axvline(place, color=COLOURS["mark"], linewidth=0.6, linestyle=":")
             ax.plot([place], [1.0], linestyle="none", zorder=3, **mark_style(kind))
             if kind in self.names:
-                ax.annotate(self.names[kind], (place, 1.0), (-4, 6), textcoords="offset points", fontsize=9, ha="right")
+                at = {"xytext": (-4, 6), "textcoords": "offset points", "ha": "right"}
+                ax.annotate(self.names[kind], (place, 1.0), fontsize=font(9), **at)
         x = branch.x[inside]
         if len(x):
             pad = 0.02 * float(np.ptp(x))
@@ -91,10 +93,10 @@ class MultiplierPanel:
         if self.y is not None:
             ax.set_ylim(*self.y)
         ax.locator_params(axis="x", nbins=5)
-        ax.set_xlabel(f"{NAMES.get(self.axis, self.axis)}  ${SYMBOLS.get(self.axis, self.axis)}$")
-        ax.set_ylabel(r"moduli of the multipliers  $|\lambda_i|$")
+        name_axis(ax, "x", self.axis)
+        name_axis(ax, "y", "multipliers", SHOWN["multipliers"])
         if self.title:
-            ax.set_title(self.title, fontsize=8.5)
+            ax.set_title(self.title, fontsize=font(8.5))
 
     def entries(self) -> list[Entry]:
         """Return what the legend says of it."""
@@ -145,12 +147,12 @@ def multiplier_figure(
             panel = MultiplierPanel(axis, branch, window)
             panel.draw(ax)
             said |= dict(panel.entries())
-            ax.set_title(f"({letter})  {branch.label}", fontsize=9, loc="left")
+            ax.set_title(f"({letter})  {branch.label}", fontsize=font(9), loc="left")
         for ax in grid[:, 1:].flat:
             ax.set_ylabel("")
         for ax in axes[len(branches) :]:
             ax.set_axis_off()
         if caption:
-            figure.suptitle(caption, fontsize=8.5)
+            figure.suptitle(caption, fontsize=font(8.5))
         add_legend(figure, list(said.items()))
     return figure

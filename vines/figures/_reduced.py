@@ -10,9 +10,11 @@ import numpy as np
 import numpy.typing as npt
 
 from vines.errors import DeclarationError, nearest
+from vines.figures._axes import name_axis
+from vines.figures._colours import COLOURS
 from vines.figures._fit import columns_in, place_legend
-from vines.figures._names import ERRORS, NAMES, SYMBOLS
-from vines.figures._style import COLOURS, look, new_figure
+from vines.figures._names import ERRORS
+from vines.figures._style import font, look, new_figure
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -102,10 +104,10 @@ def reduced_figure(
                 _draw(ax, chart, panel, LogNorm(_LEVELS[0], _LEVELS[-1])) for ax, chart in zip(row, maps, strict=True)
             ]
             for ax, chart in zip(row, maps, strict=True):
-                ax.set_title(f"({next(letters)})  {chart.caption}", fontsize=8, loc="left")
+                ax.set_title(f"({next(letters)})  {chart.caption}", fontsize=font(8), loc="left")
             figure.colorbar(drawn[0], ax=list(row), label=ERRORS[panel], pad=0.015, ticks=_LEVELS[::3])
         if title:
-            figure.suptitle(title, fontsize=9.5)
+            figure.suptitle(title, fontsize=font(9.5))
         _legend(figure)
     return figure
 
@@ -128,7 +130,7 @@ def _draw(ax: Axes, chart: ErrorMap, panel: str, norm: object) -> QuadContourSet
     one_percent = ax.contour(
         chart.x, chart.y, signed, levels=[-0.01, 0.01], colors="white", linewidths=1.0, linestyles="solid"
     )
-    ax.clabel(one_percent, fmt={-0.01: "−1 %", 0.01: "+1 %"}, fontsize=7)
+    ax.clabel(one_percent, fmt={-0.01: "−1 %", 0.01: "+1 %"}, fontsize=font(7))
     doubtful = np.where(np.isfinite(error) & ~chart.valid, 1.0, 0.0)
     if doubtful.any():
         ax.contourf(chart.x, chart.y, doubtful, levels=[0.5, 1.5], colors="none", hatches=["/////"])
@@ -136,13 +138,12 @@ def _draw(ax: Axes, chart: ErrorMap, panel: str, norm: object) -> QuadContourSet
         ax.contour(
             chart.x, chart.y, chart.inside, levels=[0.0], colors=COLOURS["L"], linewidths=1.2, linestyles="dashed"
         )
-    for name, values, scale, label in (
-        (chart.axes[0], chart.x, ax.set_xscale, ax.set_xlabel),
-        (chart.axes[1], chart.y, ax.set_yscale, ax.set_ylabel),
-    ):
-        if _logarithmic(values):
-            scale("log")
-        label(f"{NAMES.get(name, name)}  ${SYMBOLS.get(name, name)}$")
+    if _logarithmic(chart.x):
+        ax.set_xscale("log")
+    if _logarithmic(chart.y):
+        ax.set_yscale("log")
+    name_axis(ax, "x", chart.axes[0])
+    name_axis(ax, "y", chart.axes[1])
     return filled
 
 

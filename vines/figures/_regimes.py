@@ -8,29 +8,17 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
+from vines.figures._axes import name_axis
 from vines.figures._chart import CurveLine, curve_entries, draw_curves
+from vines.figures._colours import REGIME_CLASSES
 from vines.figures._fit import columns_in, place_legend
-from vines.figures._names import NAMES, SYMBOLS
-from vines.figures._style import look, new_figure
+from vines.figures._style import font, look, new_figure
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-__all__ = ["REGIME_CLASSES", "RegimeMap", "regimes_figure"]
-
-REGIME_CLASSES = {
-    "1:1, symmetric": "#33658a",
-    "1:1, asymmetric": "#86bbd8",
-    "n:n, n > 1": "#117733",
-    "n:m, n ≠ m": "#ddcc77",
-    "p > 1 periods": "#aa4499",
-    "quasi-periodic": "#e07a1f",
-    "chaotic": "#c9c9c9",
-    "no impact": "#ffffff",
-    "unsettled": "#000000",
-}
-"""What a point can be, and its colour: told apart by all kinds of colour vision (after Tol's muted scheme)."""
+__all__ = ["RegimeMap", "regimes_figure"]
 
 SHADE = 0.62
 """Factor on the colour where the ball sticks again and again."""
@@ -135,11 +123,11 @@ def regimes_figure(data: RegimeMap, *, title: str = "", width: float = 7.0) -> F
         right.set_facecolor("#ffffff")
         figure.colorbar(drawn, ax=right, label=beside, extend="neither" if linear else "min", pad=0.015)
         for ax, letter, what in ((left, "a", "what is reached"), (right, "b", above)):
-            ax.set_title(f"({letter})  {what}", fontsize=8.5, loc="left")
+            ax.set_title(f"({letter})  {what}", fontsize=font(8.5), loc="left")
             draw_curves(ax, data.curves, cased=True)
             _scale(ax, data)
-        for ax in (left,) if beside_each_other else (left, right):
-            ax.set_ylabel(_label(data.axes[1]))
+        for ax in (left, right):
+            name_axis(ax, "y", data.axes[1], written=ax is left or not beside_each_other)
         _write_names(left, data)
         used = np.unique(data.regime)
         handles: list[Any] = [
@@ -157,12 +145,8 @@ def regimes_figure(data: RegimeMap, *, title: str = "", width: float = 7.0) -> F
             handles.append(line)
         labels = [str(each.get_label()) for each in handles]
         place_legend(figure, handles, labels, ncols=4 if data.curves else 5)
-        figure.suptitle(", ".join(part for part in (title, data.caption) if part), fontsize=9)
+        figure.suptitle(", ".join(part for part in (title, data.caption) if part), fontsize=font(9))
     return figure
-
-
-def _label(name: str) -> str:
-    return f"{NAMES.get(name, name)}  ${SYMBOLS.get(name, name)}$"
 
 
 def _scale(ax: Axes, data: RegimeMap) -> None:
@@ -171,7 +155,7 @@ def _scale(ax: Axes, data: RegimeMap) -> None:
             scale("log")
     ax.set_xlim(data.x[0], data.x[-1])
     ax.set_ylim(data.y[0], data.y[-1])
-    ax.set_xlabel(_label(data.axes[0]))
+    name_axis(ax, "x", data.axes[0])
 
 
 def _write_names(ax: Axes, data: RegimeMap) -> None:
@@ -199,7 +183,7 @@ def _write_names(ax: Axes, data: RegimeMap) -> None:
             name,
             ha="center",
             va="center",
-            fontsize=7,
+            fontsize=font(7),
             color="#000000",
             path_effects=[withStroke(linewidth=1.6, foreground="#ffffff")],
         )

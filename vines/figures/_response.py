@@ -11,11 +11,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
+from vines.figures._axes import SHOWN, name_axis
+from vines.figures._colours import BALLS, COLOURS
 from vines.figures._energy import LOCKED, NO_BALL, EnergyPanel, cross, diamond, draw_energy, draw_reduction, frame
 from vines.figures._fit import columns_in
 from vines.figures._legend import add_legend, ball_entries
-from vines.figures._names import NAMES, SYMBOLS
-from vines.figures._style import BALLS, COLOURS, look, new_figure
+from vines.figures._style import font, look, new_figure
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -88,10 +89,11 @@ def response_figure(
         for i, row in enumerate(rows):
             for j, panel in enumerate(row):
                 axes = _axes(figure, grid[i, j], isinstance(panel, EnergyPanel))
-                axes[0].set_title(f"({next(letters)})  {panel.caption}".rstrip(), fontsize=8.5, loc="left", pad=4)
+                title = f"({next(letters)})  {panel.caption}".rstrip()
+                axes[0].set_title(title, fontsize=font(8.5), loc="left", pad=4)
                 _draw(axes, panel, first=j == 0)
         if caption:
-            figure.suptitle(caption, fontsize=8.5, x=0.01, ha="left")
+            figure.suptitle(caption, fontsize=font(8.5), x=0.01, ha="left")
         add_legend(figure, _legend(panels), ncols=3)
     return figure
 
@@ -110,14 +112,14 @@ def _draw(axes: Sequence[Axes], panel: EnergyPanel | VelocityPanel, *, first: bo
     if isinstance(panel, EnergyPanel):
         draw_energy(axes[0], panel)
         draw_reduction(axes[1], panel)
-        labels = [r"$K_2/K_1$,  $\max|x_1|$" if panel.ratio else r"$\max|x_1|$", "reduction"]
+        sizes = ("energy", SHOWN["energy"]) if panel.ratio else ("max_abs_x1", r"$\max|x_1|$")
+        named = [sizes, ("reduction", "reduction")]
     else:
         _draw_velocities(axes[0], panel)
-        labels = [r"$\dot w$"]
-    if first:
-        for ax, label in zip(axes, labels, strict=True):
-            ax.set_ylabel(label)
-    axes[-1].set_xlabel(f"{NAMES.get(panel.axis, panel.axis)}  ${SYMBOLS.get(panel.axis, panel.axis)}$")
+        named = [("w_dot", r"$\dot w$")]
+    for ax, (name, text) in zip(axes, named, strict=True):
+        name_axis(ax, "y", name, text, written=first)
+        name_axis(ax, "x", panel.axis, written=ax is axes[-1])
 
 
 def _draw_velocities(ax: Axes, panel: VelocityPanel) -> None:

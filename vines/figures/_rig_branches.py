@@ -9,11 +9,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
+from vines.figures._colours import COLOURS
 from vines.figures._diagram import BranchLine, Marker
 from vines.figures._diagram_panel import DiagramPanel
 from vines.figures._legend import Entry, add_legend
 from vines.figures._names import MEASURES
-from vines.figures._style import COLOURS, LETTER, look, new_figure
+from vines.figures._style import font, look, new_figure, write_letter
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -100,14 +101,12 @@ def rig_branches_figure(
             panel.draw(ax)
             _draw(ax, own)
             if len(points) > 1:
-                ax.annotate(
-                    f"({letter})", (0.0, 1.0), LETTER, "axes fraction", "offset points", va="top", weight="bold"
-                )
+                write_letter(ax, letter)
             entries |= {label: entries.get(label, drawn) for label, drawn in (*_entries(own), *panel.entries())}
         for ax in axes[:-1]:
             ax.set_xlabel("")
         figure.align_ylabels(axes)
-        axes[0].set_title("; ".join(filter(None, (caption, _BARS))), fontsize=8.5, loc="left", pad=6)
+        axes[0].set_title("; ".join(filter(None, (caption, _BARS))), fontsize=font(8.5), loc="left", pad=6)
         add_legend(figure, list(entries.items()))
     return figure
 
@@ -131,7 +130,8 @@ def rig_mark(protocol: str, colour: str, *, good: bool, size: float = 5.0) -> di
 
 
 def _draw(ax: Axes, own: RigPoints) -> None:
-    for side, colour in _SIDES.items():
+    for side, name in _SIDES.items():
+        colour = COLOURS[name]
         for protocol in DIRECTIONS:
             for good in (True, False):
                 at = (own.side == side) & (own.protocol == protocol) & (own.good == good)
@@ -158,20 +158,23 @@ def _draw(ax: Axes, own: RigPoints) -> None:
         elinewidth=2.2,
         alpha=0.75,
         zorder=3.5,
-        **_MODEL,
+        **_model(),
     )
 
 
 _BARS = "bars: two standard uncertainties"
-_SIDES = {1: COLOURS["L"], -1: COLOURS["R"], 0: COLOURS["ink"]}
-_MODEL: Any = {
-    "linestyle": "none",
-    "marker": "s",
-    "markersize": 8.5,
-    "markerfacecolor": "none",
-    "markeredgecolor": COLOURS["mark"],
-    "markeredgewidth": 0.9,
-}
+_SIDES = {1: "L", -1: "R", 0: "ink"}
+
+
+def _model() -> dict[str, Any]:
+    return {
+        "linestyle": "none",
+        "marker": "s",
+        "markersize": 8.5,
+        "markerfacecolor": "none",
+        "markeredgecolor": COLOURS["mark"],
+        "markeredgewidth": 0.9,
+    }
 
 
 def _entries(own: RigPoints) -> list[Entry]:
@@ -186,7 +189,7 @@ def _entries(own: RigPoints) -> list[Entry]:
         mark = Line2D([], [], **rig_mark(str(own.protocol[~own.good][0]), COLOURS["ink"], good=False))
         found.append(("empty: gates failed, or no pattern holds", (mark,)))
     if np.isfinite(own.model).any():
-        found.append(("model at the measured parameters", (Line2D([], [], **_MODEL),)))
+        found.append(("model at the measured parameters", (Line2D([], [], **_model()),)))
     return found
 
 

@@ -10,9 +10,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
+from vines.figures._axes import SHOWN, name_axis
+from vines.figures._colours import COLOURS, PALETTE
 from vines.figures._fit import columns_in
 from vines.figures._legend import add_legend
-from vines.figures._style import COLOURS, PALETTE, look, new_figure
+from vines.figures._style import font, look, new_figure
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -67,7 +69,7 @@ def rig_cycles_figure(cycles: Sequence[RigCycle], *, caption: str = "", width: f
     width : float
         Width of the figure [inch].
     """
-    return _grid(cycles, _phase_plane, r"gap  $w$", r"relative velocity  $\dot w$", caption, width)
+    return _grid(cycles, _phase_plane, ("w", SHOWN["w"]), ("w_dot", SHOWN["w_dot"]), caption, width)
 
 
 def rig_waits_figure(cycles: Sequence[RigCycle], *, caption: str = "", width: float = 7.0) -> Figure:
@@ -82,14 +84,15 @@ def rig_waits_figure(cycles: Sequence[RigCycle], *, caption: str = "", width: fl
     width : float
         Width of the figure [inch].
     """
-    return _grid(cycles, _histogram, r"time to next impact  $\Delta t/T$", "share of impacts", caption, width)
+    wait = ("dt", r"time to next impact  $\Delta t/T$")
+    return _grid(cycles, _histogram, wait, ("share", SHOWN["share"]), caption, width)
 
 
 def _grid(
     cycles: Sequence[RigCycle],
     draw: Callable[[Axes, RigCycle], None],
-    x_label: str,
-    y_label: str,
+    x: tuple[str, str],
+    y: tuple[str, str],
     caption: str,
     width: float,
 ) -> Figure:
@@ -107,30 +110,32 @@ def _grid(
                 ax.set_axis_off()
                 continue
             draw(ax, cycles[k])
-            ax.set_title(_told(cycles[k], draw), fontsize=7.5, loc="left", pad=3)
-            if k % columns == 0:
-                ax.set_ylabel(y_label)
-            if k + columns >= len(cycles):
-                ax.set_xlabel(x_label)
+            ax.set_title(_told(cycles[k], draw), fontsize=font(7.5), loc="left", pad=3)
+            name_axis(ax, "y", *y, written=k % columns == 0)
+            name_axis(ax, "x", *x, written=k + columns >= len(cycles))
         figure.align_ylabels(axes[:, 0])
         if caption:
-            figure.suptitle(caption, fontsize=8.5, x=0.01, ha="left")
+            figure.suptitle(caption, fontsize=font(8.5), x=0.01, ha="left")
         measured: Any = (
-            Patch(color=PALETTE["orange"], alpha=0.45) if draw is _histogram else Line2D([], [], **_MEASURED)
+            Patch(color=PALETTE["orange"], alpha=0.45) if draw is _histogram else Line2D([], [], **_measured())
         )
-        add_legend(figure, [("measured", (measured,)), ("model", (Line2D([], [], **_MODEL),))])
+        add_legend(figure, [("measured", (measured,)), ("model", (Line2D([], [], **_model()),))])
     return figure
 
 
-_MEASURED: Any = {"color": PALETTE["orange"], "linewidth": 2.6, "alpha": 0.75}
-_MODEL: Any = {"color": COLOURS["ink"], "linewidth": 0.9}
+def _measured() -> dict[str, Any]:
+    return {"color": PALETTE["orange"], "linewidth": 2.6, "alpha": 0.75}
+
+
+def _model() -> dict[str, Any]:
+    return {"color": COLOURS["ink"], "linewidth": 0.9}
 
 
 def _phase_plane(ax: Axes, cycle: RigCycle) -> None:
     for wall in (-1.0, 1.0):
         ax.axvline(wall, color=COLOURS["mark"], linewidth=0.6, zorder=0)
-    ax.plot(_closed(cycle.w), _closed(cycle.w_dot), zorder=2, **_MEASURED)
-    ax.plot(_closed(cycle.model_w), _closed(cycle.model_w_dot), zorder=3, **_MODEL)
+    ax.plot(_closed(cycle.w), _closed(cycle.w_dot), zorder=2, **_measured())
+    ax.plot(_closed(cycle.model_w), _closed(cycle.model_w_dot), zorder=3, **_model())
     ax.set_xlim(-1.12, 1.12)
 
 
@@ -147,6 +152,6 @@ def _closed(values: Floats) -> Floats:
 
 def _histogram(ax: Axes, cycle: RigCycle) -> None:
     ax.stairs(cycle.share, cycle.edges, fill=True, color=PALETTE["orange"], alpha=0.45, linewidth=0, zorder=2)
-    ax.stairs(cycle.model_share, cycle.edges, zorder=3, **_MODEL)
+    ax.stairs(cycle.model_share, cycle.edges, zorder=3, **_model())
     ax.set_xlim(float(cycle.edges[0]), float(cycle.edges[-1]))
     ax.set_ylim(0, None)

@@ -8,9 +8,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
+from vines.figures._axes import SHOWN, name_axis
+from vines.figures._colours import COLOURS
 from vines.figures._legend import Entry, add_legend
 from vines.figures._rig_branches import DIRECTIONS, rig_mark
-from vines.figures._style import COLOURS, look, new_figure
+from vines.figures._style import font, look, new_figure
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -56,15 +58,15 @@ def rig_residual_figure(
     with mpl.rc_context(look()):
         figure = new_figure(width, 3.4)
         ax = figure.subplots()
-        ax.plot(temperature, 1e6 * noise, zorder=2, **_NOISE)
+        ax.plot(temperature, 1e6 * noise, zorder=2, **_noise())
         for name in DIRECTIONS:
             for good in (True, False):
                 at = (kinds == name) & (accepted == good)
                 ax.plot(temperature[at], 1e6 * residual[at], zorder=3, **rig_mark(name, ink, good=good))
-        ax.set_xlabel("temperature  [°C]")
-        ax.set_ylabel(r"residual of the fit  [$\mu$m]")
+        name_axis(ax, "x", "temperature", SHOWN["temperature"])
+        name_axis(ax, "y", "residual", SHOWN["residual"])
         ax.set_ylim(0, 1.25 * 1e6 * float(max(residual.max(initial=0.0), noise.max(initial=0.0), 1e-9)))
-        ax.set_title(caption, fontsize=8.5, loc="left", pad=6)
+        ax.set_title(caption, fontsize=font(8.5), loc="left", pad=6)
         entries: list[Entry] = [
             (word, (Line2D([], [], **rig_mark(name, ink, good=True)),))
             for name, word in (
@@ -76,9 +78,10 @@ def rig_residual_figure(
         ]
         if not accepted.all():
             entries.append(("empty: gates failed", (Line2D([], [], **rig_mark("dwell", ink, good=False)),)))
-        entries.append(("noise of the channel", (Line2D([], [], **_NOISE),)))
+        entries.append(("noise of the channel", (Line2D([], [], **_noise()),)))
         add_legend(figure, entries)
     return figure
 
 
-_NOISE: Any = {"linestyle": "none", "marker": "_", "markersize": 9, "markeredgecolor": COLOURS["mark"]}
+def _noise() -> dict[str, Any]:
+    return {"linestyle": "none", "marker": "_", "markersize": 9, "markeredgecolor": COLOURS["mark"]}

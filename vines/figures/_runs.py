@@ -9,8 +9,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
+from vines.figures._axes import SHOWN, name_axis
+from vines.figures._colours import BALLS, COLOURS, FAMILIES
 from vines.figures._marks import DOTTED
-from vines.figures._style import BALLS, COLOURS, FAMILIES
+from vines.figures._style import font
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -21,8 +23,11 @@ __all__ = ["EndsPanel", "GapPanel", "PhasePlanePanel", "RunCurves"]
 
 Floats = npt.NDArray[np.float64]
 
-_LINES = (COLOURS["R"], FAMILIES["asymmetric"][0], FAMILIES["unequal"][1], FAMILIES["unequal"][0])
-"""Colours of runs that share a phase plane; the first two are those of the paper's Fig. 4(b) and (e)."""
+
+def _lines() -> tuple[str, ...]:
+    """Return the colours of runs that share a phase plane; the first two are those of the paper's Fig. 4(b) and (e)."""
+    return COLOURS["R"], FAMILIES["asymmetric"][0], FAMILIES["unequal"][1], FAMILIES["unequal"][0]
+
 
 _MANY = 40
 """Impacts beyond which they are not marked one by one."""
@@ -92,7 +97,7 @@ class EndsPanel:
                 ax.plot(run.t, run.x1 + shift, color=ends, linestyle=DOTTED, linewidth=1.2)
             ax.plot(run.t, run.x2, color=ball, linewidth=1.1)
             ax.plot(run.hit_t, run.hit_x2, **_HIT)
-        _along_time(ax, self.periods, r"$x_1 \pm \beta_i,\ x_{2,i}$" if self.run.ball else r"$x_1 \pm 1,\ x_2$")
+        _along_time(ax, self.periods, "ends", r"$x_1 \pm \beta_i,\ x_{2,i}$" if self.run.ball else None)
         _frame(ax, self.title, self.y)
 
     def entries(self) -> list[Entry]:
@@ -128,7 +133,7 @@ class GapPanel:
                 ax.axhline(wall, color=gap if run.ball else COLOURS["mark"], linewidth=0.5, alpha=0.6)
             ax.plot(run.t, run.w, color=gap, linewidth=1.1)
             ax.plot(run.t, run.w_dot, color=speed, linewidth=1.1, linestyle=_DASHED if run.ball else "-")
-        _along_time(ax, self.periods, r"$w,\ \dot w$")
+        _along_time(ax, self.periods, "gap")
         _frame(ax, self.title, self.y)
 
     def entries(self) -> list[Entry]:
@@ -182,8 +187,8 @@ class PhasePlanePanel:
                 edgecolor="none",
             )
         ax.set_xlim(-1.15 * lengths[-1], 1.15 * lengths[-1])
-        ax.set_xlabel("gap  $w$")
-        ax.set_ylabel(r"relative velocity  $\dot w$")
+        name_axis(ax, "x", "w", SHOWN["w"])
+        name_axis(ax, "y", "w_dot", SHOWN["w_dot"])
         _frame(ax, self.title, self.y)
 
     def entries(self) -> list[Entry]:
@@ -200,7 +205,7 @@ class PhasePlanePanel:
     def _colours(self) -> Sequence[str]:
         if all(run.ball for run in self.runs) and len({run.ball for run in self.runs}) == len(self.runs):
             return [run.colour for run in self.runs]
-        return [COLOURS["ink"]] if len(self.runs) == 1 else [_LINES[k % len(_LINES)] for k in range(len(self.runs))]
+        return [COLOURS["ink"]] if len(self.runs) == 1 else [_lines()[k % 4] for k in range(len(self.runs))]
 
 
 _DASHED: Any = (0, (4, 1.5))
@@ -223,14 +228,14 @@ _HIT: dict[str, Any] = {
 }
 
 
-def _along_time(ax: Axes, periods: float, label: str) -> None:
+def _along_time(ax: Axes, periods: float, name: str, text: str | None = None) -> None:
     ax.set_xlim(0, periods)
-    ax.set_xlabel("time  $t/T$")
-    ax.set_ylabel(label)
+    name_axis(ax, "x", "t", SHOWN["t"])
+    name_axis(ax, "y", name, SHOWN[name] if text is None else text)
 
 
 def _frame(ax: Axes, title: str, y: tuple[float, float] | None) -> None:
     if title:
-        ax.set_title(title, fontsize=8.5)
+        ax.set_title(title, fontsize=font(8.5))
     if y is not None:
         ax.set_ylim(*y)

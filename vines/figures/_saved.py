@@ -1,18 +1,58 @@
-"""A figure as the file that somebody asked for."""
+"""Figures as files: those of a result, and the one that somebody asked for."""
 
 from __future__ import annotations
 
 import os
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from vines.errors import DeclarationError, FileMissingError
+from vines.figures._finish import finish
 from vines.figures._style import FORMATS, look
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-__all__ = ["save_as"]
+__all__ = ["save", "save_as"]
+
+
+def save(
+    figure: Figure,
+    folder: Path,
+    name: str = "picture",
+    *,
+    formats: Sequence[str] = ("png", "svg", "pdf"),
+    dpi: int = 200,
+) -> list[Path]:
+    """Finish a figure and write it into a folder in some formats, without dates, and return the paths.
+
+    Panels are laid out once, so all files show the same, and each file is drawn once. In a PDF text is text. Drawing is
+    slow: a sheet of 12 panels has hundreds of ticks and texts, which matplotlib measures at every draw.
+
+    Parameters
+    ----------
+    figure : matplotlib Figure
+        As a plot drew it.
+    folder : Path
+        Where to.
+    name : str
+        What the files are called.
+    formats : sequence of str
+        Of png, svg, pdf.
+    dpi : int
+        Pixels per inch of a PNG, and of dense dots in the others.
+    """
+    import matplotlib as mpl
+
+    files = [folder / f"{name}.{ending}" for ending in formats]
+    with mpl.rc_context(look()):
+        finish(figure)
+        if figure.get_layout_engine() is not None:
+            figure.set_layout_engine(None)  # "none" would keep a placeholder, for which each file is drawn twice
+        for file in files:
+            figure.savefig(file, dpi=dpi, metadata=FORMATS[file.suffix])
+    return files
 
 
 def save_as(figure: Figure, path: Path, *, dpi: int = 300) -> Path:

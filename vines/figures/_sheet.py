@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Literal, Protocol
 
 from vines.figures._fit import columns_in
 from vines.figures._legend import add_legend
-from vines.figures._style import look, new_figure
+from vines.figures._style import font, look, new_figure
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -72,12 +72,12 @@ def sheet_figure(
         lettered = axes[: len(panels) : 1 if letters == "panels" else in_a_row]
         lettered = lettered if len(lettered) > 1 else ()
         for letter, ax in zip(ascii_lowercase, lettered, strict=False):
-            ax.set_title(f"({letter})", fontsize=9, fontweight="bold", loc="left")
+            ax.set_title(f"({letter})", fontsize=font(9), fontweight="bold", loc="left")
         for ax in axes[len(panels) :]:
             ax.set_axis_off()
         _share_labels(grid, len(panels))
         if caption:
-            figure.suptitle(caption, fontsize=9)
+            figure.suptitle(caption, fontsize=font(9))
         said = {label: drawn for panel in panels for label, drawn in panel.entries()}
         add_legend(figure, list(said.items()), ncols=max(2, int(width / 2.3)))
     return figure

@@ -2,63 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
-from contextvars import ContextVar
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from vines.figures._fit import fit_titles
+from vines.figures._look import worn
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-__all__ = [
-    "BALLS",
-    "COLOURS",
-    "FAMILIES",
-    "FORMATS",
-    "LETTER",
-    "PALETTE",
-    "RC",
-    "look",
-    "new_figure",
-    "save",
-    "wearing",
-]
-
-COLOURS = {
-    "L": "#c8102e",
-    "R": "#0b4ea2",
-    "L light": "#ef8a97",
-    "R light": "#85b0e6",
-    "ink": "#222222",
-    "mark": "#555555",
-}
-"""As in the paper: impacts on the left end red, on the right end blue; light for simulated dots, full for branches."""
-
-FAMILIES = {
-    "symmetric": ("#c8102e", "#0b4ea2"),
-    "asymmetric": ("#d0118f", "#0aa0bd"),
-    "doubled": ("#7a2bbf", "#0b7d6b"),
-    "doubled again": ("#a98bd0", "#6cb8aa"),
-    "unequal": ("#e87800", "#2c962c"),
-}
-"""Colours of branches on L and R: symmetric, asymmetric and unequal (2:1) ones as in the paper's Figs 4 and 5."""
-
-BALLS = ("#e87800", "#2c962c", "#7a2bbf", "#0aa0bd", "#d0118f", "#8a6d3b", "#555555", "#a39a00")
-"""Colours of balls with numbers, unlike those of the ends; the end of an impact is then its shape."""
-
-PALETTE = {
-    "red": "#c8102e",
-    "green": "#2c962c",
-    "blue": "#0b4ea2",
-    "black": "#222222",
-    "orange": "#e87800",
-    "magenta": "#d0118f",
-    "cyan": "#0aa0bd",
-}
-"""Colours that declarations name."""
+__all__ = ["FORMATS", "RC", "font", "look", "new_figure", "write_letter"]
 
 RC: Any = {
     "font.family": "DejaVu Sans",
@@ -91,25 +43,32 @@ FORMATS: dict[str, dict[str, Any]] = {
 }
 """Endings of files, and what each says of its origin; without a date, so that a figure has the same bytes each time."""
 
-LETTER = (-37.0, 0.0)
-"""Where the letter of a panel stands from its upper left corner [points]: beside its numbers, however wide it is."""
-
-_WORN: ContextVar[Mapping[str, Any]] = ContextVar("_WORN", default={})  # noqa: B039 - nobody changes it
-
 
 def look() -> dict[Any, Any]:
-    """Return matplotlib's settings for a figure: ours, and over them those of a style that is worn."""
-    return {**RC, **_WORN.get()}
+    """Return matplotlib's settings for a figure: ours, and over them those of the look that is worn."""
+    own = worn()
+    settings = {**RC, **own.settings}
+    if own.font_size is not None:
+        factor = own.font_size / RC["font.size"]
+        settings |= {name: factor * RC[name] for name in ("font.size", "axes.labelsize", "legend.fontsize")}
+    return settings
 
 
-@contextmanager
-def wearing(settings: Mapping[str, Any]) -> Iterator[None]:
-    """Draw with settings of matplotlib over ours, as a style sheet gives them."""
-    token = _WORN.set(settings)
-    try:
-        yield
-    finally:
-        _WORN.reset(token)
+def font(size: float) -> float:
+    """Return the size of what is written [point], in the ratio to numbers that it has in our own look.
+
+    Examples
+    --------
+    >>> font(8.5)
+    8.5
+    """
+    return size * look()["font.size"] / RC["font.size"]
+
+
+def write_letter(ax: Axes, letter: str) -> None:
+    """Write the letter of a panel beside its numbers, however wide it is."""
+    place = (font(-37.0), 0.0)
+    ax.annotate(f"({letter})", (0.0, 1.0), place, "axes fraction", "offset points", va="top", weight="bold")
 
 
 def new_figure(width: float, height: float) -> Figure:
@@ -122,23 +81,3 @@ def new_figure(width: float, height: float) -> Figure:
         figure = Figure(figsize=(width, height), layout="constrained")
         FigureCanvasAgg(figure)
     return figure
-
-
-def save(figure: Figure, folder: Path, name: str = "picture") -> list[Path]:
-    """Write a figure as PNG, SVG and PDF into a folder, without dates, and return the paths.
-
-    Panels are laid out once, so all files show the same, and each file is drawn once. In a PDF text is text. Drawing is
-    slow: a sheet of 12 panels has hundreds of ticks and texts, which matplotlib measures at every draw.
-    """
-    import matplotlib as mpl
-
-    files = [folder / f"{name}{ending}" for ending in FORMATS]
-    with mpl.rc_context(RC):
-        engine = figure.get_layout_engine()
-        if engine is not None:
-            if fit_titles(figure):
-                engine.execute(figure)
-            figure.set_layout_engine(None)  # "none" would keep a placeholder, for which each file is drawn twice
-        for file in files:
-            figure.savefig(file, metadata=FORMATS[file.suffix])
-    return files

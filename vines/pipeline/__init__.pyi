@@ -11,6 +11,7 @@ from ._declaration import Carry as Carry
 from ._declaration import Pipeline as Pipeline
 from ._declaration import Refine as Refine
 from ._declaration import Stage as Stage
+from ._deposit import read_deposit as read_deposit
 from ._estimate import estimate as estimate
 from ._events import Event as Event
 from ._events import RunSummary as RunSummary

@@ -7,7 +7,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from vines.catalogue import Deposit
 from vines.errors import DeclarationError, nearest
+from vines.pipeline._deposit import read_deposit
 from vines.pipeline._files import available, find
 from vines.pipeline._include import parse, with_included
 from vines.pipeline._names import NAME, RESERVED
@@ -15,7 +17,7 @@ from vines.pipeline._written import written
 
 __all__ = ["Collection", "load_collection", "members"]
 
-KEYS = ("pipelines", "source", "title")
+KEYS = ("pipelines", "source", "study", "title")
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,6 +32,8 @@ class Collection:
         The file that declares it.
     members : tuple of str
         Names of its pipelines, in the order in which they run.
+    deposit : Deposit, optional
+        What it tells a data repository.
     """
 
     name: str
@@ -37,6 +41,7 @@ class Collection:
     source: str
     path: Path
     members: tuple[str, ...]
+    deposit: Deposit | None = None
 
 
 def load_collection(path: Path, root: Path) -> Collection | None:
@@ -67,7 +72,12 @@ def load_collection(path: Path, root: Path) -> Collection | None:
         rule = "a name is [a-z][a-z0-9_]* and no reserved word of SQL"
         raise DeclarationError(f"{path}: a collection cannot be called {path.stem!r}; {rule}; rename the file")
     return Collection(
-        path.stem, _text(form, "title", path), _text(form, "source", path), path, _names(form, path, root)
+        path.stem,
+        _text(form, "title", path),
+        _text(form, "source", path),
+        path,
+        _names(form, path, root),
+        read_deposit(form.get("study"), f"{path}: study"),
     )
 
 

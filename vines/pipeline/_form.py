@@ -9,6 +9,7 @@ from typing import Any
 import msgspec
 
 from vines import schema
+from vines.catalogue import Deposit
 from vines.model import VI_NES, most_balls, system_names
 from vines.pipeline._kinds import Kind, kinds
 from vines.pipeline._names import NAME
@@ -39,6 +40,7 @@ def json_schema() -> dict[str, Any]:
         "properties": {
             "title": {"type": "string", "description": "What the pipeline is for"},
             "source": {"type": "string", "description": "Figure or section that it reproduces"},
+            "study": {"$ref": "#/$defs/study", "description": "What an export tells a data repository"},
             "include": {"type": "string", "description": "A file that this one is laid over, relative to it"},
             "pipelines": {
                 "type": "array",
@@ -73,7 +75,7 @@ def json_schema() -> dict[str, Any]:
             for system, spec in _all_systems(known[name]).items()
             for key, form in _kind(spec, _key(name, system))
         }
-        | {"axis": _axis()},
+        | {"axis": _axis(), "study": _study()},
     }
 
 
@@ -202,6 +204,11 @@ def _inlined(form: Any, parts: dict[str, Any]) -> Any:
             return {**_inlined(parts[form["$ref"]], parts), **{key: form[key] for key in form if key != "$ref"}}
         return {key: _inlined(value, parts) for key, value in form.items()}
     return [_inlined(each, parts) for each in form] if isinstance(form, list) else form
+
+
+def _study() -> dict[str, Any]:
+    (reference,), parts = msgspec.json.schema_components([Deposit], ref_template="{name}")
+    return _inlined(reference, parts)
 
 
 def _physical(names: Iterable[str]) -> dict[str, Any]:

@@ -16,6 +16,7 @@ from vines.errors import DeclarationError, VinesError, nearest
 from vines.model import VI_NES
 from vines.pipeline._axes import Axis, exact, read_axis
 from vines.pipeline._declaration import Pipeline, Stage
+from vines.pipeline._deposit import read_deposit
 from vines.pipeline._include import with_included
 from vines.pipeline._kinds import Kind, kind
 from vines.pipeline._links import linked_values
@@ -28,7 +29,7 @@ from vines.places import find_root
 
 __all__ = ["GENERAL", "TOP", "load", "read_form"]
 
-TOP = ("include", "params", "physical", "source", "stages", "system", "title")
+TOP = ("include", "params", "physical", "source", "stages", "study", "system", "title")
 MOST_POINTS = 100_000_000
 """Points of a stage; their ids take a gigabyte."""
 GENERAL = ("carry", "kind", "link", "needs", "params", "physical", "refine", "system", "vary", "zip")
@@ -100,7 +101,8 @@ def read_form(
     common.check(kinds.values())
     stages = {stage: _stage(stage, tables[stage], kinds[stage], common, path) for stage in tables}
     title, source = (_text(form.get(key, ""), f"{path}: {key}") for key in ("title", "source"))
-    pipeline = Pipeline(name, title, source, path, root or find_root(), stages)
+    deposit = read_deposit(form.get("study"), f"{path}: study")
+    pipeline = Pipeline(name, title, source, path, root or find_root(), stages, deposit)
     for stage in stages.values():
         _check_needs(stage, stages, f"{path}: stages.{stage.name}")
     assert pipeline.order  # finds circles

@@ -207,10 +207,8 @@ def _write(task: WholeTask, batch: Batch, folder: Path, provenance: dict[str, An
     unknown = set(batch.tables) - set(task.tables)
     if unknown:
         raise SchemaError(f"{task.body}: returned table {min(unknown)!r}, which its kind does not name")
-    if task.pictures:
-        missing = [name for name in PICTURES if not (folder / name).is_file()]
-        if missing:
-            raise SchemaError(f"{task.body}: left no {missing[0]} in its folder")
+    if task.pictures and not any((folder / name).is_file() for name in PICTURES):
+        raise SchemaError(f"{task.body}: left none of {', '.join(PICTURES)} in its folder")
     about = {}
     for name in task.tables:
         rows = _numbered(batch.tables.get(name, ()))

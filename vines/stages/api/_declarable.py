@@ -126,4 +126,9 @@ def default_shown(row: Mapping[str, Any]) -> str:
     """
     if row["required"]:
         return "required"
-    return "" if row["default"] is None else json.dumps(row["default"], ensure_ascii=False)
+    # That of a table of options is said by its options.
+    return (
+        ""
+        if row["default"] is None or (row["type"] == "table" and row["default"])
+        else json.dumps(row["default"], ensure_ascii=False)
+    )

@@ -63,7 +63,7 @@ def figure(
     """
     study = study or current()
     pipeline, stage = _asked(name, width, overrides, study)
-    with _worn(style):
+    with _worn(pipeline, stage, style):
         return _drawn(pipeline, stage, study)
 
 
@@ -72,7 +72,7 @@ def save_figure(
     out: Path | None = None,
     *,
     width: float | str | None = None,
-    dpi: int = 300,
+    dpi: int | None = None,
     style: str | Path | None = None,
     overrides: Mapping[str, Any] | None = None,
     study: Home | None = None,
@@ -87,8 +87,8 @@ def save_figure(
         The file, .pdf, .png or .svg; ``<pipeline>.<stage>.pdf`` in the current folder if left out.
     width, style, overrides, study : optional
         As for :func:`figure`.
-    dpi : int
-        Pixels per inch of a PNG.
+    dpi : int, optional
+        Pixels per inch of a PNG; those declared, and 300 at least, if left out.
 
     Raises
     ------
@@ -100,25 +100,31 @@ def save_figure(
     study = study or current()
     pipeline, stage = _asked(name, width, overrides, study)
     path = Path(f"{pipeline.name}.{stage}.pdf") if out is None else out
-    with _worn(style):
-        return save_as(_drawn(pipeline, stage, study), path, dpi=dpi)
+    declared: Any = pipeline.stages[stage].options
+    resolution = dpi or max(declared.look.dpi, _PRINTED)
+    with _worn(pipeline, stage, style):
+        return save_as(_drawn(pipeline, stage, study), path, dpi=resolution)
 
 
-def _worn(style: str | Path | None) -> AbstractContextManager[None]:
-    """Return the context in which figures have a style."""
-    from vines.figures import style_settings, wearing
+_PRINTED = 300
+"""Pixels per inch of a figure for a paper where nothing is said."""
 
-    return wearing({} if style is None else style_settings(style))
+
+def _worn(pipeline: Pipeline, stage: str, style: str | Path | None) -> AbstractContextManager[None]:
+    """Return the context in which a figure has its look, and a style."""
+    from vines.figures import style_settings
+    from vines.stages.plots import worn_by
+
+    options: Any = pipeline.stages[stage].options
+    return worn_by(options.look, None if style is None else style_settings(style))
 
 
 def _drawn(pipeline: Pipeline, stage: str, study: Home) -> Figure:
     """Draw a figure and fit what is written around its panels to its width."""
-    from vines.figures import fit_titles
+    from vines.figures import finish
 
     options: Any = pipeline.stages[stage].options
-    drawn = plot_of(options).draw(stored_inputs(pipeline, stage, study.store), options)
-    fit_titles(drawn)
-    return drawn
+    return finish(plot_of(options).draw(stored_inputs(pipeline, stage, study.store), options))
 
 
 def _asked(

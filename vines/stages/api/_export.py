@@ -6,8 +6,9 @@ import warnings
 from collections.abc import Collection, Iterable
 from pathlib import Path
 
-from vines.errors import DamageError, FileMissingError, StaleWarning, StoreError, UnknownNameError
-from vines.pipeline import available, with_included
+from vines.catalogue import Deposit
+from vines.errors import DamageError, DeclarationError, FileMissingError, StaleWarning, StoreError, UnknownNameError
+from vines.pipeline import available, read_deposit, with_included
 from vines.places import shipped
 from vines.stages.api._home import Home, current
 from vines.stages.api._parts import load_parts
@@ -50,6 +51,8 @@ def export(
         If nothing is stored of a pipeline.
     FileMissingError
         If the licence or the citation cannot be read.
+    DeclarationError
+        If a `[study]` table is not allowed, or several differ.
     StoreError
         If the folder is not empty, is being exported to, cannot be written, or lies where results are kept; or if a
         file of a result is missing or damaged.
@@ -75,6 +78,7 @@ def export(
     results = [each for each in stored if each[2].manifest["tables"] or each[2].files]
     if not results:
         raise UnknownNameError("nothing is stored yet that could be exported; run 'vines run quickstart' first")
+    deposit = _deposit([*wanted, *names], study.root)
     declarations, titles = _declared(wanted, names, study.root)
     stale = [line for name in wanted if name in available(study.root) for line in _stale(name, study)]
     files = export_results(
@@ -86,6 +90,7 @@ def export(
             citation=_text(citation, "CITATION.cff", study.root),
             logs=logs,
             stale=stale,
+            deposit=deposit,
         ),
         target,
     )
@@ -104,6 +109,26 @@ def _stale(name: str, study: Home) -> list[str]:
         for each in plan(part.pipeline, study.store)
         if each.state != "up_to_date"
     ]
+
+
+def _deposit(names: Iterable[str], root: Path) -> Deposit | None:
+    """Return what the declarations tell a data repository: that of a collection before those of its pipelines."""
+    files = available(root)
+    found: dict[str, Deposit] = {}
+    whole: dict[str, Deposit] = {}
+    for name in dict.fromkeys(names):
+        if name not in files:
+            continue
+        form = with_included(files[name])
+        told = read_deposit(form.get("study"), f"{files[name]}: study")
+        if told is not None:
+            (whole if "pipelines" in form else found)[name] = told
+    chosen = whole or found
+    if len(set(map(repr, chosen.values()))) > 1:
+        raise DeclarationError(
+            f"{', '.join(chosen)} have [study] tables that differ; export them apart, or write one into a collection"
+        )
+    return next(iter(chosen.values()), None)
 
 
 def _declared(pipelines: Collection[str], names: Iterable[str], root: Path) -> tuple[dict[str, str], dict[str, str]]:

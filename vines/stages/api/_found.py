@@ -204,11 +204,13 @@ def _pictures(store: Store, pipeline: str, results: dict[str, Result]) -> Iterab
     A copy that lacks or was changed is made again, unless nothing can be written.
     """
     for stage, result in results.items():
-        drawn, copy = result.folder / PICTURES[0], store.data / "figures" / f"{pipeline}.{stage}.png"
-        if drawn.is_file():
+        drawn = [result.folder / name for name in PICTURES if (result.folder / name).is_file()]
+        if drawn:
             with contextlib.suppress(OSError):
                 show_pictures(store.data, result.folder, f"{pipeline}.{stage}")
-            yield f"  {_short(copy if copy.is_file() else drawn)} (and .svg, .pdf)"
+            copy = store.data / "figures" / f"{pipeline}.{stage}{drawn[0].suffix}"
+            others = ", ".join(each.suffix for each in drawn[1:])
+            yield f"  {_short(copy if copy.is_file() else drawn[0])}{f' (and {others})' if others else ''}"
 
 
 def _next(pipeline: str, results: dict[str, Result]) -> Iterable[tuple[str, str]]:

@@ -6,7 +6,7 @@ from typing import Any
 
 from vines.errors import DeclarationError
 from vines.pipeline import Kind, Pipeline, Stage
-from vines.stages.plots import PLOTS, PlotOptions, inches, plot_of
+from vines.stages.plots import PLOTS, PlotOptions, check_look, inches, plot_of
 
 __all__ = ["KIND"]
 
@@ -17,6 +17,7 @@ def _fits(stage: Stage, pipeline: Pipeline) -> None:
     plot = plot_of(stage.options)
     options: Any = stage.options
     inches(options.width)
+    check_look(options.look)
     plot.check_systems(stage, pipeline)
     check = plot.check
     if check is not None:

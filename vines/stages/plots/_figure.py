@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from vines.figures import save
 from vines.pipeline import Batch, WholeJob
+from vines.stages.plots._look import worn_by
 from vines.stages.plots._plot import PlotOptions, plot_of
 
 __all__ = ["compute"]
@@ -11,5 +12,7 @@ __all__ = ["compute"]
 
 def compute(job: WholeJob[PlotOptions]) -> Batch:
     """Draw the needed stages."""
-    save(plot_of(job.options).draw(job.inputs, job.options), job.folder)
+    look = job.options.look
+    with worn_by(look):
+        save(plot_of(job.options).draw(job.inputs, job.options), job.folder, formats=look.formats, dpi=look.dpi)
     return Batch()

@@ -12,6 +12,7 @@ from vines.doors import Register
 from vines.errors import DeclarationError
 from vines.model import VI_NES, system_names
 from vines.schema import system_table, tables
+from vines.stages.plots._look import LookOptions
 from vines.stages.plots._width import inches
 
 if TYPE_CHECKING:
@@ -30,6 +31,9 @@ class PlotOptions(msgspec.Struct, frozen=True, forbid_unknown_fields=True, tag_f
         Annotated[float, msgspec.Meta(gt=0)] | str,
         msgspec.Meta(description='Width of the picture: inches, or a text with its unit, "85mm", "8.5cm", "3.35in"'),
     ] = 7.0
+    look: Annotated[
+        LookOptions, msgspec.Meta(description="Size, letters, colours, labels, limits and files of the picture")
+    ] = LookOptions()
 
     @property
     def inches(self) -> float:

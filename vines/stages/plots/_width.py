@@ -14,13 +14,15 @@ _LEAST, _MOST = 1.5, 20.0
 """Inches; less holds no axis with numbers, more is a mistake of units."""
 
 
-def inches(width: float | str) -> float:
+def inches(width: float | str, name: str = "width") -> float:
     """Return the width of a picture [inch].
 
     Parameters
     ----------
     width : float or str
         A number is inches; a text has its unit, mm, cm, in or pt.
+    name : str
+        What a declaration calls it.
 
     Raises
     ------
@@ -39,12 +41,12 @@ def inches(width: float | str) -> float:
     if isinstance(width, str):
         found = _WIDTH.fullmatch(width)
         if found is None or found["unit"] not in _UNITS:
-            raise DeclarationError(f'width is {width!r}; allowed is a number with mm, cm, in or pt, such as "85mm"')
+            raise DeclarationError(f'{name} is {width!r}; allowed is a number with mm, cm, in or pt, such as "85mm"')
         number = float(found["number"]) * _UNITS[found["unit"]]
     else:
         number = float(width)
     if not _LEAST <= number <= _MOST:
         said = repr(width) if isinstance(width, str) else f"{width:g} inch"
         meant = f'; write "{width:g}mm" for mm' if not isinstance(width, str) and 38 <= width <= 508 else ""
-        raise DeclarationError(f"width is {said}; allowed is 1.5 to 20 inch (38 to 508 mm){meant}")
+        raise DeclarationError(f"{name} is {said}; allowed is 1.5 to 20 inch (38 to 508 mm){meant}")
     return number

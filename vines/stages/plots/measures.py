@@ -1,4 +1,4 @@
-"""The plot ``measures``: columns of points or transients over one parameter, a curve a stage, of any systems."""
+"""The plot ``measures``: columns of points, transients or orbits over one parameter, of any systems."""
 
 from __future__ import annotations
 
@@ -12,13 +12,14 @@ from msgspec import Meta
 
 from vines.errors import DeclarationError, nearest
 from vines.schema import table
+from vines.stages.plots._checks import called
 from vines.stages.plots._plot import Plot, PlotOptions
 
 if TYPE_CHECKING:
     import pyarrow as pa
     from matplotlib.figure import Figure
 
-    from vines.figures import MeasurePanel
+    from vines.figures import MeasureCurve, MeasurePanel
     from vines.pipeline import Input, Pipeline, Stage
 
 __all__ = ["PLOT", "MeasureCell", "MeasuresOptions"]
@@ -28,11 +29,11 @@ _MOST = 7
 
 
 class MeasureCell(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """A panel: a column of the points or transients of stages over one parameter.
+    """A panel: a column of the points, transients or orbits of stages over one parameter.
 
     Curves are named by `labels`, and by the parameters that tell those of one stage apart. Stages with one label share
     a colour; sweeps that were carried up and down have marks that say so, and with `band` what lies between them is
-    shaded.
+    shaded. Branches are lines, dotted where orbits are unstable, and have the names of their families.
     """
 
     show: Annotated[str, Meta(description="A column of numbers, such as reduction")]
@@ -48,7 +49,10 @@ class MeasureCell(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 
 class MeasuresOptions(PlotOptions, frozen=True, tag="measures"):
-    """Columns of points or transients over one parameter: a panel a column, a curve a stage, of any systems."""
+    """Columns of points, transients or orbits over one parameter: a panel a column, a curve a stage, of any systems.
+
+    With sweeps and branches in one panel it shows a measure over a parameter as simulated and as continued.
+    """
 
     cells: Annotated[tuple[MeasureCell, ...], Meta(description="The panels, row by row")] = ()
     labels: Annotated[dict[str, str], Meta(description="What stages are called; their names if left out")] = (
@@ -81,13 +85,19 @@ def _check_cell(where: str, cell: MeasureCell, shown: Sequence[Stage]) -> None:
     counts: dict[str, int] = {}
     along = set[str]()
     for one in shown:
-        form = table(one.kind.tables[0]) if one.kind.tables else None
-        if form is None or form.like not in ("points", "transients"):
-            raise DeclarationError(f"{where}: {one.name} is of kind {one.kind.name!r}; it shows sweeps and transients")
+        name = _rows_of(one.kind.tables)
+        if not name:
+            raise DeclarationError(
+                f"{where}: {one.name} is of kind {one.kind.name!r}; it shows sweeps, transients and branches"
+            )
+        form = table(name)
         numbers = [column.name for column in form.columns if column.dtype in ("float64", "int64")]
         if cell.show not in numbers:
             known = nearest(cell.show, numbers)
             raise DeclarationError(f"{where}: {one.name} has no column {cell.show!r} of numbers: {known}")
+        if form.like == "orbits":
+            along |= {axis.name for axis in one.axes}
+            continue
         values = {axis.name: axis.values() for axis in one.axes}
         axis = cell.over or (one.carry.axis if one.carry is not None else next(reversed(values), ""))
         if axis not in values:
@@ -103,10 +113,18 @@ def _check_cell(where: str, cell: MeasureCell, shown: Sequence[Stage]) -> None:
         counts[one.name] = math.prod(kept)
     if len(along) != 1:
         raise DeclarationError(f"{where} shows stages along {', '.join(sorted(along))}; name one of them, over = ...")
-    if max(counts.values()) > _MOST:
+    if max(counts.values(), default=0) > _MOST:
         many = max(counts, key=lambda name: counts[name])
         told = f"{many} gives {counts[many]} curves, allowed are {_MOST}"
         raise DeclarationError(f"{where}: {told}; choose some, where = ...")
+
+
+def _rows_of(names: Sequence[str]) -> str:
+    """Return which table of a stage has its measures: points, transients, or the orbits of branches; empty if none."""
+    first = names[:1]
+    if any(table(name).like in ("points", "transients") for name in first):
+        return first[0]
+    return called(names, "orbits") if called(names, "branches") else ""
 
 
 def _draw(inputs: Mapping[str, Input], options: MeasuresOptions) -> Figure:
@@ -138,13 +156,17 @@ def _panel(cell: MeasureCell, inputs: Mapping[str, Input], labels: Mapping[str, 
 
     stages = [inputs[name] for name in cell.of]
     axes = [cell.over or stage.carried or stage.axes[-1] for stage in stages]
-    alone = len({labels.get(name, name) for name in cell.of}) == 1
-    curves = []
+    branches = [stage for stage in stages if called(stage.tables, "branches")]
+    alone = len({labels.get(stage.name, stage.name) for stage in stages if stage not in branches}) == 1
+    curves: list[MeasureCurve] = []
     numbers: dict[str, int] = {}
     for stage, axis in zip(stages, axes, strict=True):
-        called = labels.get(stage.name, "" if alone else stage.name)
+        if stage in branches:
+            curves += _branches(stage, axis, cell.show, labels.get(stage.name, ""), numbers)
+            continue
+        named = labels.get(stage.name, "simulation" if alone and branches else "" if alone else stage.name)
         for group, rows in _groups(stage.table(), cell.where, [name for name in stage.axes if name != axis]):
-            label = ",  ".join(filter(None, (called, listed(group, ", "))))
+            label = ",  ".join(filter(None, (named, listed(group, ", "))))
             curves.append(
                 MeasureCurve(
                     x=rows[axis].to_numpy(),
@@ -165,6 +187,27 @@ def _panel(cell: MeasureCell, inputs: Mapping[str, Input], labels: Mapping[str, 
         band=cell.band,
         marks=cell.marks,
     )
+
+
+def _branches(stage: Input, axis: str, column: str, named: str, numbers: dict[str, int]) -> Iterator[MeasureCurve]:
+    """Yield a measure along each branch of a stage."""
+    import numpy as np
+    import pyarrow.compute as pc
+
+    from vines.figures import MeasureCurve
+    from vines.stages.plots._diagram import family_label
+
+    orbits = stage.table(called(stage.tables, "orbits"))
+    for branch in stage.table(called(stage.tables, "branches")).to_pylist():
+        mine = orbits.filter(pc.field("branch_id") == branch["branch_id"])
+        label = ",  ".join(filter(None, (named, family_label(branch))))
+        yield MeasureCurve(
+            x=mine[axis].to_numpy(),
+            y=np.array(mine[column].to_pylist(), dtype=np.float64),
+            label=label,
+            colour=numbers.setdefault(label, len(numbers)),
+            stable=mine["stable"].to_numpy(zero_copy_only=False).astype(bool),
+        )
 
 
 _WAYS: dict[str, Literal["up", "down"]] = {"up": "up", "down": "down"}
@@ -191,7 +234,7 @@ def _groups(
 
 
 PLOT = Plot(
-    summary="columns of points or transients over one parameter, of any systems",
+    summary="columns of points, transients or orbits over one parameter, of any systems",
     options=MeasuresOptions,
     draw=_draw,
     check=_check,

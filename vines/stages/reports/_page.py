@@ -5,6 +5,7 @@ from __future__ import annotations
 import base64
 import math
 import re
+import struct
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
@@ -25,11 +26,12 @@ _SIZE = re.compile(rb'viewBox="0 0 ([\d.]+) ([\d.]+)"')
 
 @dataclass(frozen=True, slots=True)
 class Figure:
-    """A picture: the stage that made it, its title, and the SVG."""
+    """A picture: the stage that made it, its title, its file, and what the file is: svg, png or pdf."""
 
     stage: str
     title: str
-    svg: bytes
+    data: bytes
+    format: str
 
 
 @dataclass(frozen=True, slots=True)
@@ -178,9 +180,17 @@ def _section(section: Section, *, alone: bool) -> str:
 
 
 def _figure(figure: Figure) -> str:
-    found = _SIZE.search(figure.svg)
-    ratio = float(found[1]) / float(found[2]) if found else 1.5
-    data = base64.b64encode(figure.svg).decode()
+    if figure.format == "pdf":
+        told = f"{escape(plain(figure.title))} <code>{escape(figure.stage)}.pdf</code>"
+        return f"<figure><figcaption><span>{told}</span></figcaption></figure>"
+    if figure.format == "png":
+        width, height = struct.unpack(">II", figure.data[16:24])  # of its first chunk, IHDR
+        ratio = width / height
+    else:
+        found = _SIZE.search(figure.data)
+        ratio = float(found[1]) / float(found[2]) if found else 1.5
+    kind = {"svg": "image/svg+xml", "png": "image/png"}[figure.format]
+    data = base64.b64encode(figure.data).decode()
     buttons = "".join(
         f'<button class="tool" data-act="{act}" aria-label="{label}">{sign}</button>'
         for act, label, sign in (("out", "smaller", "−"), ("in", "larger", "+"), ("reset", "whole figure", "⤢"))
@@ -189,7 +199,7 @@ def _figure(figure: Figure) -> str:
     return (
         f'<figure><div class="frame" tabindex="0" role="group" '
         f'aria-label="{title}; + and - zoom, arrows move, 0 resets">'
-        f'<img alt="{title}" data-ratio="{ratio:.6f}" draggable="false" src="data:image/svg+xml;base64,{data}"></div>'
+        f'<img alt="{title}" data-ratio="{ratio:.6f}" draggable="false" src="data:{kind};base64,{data}"></div>'
         f"<figcaption><span>{title} <code>{escape(figure.stage)}</code></span>{buttons}</figcaption></figure>"
     )
 

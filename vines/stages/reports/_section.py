@@ -64,10 +64,13 @@ def _rows(results: Mapping[str, Result], table: str) -> list[dict[str, Any]]:
 
 
 def _figures(where: str, result: Result, title: str) -> Iterator[Figure]:
-    path = result.folder / "picture.svg"
-    if path.is_file():
-        own = result.manifest["ingredients"]["options"].get("title")
-        yield Figure(where, own or title or where, path.read_bytes())
+    """Yield the picture of a stage: what can be enlarged without loss if it is there, a PDF by its name only."""
+    for ending in ("svg", "png", "pdf"):
+        path = result.folder / f"picture.{ending}"
+        if path.is_file():
+            own = result.manifest["ingredients"]["options"].get("title")
+            yield Figure(where, own or title or where, path.read_bytes(), ending)
+            return
 
 
 def _runs(where: str, result: Result, folder: Path) -> Iterator[Run]:
