@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
+from collections.abc import Sequence
 
 import numpy as np
 import numpy.typing as npt
@@ -10,6 +11,7 @@ import numpy.typing as npt
 from vines.model import Word
 from vines.orbits._closing import difference, stays_symmetric
 from vines.orbits._orbit import Orbit
+from vines.orbits._problem import Point
 
 __all__ = ["CurveEquations"]
 
@@ -95,6 +97,10 @@ class CurveEquations(ABC):
         mine = (rows[:, 0] % around == self.place % around) & (np.abs(rows[:, 1] - y[-3]) < _TOUCHING)
         mine &= rows[:, 5] == self.ball
         return float(rows[~mine, 3].min(initial=2.0))
+
+    def why_lost(self, points: Sequence[Point], ahead: Floats) -> str:
+        """Return why the curve cannot be followed beyond its points, nor to y = `ahead`."""
+        return "lost" if np.isfinite(self.residual(ahead)).all() else "domain"
 
     def equations(self, y: Floats) -> tuple[Floats, Floats]:
         """Return the equations at y, and their derivatives by differences."""

@@ -11,7 +11,7 @@ import numpy.typing as npt
 
 from vines.domains import Interval, Named, Names, Number, Of, Whole, stated
 from vines.errors import OrbitNotFound, ParameterError
-from vines.model import Params, word_for
+from vines.model import Params
 from vines.orbits._arclength import Chord, Walk
 from vines.orbits._branch import Bifurcation
 from vines.orbits._chain_curve import ChainCurve
@@ -20,8 +20,10 @@ from vines.orbits._curve import Curve, SpecialPoint
 from vines.orbits._curve_equations import CurveEquations
 from vines.orbits._curve_problem import CurveProblem
 from vines.orbits._joined import is_joint, left_family
+from vines.orbits._own_word import sticking_word
 from vines.orbits._problem import Point, ZeroSet
 from vines.orbits._special import END, Special, special_functions
+from vines.orbits._sticking_curve import StickingCurve
 
 __all__ = ["follow_curve"]
 
@@ -105,7 +107,6 @@ def follow_curve(
     >>> curve.type, curve.ends
     ('symmetry_breaking', ('box', 'box'))
     """
-    word_for(bifurcation.word, bifurcation.orbit.params.system, sticking=False)
     low, high = _bounds(bifurcation, parameters, box)
     problem = _problem(bifurcation, parameters, high - low)
     zero = ZeroSet(problem, *problem.spans)
@@ -178,6 +179,9 @@ def _problem(bifurcation: Bifurcation, parameters: tuple[str, str], spans: Float
             "have a cusp there; give two others, or follow a fold"
         )
     form = CurveProblem if isinstance(orbit.params, Params) else ChainCurve
+    if orbit.word.sticking:
+        sticking_word(orbit.word, orbit.params)
+        form = StickingCurve
     return form(bifurcation.type, orbit, parameters, tuple(spans.tolist()))
 
 
@@ -216,7 +220,7 @@ class _Way:
         if self.end == "lost":
             here = self.points[-1] if self.points else begin
             ahead = here.y + self.step * self.zero.scale * here.tangent
-            self.end = "lost" if np.isfinite(self.problem.residual(ahead)).all() else "domain"
+            self.end = self.problem.why_lost([begin, *self.points], ahead)
 
     def _record(self, here: Point, there: Point, last: bool) -> str | None:
         """Add what lies between two points, and the second one; return why the curve ends there, if it does."""
