@@ -17,9 +17,6 @@ __all__ = ["CurveEquations"]
 
 Floats = npt.NDArray[np.float64]
 
-_STEP = 1e-6
-"""Step of the differences, relative to unknowns of size one: they steer Newton's method and do not move its goal."""
-
 _TOUCHING = 1e-5
 """Time between the turning point that touches and one that the survey finds, below which they are one."""
 
@@ -52,9 +49,12 @@ class CurveEquations(ABC):
         The ball that turns there, 0 where balls have no numbers.
     start : (m,) float array
         The unknowns and parameters at the bifurcation.
+    step : float
+        Of the differences, relative to unknowns of size one: they steer Newton's method and do not move its goal.
     """
 
     start: Floats
+    step: float = 1e-6
 
     def __init__(self, kind: str, orbit: Orbit, parameters: tuple[str, str], spans: tuple[float, float]) -> None:
         self.word: Word = orbit.word
@@ -98,9 +98,10 @@ class CurveEquations(ABC):
         mine &= rows[:, 5] == self.ball
         return float(rows[~mine, 3].min(initial=2.0))
 
-    def why_lost(self, points: Sequence[Point], ahead: Floats) -> str:
-        """Return why the curve cannot be followed beyond its points, nor to y = `ahead`."""
-        return "lost" if np.isfinite(self.residual(ahead)).all() else "domain"
+    def runs_out(self, points: Sequence[Point]) -> str | None:
+        """Return what the orbits of the curve need that runs out just behind its last point, None if nothing does."""
+        del points
+        return None
 
     def equations(self, y: Floats) -> tuple[Floats, Floats]:
         """Return the equations at y, and their derivatives by differences."""
@@ -109,6 +110,6 @@ class CurveEquations(ABC):
         if not np.isfinite(here).all():
             return here, np.full_like(matrix, np.nan)
         for k in range(len(y)):
-            step = _STEP * (max(abs(y[k]), 0.01) if k >= len(y) - 2 else 1.0)
+            step = self.step * (max(abs(y[k]), 0.01) if k >= len(y) - 2 else 1.0)
             matrix[:, k] = difference(self.residual, y, k, step)
         return here, matrix

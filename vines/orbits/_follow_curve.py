@@ -220,12 +220,13 @@ class _Way:
         if self.end == "lost":
             here = self.points[-1] if self.points else begin
             ahead = here.y + self.step * self.zero.scale * here.tangent
-            self.end = self.problem.why_lost([begin, *self.points], ahead)
+            exists = np.isfinite(self.problem.residual(ahead)).all()
+            self.end = self.problem.runs_out([begin, *self.points]) or ("lost" if exists else "domain")
 
     def _record(self, here: Point, there: Point, last: bool) -> str | None:
         """Add what lies between two points, and the second one; return why the curve ends there, if it does."""
         if not np.abs(self.problem.residual(there.y)).max() < _ROUNDING:
-            return "rounding"
+            return self.problem.runs_out([self.begin, *self.points]) or "rounding"
         after = [special.function(there) for special in self.functions]
         hits = [self._cusp(here, there)] + [
             self._locate(special, here, there, a, b)

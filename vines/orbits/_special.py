@@ -12,7 +12,6 @@ import numpy.typing as npt
 from vines.orbits._conditions import TIE, grazing_margin, tie_margin
 from vines.orbits._criticality import branching_curvature
 from vines.orbits._curve_equations import CurveEquations
-from vines.orbits._joined import unfolded
 from vines.orbits._problem import Point
 
 __all__ = ["BOUNDS", "END", "RESONANCES", "STICKING_BOUNDS", "Special", "special_functions"]
@@ -98,7 +97,7 @@ def special_functions(problem: CurveEquations) -> tuple[Special, ...]:
         along = point.tangent[-2:]
         direction = np.array([-along[1], along[0]]) / np.linalg.norm(along) * problem.spans
         try:
-            return branching_curvature(unfolded(kind, point.orbit), problem.names, direction)
+            return branching_curvature(kind, point.orbit, problem.names, direction)
         except np.linalg.LinAlgError:  # at the border of where the system exists
             return np.nan
 

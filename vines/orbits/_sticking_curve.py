@@ -36,11 +36,14 @@ Floats = npt.NDArray[np.float64]
 _SAME = 1e-5
 """Time between the turning point that touches and one that is found, below which they are one."""
 
-_APART = 1e-5
+_FINE = 1e-8
+"""Step of differences where something touches: beside it the next thing may touch too."""
+
+_APART = 1e-2
 """Distance of the point, in scaled coordinates, to whose margins those of the last one are compared."""
 
-_MOVES = 1.0
-"""By how many such distances farther a margin may run out that is told as the end of a curve."""
+_MOVES, _SHARE = 0.5, 0.5
+"""By how many such distances farther a margin may run out that is told as the end of a curve; and what may be left."""
 
 _ROWS = np.empty((ROOM, col.ROW))
 
@@ -91,6 +94,7 @@ class StickingCurve(CurveEquations):
             met = self._way.run(orbit.params, begin)
             if met is None:
                 raise OrbitNotFound(f"the {self.word} orbit at {orbit.params} does not come back; locate the bound afresh")
+            self.step = _FINE
             extra = [(self._settle_touch if kind == GRAZING else self._settle_pressed)(orbit, met[0])]
         values = [orbit.params.as_dict()[name] for name in parameters]
         self.start = np.array([begin.phase, begin.v1, *extra, *values])
@@ -252,13 +256,18 @@ class StickingCurve(CurveEquations):
         mine = (rows[:, 0] == met[2][9]) & (np.abs(rows[:, 1] - y[2]) < _SAME)
         return float(rows[~mine, 3].min(initial=2.0))
 
-    def why_lost(self, points: Sequence[Point], ahead: Floats) -> str:
-        """Return what runs out where the curve cannot be followed on."""
-        last, scale = points[-1], np.append(np.ones(len(ahead) - 2), self.spans)
+    def runs_out(self, points: Sequence[Point]) -> str | None:
+        """Return what the orbits of the curve need that runs out just behind its last point, None if nothing does."""
+        last, scale = points[-1], np.append(np.ones(len(self.start) - 2), self.spans)
         far = (point for point in reversed(points) if np.linalg.norm((point.y - last.y) / scale) > _APART)
-        before = next(far, None)
-        found = what_vanishes(before, last, _MOVES) if before is not None else None
-        return super().why_lost(points, ahead) if found is None else found[0]
+        before = next(far, points[0])
+        if before is last:
+            return None
+        if self._bound.kind == PRESSED and 0 < last.y[2] < _SHARE * before.y[2]:
+            # The minimum comes to the beginning of its spell.
+            return INCOMPLETE_CHATTER
+        found = what_vanishes(before, last, _MOVES)
+        return None if found is None else found[0]
 
 
 def _speed(row: Floats) -> float:
