@@ -145,11 +145,12 @@ def _to_the_limit(c, bound, state, stop, rows, first, out):
         if row[col.KIND] == col.IMPACT:
             impacts += 1
             left, _, _, falls = _if_merged(c, wall, row)
-            if not left > 0.0:
-                break
-            hop = wall * (row[col.A_V2] - row[col.A_V1]) / (falls * left * left)
+            hop = wall * (row[col.A_V2] - row[col.A_V1]) / (falls * left * left) if left > 0.0 else 0.0
             old, mid, new = mid, new, hop / bound.hop - 1.0
             near = near + 1 if abs(new) < _NEAR else 0
+            if not left > 0.0 and math.isfinite(out[6]):
+                # The ball has left for good; before the hops of the limit the wall may leave it, too.
+                break
             if near > 0:
                 merges, impacts_then = count - 1, impacts
             if near >= 3 and not final:

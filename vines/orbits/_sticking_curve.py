@@ -14,9 +14,11 @@ from vines.dynamics.kernels import constants
 from vines.dynamics.kernels import rows as col
 from vines.errors import OrbitNotFound, ParameterError
 from vines.model import Params
+from vines.orbits._assemble import asymmetry
 from vines.orbits._curve_equations import CurveEquations
 from vines.orbits._orbit import Orbit
 from vines.orbits._problem import Point
+from vines.orbits._special import BOUNDS
 from vines.orbits._sticking_bounds import LIMIT, NOTHING, PRESSED, TOUCH, Bound, bound_kernel
 from vines.orbits._sticking_ends import (
     GRAZING,
@@ -36,8 +38,12 @@ Floats = npt.NDArray[np.float64]
 _SAME = 1e-5
 """Time between the turning point that touches and one that is found, below which they are one."""
 
-_FINE = 1e-8
-"""Step of differences where something touches: beside it the next thing may touch too."""
+_ALIKE = 1e-3
+"""Largest difference of an orbit at an end to its mirror image, to be that of a symmetric family: one half may touch
+where the other one does not yet."""
+
+_STEP, _FINE = 1e-7, 1e-8
+"""Step of differences, and where something touches: beside it the next thing may touch too."""
 
 _APART = 1e-2
 """Distance of the point, in scaled coordinates, to whose margins those of the last one are compared."""
@@ -80,6 +86,10 @@ class StickingCurve(CurveEquations):
 
     def __init__(self, kind: str, orbit: Orbit, parameters: tuple[str, str], spans: tuple[float, float]) -> None:
         super().__init__(kind, orbit, parameters, spans)
+        if self.word.symmetric and kind in BOUNDS:
+            # At its end rounding may hide that a family is symmetric.
+            self.symmetric = asymmetry(self.word, orbit.period, orbit.t, orbit.states) < _ALIKE
+        self.step = _STEP
         self._fixed = orbit.params
         self._bound = Bound(NOTHING, 0, 0, 0.0, 0.0, 0, 0.0, 0.0, 0.0)
         spell, extra = 0, []
