@@ -186,13 +186,15 @@ FINE = mp.mpf("1e-24")
 """Of one-sided ones."""
 
 LEFT = mp.mpf("1e-6")
-"""Time left of a chatter that is only just complete at which it is compared with the limit: that is wrong by as much, in
-a function whose slope in the parameter is its power -1.6."""
+"""Time left of a chatter that is only just complete, where it is compared with the limit: to so much that is wrong, and
+the difference grows by its power -1.6."""
 
 
 def _limit(r: mp.mpf) -> tuple[mp.mpf, mp.mpf]:
     """Return departure speed over j s², and the share of the time s left that a hop takes, of that limit."""
-    y = mp.findroot(lambda y: (3 - y) * (1 - y) ** 2 - r * (3 - 2 * y), (mp.mpf("0.001"), mp.mpf("0.999")), solver="anderson")
+    y = mp.findroot(
+        lambda y: (3 - y) * (1 - y) ** 2 - r * (3 - 2 * y), (mp.mpf("0.001"), mp.mpf("0.999")), solver="anderson"
+    )
     return y / 2 - y * y / 6, y
 
 

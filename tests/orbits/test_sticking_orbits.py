@@ -13,7 +13,6 @@ from vines.orbits import (
     bifurcation_row,
     continue_orbit,
     find_orbit,
-    follow_end,
     mirror_image,
     optimise,
     orbit_row,
@@ -140,15 +139,3 @@ def test_what_is_not_there_is_said():
     assert all_orbits("L*L*", P).complete
     with pytest.raises(ParameterError, match="sticks, for which this is not made"):
         optimise("L*R*", "max_abs_x1", P, {"A": (0.5, 1.0)})
-
-
-def test_the_bound_of_the_region_that_sticks_is_followed_in_two_parameters():
-    orbit = find_orbit("L*R*", Params(mu=0.01, A=0.5))
-    ends = follow_end(orbit, "A", 0.05, other="mu", values=[0.01, 0.02])
-    assert [end.type for end in ends] == ["incomplete_chatter"] * 2
-    # From the other side, along mu at the same A.
-    across = find_orbit("L*R*", Params(mu=0.01, A=ends[1].params.A))
-    (same,) = follow_end(across, "mu", 0.05, other="A", values=[across.params.A])
-    assert (same.type, same.params.mu) == ("incomplete_chatter", pytest.approx(0.02, abs=1e-8))
-    with pytest.raises(ParameterError, match="does not stick"):
-        follow_end(find_orbit("LR", Params(mu=0.01, A=0.017)), "A", 0.05, other="mu", values=[0.01])

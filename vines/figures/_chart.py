@@ -29,6 +29,8 @@ _COLOURS = {
     "period_doubling": "#7a2bbf",
     "neimark_sacker": "#0b7d6b",
     "grazing": "#0b4ea2",
+    "incomplete_chatter": "#d3005f",
+    "release_tangency": "#9a5b00",
 }
 _STYLES = ("-", (0, (5, 1.5)), (0, (4, 1.5, 1, 1.5)), (0, (1.5, 1.2)))
 """Line styles of the families, in the order in which they come."""

@@ -111,8 +111,11 @@ def _write(row, kind, side, t, tau, phase, x1, v1, x2, v2, after1, after2, mode)
 
 @linked_njit
 def _if_merged(c, wall, row):
-    """Return after what time the ball would be let go had it merged at an impact, x1 and v1 then, and how fast the
-    push on the ball in flight falls there; a time of zero where it is not pushed to the wall."""
+    """Return what would be if the ball merged at an impact.
+
+    That is, after what time it would be let go, x1 and v1 then, and how fast the push on a ball in flight falls there;
+    a time of zero where it is not pushed to the wall.
+    """
     common = (row[col.A_V1] + c.mu * row[col.A_V2]) / (1.0 + c.mu)
     motion = flight(c, c.stuck, row[col.X1], common, row[col.PHASE], 0.0)
     if not wall * derivatives(c.stuck, c.Omega, *motion)[2] > 0.0:
@@ -165,7 +168,9 @@ def _to_the_limit(c, bound, state, stop, rows, first, out):
         after, status = advance(c, state, stop, rows.shape[0], rows[: count + 1], count)
         if status != col.BUFFER_FULL or after != count + 1:
             break
-        if rows[count, col.KIND] == col.STICK or (rows[count, col.KIND] == col.IMPACT and rows[count, col.SIDE] != wall):
+        if rows[count, col.KIND] == col.STICK or (
+            rows[count, col.KIND] == col.IMPACT and rows[count, col.SIDE] != wall
+        ):
             break
         count += 1
     if merges < 0 or not math.isfinite(out[6]):
@@ -211,7 +216,7 @@ def bound_kernel(c, side, wanted, span, phase, v1, bound, tau, rows, out):
     begin(c, state, rows)
     stop = LONGEST * span + c.period
     count, reached, hits = 1, 0, 0
-    leaps = bound.kind == TOUCH or bound.kind == PRESSED
+    leaps = bound.kind in (TOUCH, PRESSED)
     while reached < wanted.shape[0]:
         if count + 2 > rows.shape[0]:
             return 0

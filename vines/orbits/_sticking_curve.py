@@ -13,11 +13,11 @@ import numpy.typing as npt
 from vines.dynamics.kernels import constants
 from vines.dynamics.kernels import rows as col
 from vines.errors import OrbitNotFound, ParameterError
-from vines.model import Params
+from vines.model import PARAMETER_NAMES, Params
 from vines.orbits._assemble import asymmetry
 from vines.orbits._curve_equations import CurveEquations
 from vines.orbits._orbit import Orbit
-from vines.orbits._problem import Point
+from vines.orbits._problem import Point, ZeroSet
 from vines.orbits._special import BOUNDS
 from vines.orbits._sticking_bounds import LIMIT, NOTHING, PRESSED, TOUCH, Bound, bound_kernel
 from vines.orbits._sticking_ends import (
@@ -31,7 +31,7 @@ from vines.orbits._sticking_map import CHATTER, ROOM
 from vines.orbits._sticking_orbit import Release, Round, orbit_of_rows, release_of
 from vines.orbits._sticking_survey import RESOLVED, least_force, round_turnings
 
-__all__ = ["StickingCurve"]
+__all__ = ["StickingCurve", "bound_beside"]
 
 Floats = npt.NDArray[np.float64]
 
@@ -55,7 +55,7 @@ _ROWS = np.empty((ROOM, col.ROW))
 
 
 class _Place(NamedTuple):
-    """An event of a round: its row, the contacts complete and the impacts of a chatter under way before and after it."""
+    """An event of a round: its row, contacts complete and impacts of a chatter under way before and after it."""
 
     row: int
     before: tuple[int, int]
@@ -103,7 +103,9 @@ class StickingCurve(CurveEquations):
         if kind in (GRAZING, RELEASE_TANGENCY):
             met = self._way.run(orbit.params, begin)
             if met is None:
-                raise OrbitNotFound(f"the {self.word} orbit at {orbit.params} does not come back; locate the bound afresh")
+                raise OrbitNotFound(
+                    f"the {self.word} orbit at {orbit.params} does not come back; locate the bound afresh"
+                )
             self.step = _FINE
             extra = [(self._settle_touch if kind == GRAZING else self._settle_pressed)(orbit, met[0])]
         values = [orbit.params.as_dict()[name] for name in parameters]
@@ -114,7 +116,9 @@ class StickingCurve(CurveEquations):
         places = list(self._places(rows))
         turnings = self.turnings(orbit)
         # An impact and a turning point are compared by how far the ball would go beyond the wall, or is from it.
-        heights = {place.row: 0.5 * _speed(rows[place.row]) ** 2 for place in places if _may_be_slow(rows, place, places)}
+        heights = {
+            place.row: 0.5 * _speed(rows[place.row]) ** 2 for place in places if _may_be_slow(rows, place, places)
+        }
         if len(turnings) and turnings[:, 3].min() <= min(heights.values(), default=math.inf):
             row, tau, wall = turnings[np.argmin(turnings[:, 3]), :3].tolist()
             self.touches = True
@@ -148,8 +152,8 @@ class StickingCurve(CurveEquations):
         force, tau, reached, lasts = min(found)
         if not force < float(np.min(orbit.spells["falls"])):
             raise OrbitNotFound(
-                f"on the {self.word} orbit at {orbit.params} the ball is let go where the contact force hardly falls, and "
-                "lands again at once; follow this bound from the other side, where it is not let go"
+                f"on the {self.word} orbit at {orbit.params} the ball is let go where the contact force hardly falls, "
+                "and lands again at once; follow this bound from the other side, where it is not let go"
             )
         self._bound = self._bound._replace(kind=PRESSED, reached=reached, skip=0.5 * (lasts - tau))
         return float(tau)
@@ -209,9 +213,9 @@ class StickingCurve(CurveEquations):
 
     def _defining(self, matrix: Floats) -> float:
         if self.kind == "neimark_sacker":
-            return float(np.linalg.det(matrix) - 1.0) / (1.0 + np.linalg.norm(matrix)) ** 2
+            return float((np.linalg.det(matrix) - 1.0) / (1.0 + np.linalg.norm(matrix)) ** 2)
         sign = -1.0 if self.kind == "fold" else 1.0
-        return float(np.linalg.det(np.eye(2) + sign * matrix)) / (1.0 + np.linalg.norm(matrix))
+        return float(np.linalg.det(np.eye(2) + sign * matrix) / (1.0 + np.linalg.norm(matrix)))
 
     def orbit(self, y: Floats) -> Orbit:
         """Return the orbit of a solution.
@@ -278,6 +282,28 @@ class StickingCurve(CurveEquations):
             return INCOMPLETE_CHATTER
         found = what_vanishes(before, last, _MOVES)
         return None if found is None else found[0]
+
+
+def bound_beside(kind: str, orbit: Orbit, parameter: str, width: float) -> float | None:
+    """Return the value of a parameter at the bound beside an orbit, None if its equations are not solved from there.
+
+    Parameters
+    ----------
+    kind : str
+        Type of the bound.
+    orbit : Orbit
+    parameter : str
+    width : float
+        Of the range of the parameter.
+    """
+    other = next(name for name in PARAMETER_NAMES if name != parameter)
+    fixed = orbit.params.as_dict()[other]
+    try:
+        problem = StickingCurve(kind, orbit, (other, parameter), (1.0, width))
+    except OrbitNotFound:
+        return None
+    y = ZeroSet(problem, *problem.spans).at_value(problem.start, fixed, coordinate=-2)
+    return None if y is None else float(y[-1])
 
 
 def _speed(row: Floats) -> float:

@@ -15,7 +15,17 @@ import numpy as np
 
 from vines.orbits._problem import Point
 
-__all__ = ["GRAZING", "INCOMPLETE_CHATTER", "RELEASE_TANGENCY", "End", "SelfSimilar", "chatter_exponent", "end_of", "self_similar", "what_vanishes"]
+__all__ = [
+    "GRAZING",
+    "INCOMPLETE_CHATTER",
+    "RELEASE_TANGENCY",
+    "End",
+    "SelfSimilar",
+    "chatter_exponent",
+    "end_of",
+    "self_similar",
+    "what_vanishes",
+]
 
 GRAZING = "grazing"
 INCOMPLETE_CHATTER = "incomplete_chatter"
