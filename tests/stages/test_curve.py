@@ -132,12 +132,21 @@ def test_where_there_is_none_it_is_said(small):
         ('needs = ["breaking", "doubling"]', "needs = []", "draws other stages"),
         ('type = "fold"', 'type = "tear"', "tear"),
         ('type = "fold"', 'type = "incomplete_chatter"', "'LLR' does not; give a word with a star"),
-        ('type = "incomplete_chatter"', 'system = "impact_pair"\ntype = "incomplete_chatter"', "sticks|'vi_nes' only"),
     ],
 )
 def test_senseless_declarations_are_refused_before_anything_runs(small, old, new, said):
     file = small / "pipelines" / "wrong.toml"
     file.write_text(SMALL.replace(old, new, 1))
     with pytest.raises(vines.errors.VinesError, match=said):
+        run("wrong")
+    file.unlink()
+
+
+@pytest.mark.parametrize("asks", ['word = "L*R"\ntype = "fold"', 'word = "LR"\ntype = "release_tangency"'])
+def test_of_other_systems_no_orbits_that_stick_are_followed(small, asks):
+    file = small / "pipelines" / "wrong.toml"
+    ranges = "vary.B = { from = 0.5, to = 0.8 }\nvary.r = { from = 0.4, to = 0.6 }\n"
+    file.write_text(f'title = "wrong"\n[stages.curve]\nsystem = "impact_pair"\nkind = "curve"\n{asks}\n{ranges}')
+    with pytest.raises(vines.errors.VinesError, match="for the system 'vi_nes' only"):
         run("wrong")
     file.unlink()
