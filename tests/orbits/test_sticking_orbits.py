@@ -36,8 +36,9 @@ def test_the_word_of_an_attractor_that_sticks_leads_to_its_orbit(symmetric):
     assert (attractor.word, attractor.name) == ("L*R*", "1:1")
     assert distance(symmetric, followed(attractor)) < 1e-10
     assert (symmetric.name, symmetric.symmetric, symmetric.stable, symmetric.admissible) == ("1:1", True, True, True)
-    # Of the common motion after a merge the simulator's tangent map knows a little less.
-    assert symmetric.multipliers == pytest.approx(attractor.multipliers, abs=1e-6)
+    # A pair of them, in one order or the other.
+    by_size = sorted(attractor.multipliers, key=lambda m: (-round(abs(m), 6), -m.imag))
+    assert symmetric.multipliers == pytest.approx(by_size, abs=1e-9)
     assert symmetric.measures.kinetic_ratio == pytest.approx(attractor.measures.kinetic_ratio, rel=1e-10)
     assert symmetric.measures.max_abs_x1 == pytest.approx(attractor.measures.max_abs_x1, rel=1e-10)
 

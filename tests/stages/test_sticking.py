@@ -1,4 +1,4 @@
-"""The pipeline ``sticking`` with fewer points: its bound lies between the simulated points that stick and the others."""
+"""The pipeline ``sticking`` with fewer points: its bound lies between the simulated points that stick and others."""
 
 import numpy as np
 import pytest
