@@ -73,7 +73,8 @@ def follow_curve(
     Parameters
     ----------
     bifurcation : Bifurcation
-        A fold, symmetry breaking, period doubling, Neimark-Sacker point or grazing.
+        A fold, symmetry breaking, period doubling, Neimark-Sacker point or grazing; of orbits that stick also an
+        incomplete chatter or a release tangency.
     parameters : tuple of str, str
         Two of mu, A, Omega, r, lam; of another system two of its own.
     box : mapping of str to (float, float)
@@ -106,6 +107,13 @@ def follow_curve(
     >>> curve = follow_curve(branch.bifurcations[0], box={"A": (0.015, 0.02), "mu": (0.008, 0.012)})
     >>> curve.type, curve.ends
     ('symmetry_breaking', ('box', 'box'))
+
+    Where the chatter of 1:1 that sticks on both walls is only just complete:
+
+    >>> branch = continue_orbit(find_orbit("L*R*", Params(mu=0.01, A=0.3)), "A", 0.1)
+    >>> curve = follow_curve(branch.bifurcations[-1], box={"A": (0.2, 0.3), "mu": (0.008, 0.012)}, step=0.2)
+    >>> curve.type, curve.ends
+    ('incomplete_chatter', ('box', 'box'))
     """
     low, high = _bounds(bifurcation, parameters, box)
     problem = _problem(bifurcation, parameters, high - low)
