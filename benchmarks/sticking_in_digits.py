@@ -81,40 +81,59 @@ def _force(values: dict[str, mp.mpf], t: mp.mpf) -> mp.mpf:
     return values["A"] * (mp.sin(angle) + values["lam"] * values["Omega"] * mp.cos(angle))
 
 
+class Run:
+    """Ball and oscillator from a release on, the events told one by one."""
+
+    def __init__(self, values: dict[str, mp.mpf], side: int, t: mp.mpf, v: mp.mpf) -> None:
+        self.values, self.t, self.v1, self.v2 = values, t, v, v
+        self.x = _force(values, t) - values["lam"] * v
+        self.x2 = self.x - side
+        self.motion = Motion(values, mp.mpf(1), self.x, v, t)
+
+    def strike(self, wall: int, guess: mp.mpf) -> None:
+        """Go on to the impact on a wall next to a guess of its time."""
+        mu, r = self.values["mu"], self.values["r"]
+        at = _contact(self.motion, self.x2, self.v2, wall, guess)
+        self.x, self.v1, _ = self.motion.at(at)
+        common, closing = self.v1 + mu * self.v2, self.v1 - self.v2
+        self.v1, self.v2 = (common - mu * r * closing) / (1 + mu), (common + r * closing) / (1 + mu)
+        self.t, self.x2 = at, self.x - wall
+        self.motion = Motion(self.values, mp.mpf(1), self.x, self.v1, at)
+
+    def leaves(self, wall: int) -> tuple[mp.mpf, mp.mpf]:
+        """Return departure speed and push towards the wall."""
+        return wall * (self.v2 - self.v1), wall * self.motion.at(self.t)[2]
+
+    def released(self, sticks: mp.mpf) -> tuple[mp.mpf, mp.mpf, mp.mpf]:
+        """Return time, x1 and v1 of the release if the ball merges now, from a guess of how long it sticks."""
+        mu = self.values["mu"]
+        stuck = Motion(self.values, 1 + mu, self.x, (self.v1 + mu * self.v2) / (1 + mu), self.t)
+        t = mp.findroot(lambda s: stuck.at(s)[2], self.t + sticks)
+        return t, *stuck.at(t)[:2]
+
+    def ride(self, wall: int, sticks: mp.mpf) -> None:
+        """Merge now and go on to the release."""
+        self.t, self.x, self.v1 = self.released(sticks)
+        self.x2, self.v2 = self.x - wall, self.v1
+        self.motion = Motion(self.values, mp.mpf(1), self.x, self.v1, self.t)
+
+
 def _round(
     values: dict[str, mp.mpf], side: int, t: mp.mpf, v: mp.mpf, events: Sequence[Event]
 ) -> tuple[mp.mpf, mp.mpf]:
     """Return time and velocity of the release to which that at t with velocity v leads."""
-    mu, r, lam = values["mu"], values["r"], values["lam"]
-    x = _force(values, t) - lam * v
-    x2, v1, v2 = x - side, v, v
-    motion = Motion(values, mp.mpf(1), x, v1, t)
-
-    def strike(at: mp.mpf, wall: int) -> None:
-        nonlocal motion, t, x, x2, v1, v2
-        x, v1, _ = motion.at(at)
-        common, closing = v1 + mu * v2, v1 - v2
-        v1, v2 = (common - mu * r * closing) / (1 + mu), (common + r * closing) / (1 + mu)
-        t, x2 = at, x - wall
-        motion = Motion(values, mp.mpf(1), x, v1, t)
-
+    run = Run(values, side, t, v)
     for event in events:
-        wall = event.side
-        strike(_contact(motion, x2, v2, wall, mp.mpf(event.t)), wall)
+        run.strike(event.side, mp.mpf(event.t))
         if not event.sticks:
             continue
         while True:
-            push, leaves = wall * motion.at(t)[2], wall * (v2 - v1)
-            if leaves / push < SMALL:
+            speed, push = run.leaves(event.side)
+            if speed / push < SMALL:
                 break
-            strike(_contact(motion, x2, v2, wall, t + 2 * leaves / push), wall)
-        v1 = v2 = (v1 + mu * v2) / (1 + mu)
-        stuck = Motion(values, 1 + mu, x, v1, t)
-        t = mp.findroot(lambda s, stuck=stuck: stuck.at(s)[2], mp.mpf(event.t) + event.sticks)
-        x, v1, _ = stuck.at(t)
-        x2, v2 = x - wall, v1
-        motion = Motion(values, mp.mpf(1), x, v1, t)
-    return t, v1
+            run.strike(event.side, run.t + 2 * speed / push)
+        run.ride(event.side, mp.mpf(event.t) + event.sticks - run.t)
+    return run.t, run.v1
 
 
 def _events(orbit: Orbit) -> tuple[mp.mpf, list[Event]]:
@@ -161,3 +180,72 @@ def multipliers_in_digits(orbit: Orbit) -> tuple[float, np.ndarray]:
     defect, slopes = rounds_in_digits(orbit)
     found = np.linalg.eigvals(np.array(slopes.tolist(), dtype=float)).astype(complex)
     return float(defect), found[np.lexsort((-found.imag, -found.real, -np.abs(found)))]
+
+
+FINE = mp.mpf("1e-24")
+"""Of one-sided ones."""
+
+LEFT = mp.mpf("1e-6")
+"""Time left of a chatter that is only just complete, where it is compared with the limit: to so much that is wrong, and
+the difference grows by its power -1.6."""
+
+
+def _limit(r: mp.mpf) -> tuple[mp.mpf, mp.mpf]:
+    """Return departure speed over j s², and the share of the time s left that a hop takes, of that limit."""
+    y = mp.findroot(
+        lambda y: (3 - y) * (1 - y) ** 2 - r * (3 - 2 * y), (mp.mpf("0.001"), mp.mpf("0.999")), solver="anderson"
+    )
+    return y / 2 - y * y / 6, y
+
+
+def end_in_digits(orbit: Orbit, parameter: str) -> float:
+    """Return the value of a parameter at which the last chatter of an orbit is only just complete.
+
+    The orbit has to be near that end; if its word is symmetric it is taken to be its own mirror image. Unknown are time
+    and velocity of the release after that chatter and the parameter, so many impacts of the chatter being followed that
+    what is left of it does not matter.
+    """
+    with mp.workdps(DIGITS):
+        values = {name: mp.mpf(value) for name, value in orbit.params.as_dict().items()}
+        lengths = orbit.spells["t_release"] - orbit.spells["t_start"]
+        spell = orbit.spells[int(np.argmin(lengths))]
+        half = orbit.word.symmetric
+        wall = int(spell["side"]) * (-1 if half else 1)
+        rest = orbit.period / (2 if half else 1)
+        begin = {"x1": spell["x1"], "v1": spell["v1"], "x2": spell["x1"] - spell["side"], "v2": spell["v1"]}
+        flown = simulate(orbit.params, **begin, t=spell["t_release"], periods=orbit.word.p + 1).events
+        # All after the start, but for the last hops of the chatter, of which doubles know little.
+        known = [row for row in flown if 1e-6 < row["t"] - spell["t_release"] < rest - 1e-3]
+        if any(row["kind"] != IMPACT for row in known):
+            raise ValueError("only orbits with one star, or two mirror images of one, are compared")
+
+        def equations(t: mp.mpf, v: mp.mpf, value: mp.mpf) -> list[mp.mpf]:
+            at = {**values, parameter: value}
+            run, (hop, share) = Run(at, int(spell["side"]), t, v), _limit(at["r"])
+            for row in known:
+                run.strike(int(row["side"]), mp.mpf(float(row["t"])))
+            left = mp.mpf("1e-3")
+            while True:
+                end, x, speed = run.released(left)
+                left = end - run.t
+                if left < LEFT:
+                    break
+                run.strike(wall, run.t + share * left)
+                left *= 1 - share
+            falls = -wall * Motion(at, mp.mpf(1), x, speed, end).at(end + STEP)[2] / STEP
+            sign = -1 if half else 1
+            return [
+                end - t - orbit.word.p * mp.pi * (1 if half else 2) / at["Omega"],
+                speed - sign * v,
+                run.leaves(wall)[0] / (falls * left**2) / hop - 1,
+            ]
+
+        y = mp.matrix([mp.mpf(float(spell["t_release"])), mp.mpf(float(spell["v1"])), values[parameter]])
+        for _ in range(3):
+            here, slopes = mp.matrix(equations(*y)), mp.matrix(3, 3)
+            for j in range(3):
+                beside = y.copy()
+                beside[j] += FINE
+                slopes[:, j] = (mp.matrix(equations(*beside)) - here) / FINE
+            y -= mp.lu_solve(slopes, here)
+        return float(y[2])

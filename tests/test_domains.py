@@ -44,7 +44,6 @@ def _by_name(function: Callable[..., Any], *first: Any, **rest: Any) -> Callable
 def calls() -> Calls:
     run = vines.simulate(P, periods=20)
     orbit = vines.find_orbit("LR", P)
-    sticking = vines.find_orbit("L*R*", Params(mu=0.01, A=0.5))
     [bifurcation] = vines.continue_orbit(orbit, "A", 0.0185).bifurcations
     walk = {"within": None, "at": (), "step": 0.02, "max_points": 50}
     options = {**SHORT, "tolerance": 1e-10, "largest_p": 2, "max_impacts_per_period": 100}
@@ -143,10 +142,6 @@ def calls() -> Calls:
                 "at": (),
                 "step": 0.02,
             },
-        ),
-        "follow_end": (
-            orbits.follow_end,
-            {"orbit": sticking, "parameter": "A", "stop": 0.4, "other": "mu", "values": [0.0095, 0.01]},
         ),
         "follow_curve": (
             orbits.follow_curve,

@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from vines.errors import ParameterError
-from vines.model import Word
+from vines.model import Word, of_moderate_length
 
 letters = st.text(alphabet="LR", min_size=1, max_size=12)
 periods = st.integers(1, 9)
@@ -177,3 +177,13 @@ def test_an_impact_of_a_chatter_is_not_written_apart(text):
 def test_equal_balls_keep_their_stars():
     assert str(Word("L2*L1R2R1").relabelled([(1, 2)])[0]) == "L1*L2R1R2"
     assert (Word("L1*R2").sticks, Word("L1*R2").balls) == ((True, False), (1, 2))
+
+
+def test_a_word_of_a_run_may_be_longer_than_one_of_which_orbits_are_searched():
+    long = Word("LR" * 150)
+    assert len(long) == 300
+    assert Word(str(long)) == long
+    with pytest.raises(ParameterError, match="allowed are 200 impacts over 200T"):
+        of_moderate_length(long)
+    with pytest.raises(ParameterError, match="allowed are 5000 impacts"):
+        Word("L" * 5001)

@@ -13,7 +13,6 @@ from vines.orbits import (
     bifurcation_row,
     continue_orbit,
     find_orbit,
-    follow_end,
     mirror_image,
     optimise,
     orbit_row,
@@ -37,8 +36,9 @@ def test_the_word_of_an_attractor_that_sticks_leads_to_its_orbit(symmetric):
     assert (attractor.word, attractor.name) == ("L*R*", "1:1")
     assert distance(symmetric, followed(attractor)) < 1e-10
     assert (symmetric.name, symmetric.symmetric, symmetric.stable, symmetric.admissible) == ("1:1", True, True, True)
-    # Of the common motion after a merge the simulator's tangent map knows a little less.
-    assert symmetric.multipliers == pytest.approx(attractor.multipliers, abs=1e-6)
+    # A pair of them, in one order or the other.
+    by_size = sorted(attractor.multipliers, key=lambda m: (-round(abs(m), 6), -m.imag))
+    assert symmetric.multipliers == pytest.approx(by_size, abs=1e-9)
     assert symmetric.measures.kinetic_ratio == pytest.approx(attractor.measures.kinetic_ratio, rel=1e-10)
     assert symmetric.measures.max_abs_x1 == pytest.approx(attractor.measures.max_abs_x1, rel=1e-10)
 
@@ -140,15 +140,3 @@ def test_what_is_not_there_is_said():
     assert all_orbits("L*L*", P).complete
     with pytest.raises(ParameterError, match="sticks, for which this is not made"):
         optimise("L*R*", "max_abs_x1", P, {"A": (0.5, 1.0)})
-
-
-def test_the_bound_of_the_region_that_sticks_is_followed_in_two_parameters():
-    orbit = find_orbit("L*R*", Params(mu=0.01, A=0.5))
-    ends = follow_end(orbit, "A", 0.05, other="mu", values=[0.01, 0.02])
-    assert [end.type for end in ends] == ["incomplete_chatter"] * 2
-    # From the other side, along mu at the same A.
-    across = find_orbit("L*R*", Params(mu=0.01, A=ends[1].params.A))
-    (same,) = follow_end(across, "mu", 0.05, other="A", values=[across.params.A])
-    assert (same.type, same.params.mu) == ("incomplete_chatter", pytest.approx(0.02, abs=1e-8))
-    with pytest.raises(ParameterError, match="does not stick"):
-        follow_end(find_orbit("LR", Params(mu=0.01, A=0.017)), "A", 0.05, other="mu", values=[0.01])

@@ -128,7 +128,7 @@ def test_multipliers_that_are_mere_rounding_make_no_bifurcations():
 def test_the_curvature_of_a_branching_is_that_of_the_family(cascade, generation):
     bifurcation = cascade[generation].bifurcations[0]
     start = unfolded(bifurcation.type, bifurcation.orbit)
-    c = branching_curvature(start, ("A", "mu"), np.array([0.01, 0.0])) * 0.01
+    c = branching_curvature(bifurcation.type, bifurcation.orbit, ("A", "mu"), np.array([0.01, 0.0])) * 0.01
     orbit = switch_branch(bifurcation)[0]
     away = orbit.params.Omega * orbit.t - start.params.Omega * start.t
     assert orbit.params.A - bifurcation.value == pytest.approx(c * (away @ away), rel=5e-3)

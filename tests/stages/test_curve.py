@@ -43,6 +43,15 @@ lines = 1
 seeds = 2
 vary.A = { from = 0.021, to = 0.024 }
 vary.mu = { from = 0.0099, to = 0.0101 }
+[stages.sticking]
+kind = "curve"
+word = "L*R*"
+type = "incomplete_chatter"
+lines = 1
+seeds = 2
+step = 0.2
+vary.A = { from = 0.2, to = 0.4 }
+vary.mu = { from = 0.009, to = 0.011 }
 [stages.figure]
 kind = "figure"
 plot = "chart"
@@ -57,7 +66,7 @@ def small(tmp_path_factory):
     (root / "pipelines" / "small.toml").write_text(SMALL)
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("VINES_ROOT", str(root))
-        run("small", stages=["breaking", "doubling", "fold", "figure"])
+        run("small", stages=["breaking", "doubling", "fold", "sticking", "figure"])
         yield root
 
 
@@ -94,6 +103,16 @@ def test_special_points_are_rows_of_their_own(small):
     assert (point["A"], point["mu"]) == pytest.approx((0.0122217, 0.00127723), rel=1e-5)
 
 
+def test_a_bound_of_orbits_that_stick_is_a_curve(small):
+    points = rows("sticking")
+    assert {(row["type"], row["word"], row["name"]) for row in points} == {("incomplete_chatter", "L*R*", "1:1")}
+    assert [row["end"] for row in points if row["end"]] == ["box", "box"]
+    A = np.interp(0.01, *zip(*sorted((row["mu"], row["A"]) for row in points), strict=True))
+    # Where the family ends that is followed in A alone.
+    inside = vines.find_orbit("L*R*", vines.Params(mu=0.01, A=0.3))
+    assert vines.continue_orbit(inside, "A", 0.1).bifurcations[-1].value == pytest.approx(A, rel=1e-3)
+
+
 def test_the_chart_is_drawn(small):
     (picture,) = small.glob("data/results/*/picture.svg")
     assert picture.stat().st_size > 10_000
@@ -112,11 +131,22 @@ def test_where_there_is_none_it_is_said(small):
         ("step = 0.1", "step = 0.0", "step > 0"),
         ('needs = ["breaking", "doubling"]', "needs = []", "draws other stages"),
         ('type = "fold"', 'type = "tear"', "tear"),
+        ('type = "fold"', 'type = "incomplete_chatter"', "'LLR' does not; give a word with a star"),
     ],
 )
 def test_senseless_declarations_are_refused_before_anything_runs(small, old, new, said):
     file = small / "pipelines" / "wrong.toml"
     file.write_text(SMALL.replace(old, new, 1))
     with pytest.raises(vines.errors.VinesError, match=said):
+        run("wrong")
+    file.unlink()
+
+
+@pytest.mark.parametrize("asks", ['word = "L*R"\ntype = "fold"', 'word = "LR"\ntype = "release_tangency"'])
+def test_of_other_systems_no_orbits_that_stick_are_followed(small, asks):
+    file = small / "pipelines" / "wrong.toml"
+    ranges = "vary.B = { from = 0.5, to = 0.8 }\nvary.r = { from = 0.4, to = 0.6 }\n"
+    file.write_text(f'title = "wrong"\n[stages.curve]\nsystem = "impact_pair"\nkind = "curve"\n{asks}\n{ranges}')
+    with pytest.raises(vines.errors.VinesError, match="for the system 'vi_nes' only"):
         run("wrong")
     file.unlink()

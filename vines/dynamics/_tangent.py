@@ -2,7 +2,7 @@
 
 Disturbances are taken at fixed time, in (x1, v1, x2, v2). Between events they follow the homogeneous equations; an
 impact acts by its saltation matrix, a merge projects on the common motion, a release changes nothing
-(docs/dynamics.md).
+(docs/dynamics.md; of the merge docs/sticking.md).
 """
 
 from __future__ import annotations
@@ -95,9 +95,11 @@ def jump_basis(c, row, Y):
             Y[3, j] = w2
     elif row[KIND] == STICK:
         share = 1.0 / (1.0 + c.mu)
+        # What is left of the chatter closes the gap of a disturbed run; meanwhile the damper acts on the common motion.
+        damped = c.lam * c.mu * share * share
         for j in range(4):
             x = share * (Y[0, j] + c.mu * Y[2, j])
-            v = share * (Y[1, j] + c.mu * Y[3, j])
+            v = share * (Y[1, j] + c.mu * Y[3, j]) + damped * (Y[0, j] - Y[2, j])
             Y[0, j] = x
             Y[2, j] = x
             Y[1, j] = v

@@ -65,6 +65,8 @@ CURVES = WornColours(
         "period_doubling": "#7a2bbf",
         "neimark_sacker": "#0b7d6b",
         "grazing": "#0b4ea2",
+        "incomplete_chatter": "#d3005f",
+        "release_tangency": "#9a5b00",
     }
 )
 """Colours of curves of bifurcations."""

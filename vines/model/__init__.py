@@ -23,7 +23,7 @@ from vines.model._vi_nes import (
     X1,
     X2,
 )
-from vines.model._words import Word, word_for
+from vines.model._words import Word, of_moderate_length, word_for
 
 __all__ = [
     "AMPLITUDE",
@@ -52,6 +52,7 @@ __all__ = [
     "Word",
     "dimensionless",
     "most_balls",
+    "of_moderate_length",
     "read_system",
     "system_names",
     "word_for",

@@ -12,13 +12,16 @@ from vines.model._letters import STICKS, ball_of, impacts, renamed, roles, rotat
 from vines.model._system import System
 from vines.model._vi_nes import VI_NES
 
-__all__ = ["Word", "word_for"]
+__all__ = ["Word", "of_moderate_length", "word_for"]
 
 _LEFT, _RIGHT = (contact.letter for contact in VI_NES.contacts)
 _SIGNS = {contact.letter: contact.sign for contact in VI_NES.contacts}
 _SHAPE = re.compile(rf"((?:[{VI_NES.alphabet}]\*?)+|(?:[{VI_NES.alphabet}][1-9]\*?)+)(?:/([1-9][0-9]*)?T)?")
-_LONGEST = 200
-"""Most impacts of a word, and most forcing periods."""
+_LONGEST = 5000
+"""Most impacts of a word, and most forcing periods: what a simulation settles to may have many."""
+
+_SEARCHED = 200
+"""The same of a word of which an orbit is asked for."""
 _SWAP = str.maketrans(dict(VI_NES.mirror.letters))
 _HOW = (
     f"write the impacts as letters {' and '.join(VI_NES.alphabet)}, each with the number of its ball where there are "
@@ -89,9 +92,7 @@ class Word:
                 raise ParameterError(f"{shown(text)} is not a word: {hint}")
             letters, p = match[1], int(match[2] or 1) if len(match[2] or "") < 6 else _LONGEST + 1
             if len(impacts(letters)) > _LONGEST or p > _LONGEST:
-                raise ParameterError(
-                    f"{shown(text)} is too long a word; allowed are {_LONGEST} impacts over {_LONGEST}T"
-                )
+                raise ParameterError(_too_long(text, _LONGEST))
             if STICKS in letters:
                 _refuse_split_chatter(text, letters)
         object.__setattr__(self, "letters", min(rotated(letters)))
@@ -260,6 +261,23 @@ class Word:
         return f"Word({str(self)!r})"
 
 
+def of_moderate_length(word: Word) -> Word:
+    """Return a word of which orbits can be searched.
+
+    Raises
+    ------
+    ParameterError
+        If it is too long.
+    """
+    if len(word) > _SEARCHED or word.p > _SEARCHED:
+        raise ParameterError(_too_long(str(word), _SEARCHED))
+    return word
+
+
+def _too_long(text: str, most: int) -> str:
+    return f"{shown(text)} is too long a word; allowed are {most} impacts over {most}T"
+
+
 def word_for(text: str | Word, system: System, *, sticking: bool = True) -> Word:
     """Return a word of a system; one numbered ball may also do without its number.
 
@@ -281,7 +299,7 @@ def word_for(text: str | Word, system: System, *, sticking: bool = True) -> Word
     Traceback (most recent call last):
     vines.errors.ParameterError: 'L1R1' is not a word of the system 'vi_nes', which has the impacts L, R
     """
-    word = Word(text)
+    word = of_moderate_length(Word(text))
     known = [contact.letter for contact in system.contacts]
     if system.balls == 1:
         known += sorted({letter[0] for letter in known})

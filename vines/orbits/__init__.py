@@ -17,7 +17,6 @@ from vines.orbits._orbit import Orbit
 from vines.orbits._own_word import own_word
 from vines.orbits._reduced import Reduced, manifold_amplitude, manifold_range, reduced_orbits, reduced_range
 from vines.orbits._rows import bifurcation_row, branch_row, orbit_outline, orbit_row
-from vines.orbits._sticking_bound import follow_end
 from vines.orbits._switch import switch_branch
 from vines.orbits._symmetric import symmetric_fold, symmetric_orbits
 from vines.orbits._table import symmetric_table
@@ -43,7 +42,6 @@ __all__ = [
     "find_orbit",
     "follow_cascade",
     "follow_curve",
-    "follow_end",
     "follow_families",
     "manifold_amplitude",
     "manifold_range",

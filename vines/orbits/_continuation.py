@@ -29,6 +29,7 @@ from vines.orbits._family import GeneralProblem
 from vines.orbits._general import origin
 from vines.orbits._orbit import Orbit
 from vines.orbits._problem import Point, Problem, ZeroSet
+from vines.orbits._sticking_curve import bound_beside
 from vines.orbits._sticking_ends import end_of
 from vines.orbits._sticking_family import StickingProblem
 from vines.orbits._symmetric import SymmetricProblem
@@ -42,6 +43,8 @@ _MARGINS = {GRAZING: grazing_margin, TIE: tie_margin}
 
 _ELSEWHERE = 1e-6
 """Distance of an orbit from its own repetition or mirror image below which it is one of the family that is left."""
+_EXTRAPOLATED = 1e-5
+"""Most by which an extrapolated end may be wrong, in ranges of the parameter."""
 
 _TOLERANCE = 1e-14
 """Of the root of a defining equation, as a fraction of the step in which it lies."""
@@ -206,7 +209,11 @@ class _Branch:
         if found is None:
             return None
         last, nothing = self.points[-1].orbit, complex(math.nan, math.nan)
-        value = min(max(self.points[-1].value + found.beyond, self.low), self.high)
+        value = self.points[-1].value + found.beyond
+        exact = bound_beside(found.type, last, self.problem.parameter, self.high - self.low)
+        if exact is not None and abs(exact - value) < _EXTRAPOLATED * (self.high - self.low):
+            value = exact
+        value = min(max(value, self.low), self.high)
         there = last.params.replace(**{self.problem.parameter: value})
         self.bifurcations.append(Bifurcation(found.type, self.problem.parameter, value, there, nothing, nothing, last))
         return found.type

@@ -8,26 +8,34 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from vines.model import PARAMETER_NAMES, Params
+from vines.model import PARAMETER_NAMES, Params, Word
 from vines.orbits._closing import Closing
 from vines.orbits._family import closing_at
+from vines.orbits._joined import unfolded
 from vines.orbits._orbit import Orbit
+from vines.orbits._sticking_family import closing_of_round
+from vines.orbits._sticking_orbit import Round, release_of
 from vines.orbits._values import frequency_of, values_of
 
 __all__ = ["branching_curvature"]
 
 Floats = npt.NDArray[np.float64]
 Equations = Callable[..., tuple[Floats, Floats]]
+"""Closing equations and their slope in the unknowns, by these and by how far the parameters moved."""
 
 _STEP = 1e-3
-"""Step of the differences in the phases [rad]; they are central, with an error of the order of its square."""
+"""Step of the differences in the unknowns, phases [rad]; they are central, with an error of the order of its square."""
 
 _CHANGE = 1e-5
 """The same in the parameters, relative to the direction given."""
 
 
-def _equations(orbit: Orbit, names: tuple[str, str], direction: Floats) -> Equations:
-    """Return the closing equations and their slope in the phases, by these and by how far the parameters moved."""
+def _equations(kind: str, orbit: Orbit, names: tuple[str, str], direction: Floats) -> tuple[Equations, Floats]:
+    """Return the equations of the family that comes out of an orbit, and their unknowns there."""
+    if orbit.word.sticking:
+        return _of_rounds(kind, orbit, names, direction)
+    orbit = unfolded(kind, orbit)
+    phases = orbit.t * frequency_of(orbit.params)
     if not isinstance(orbit.params, Params):
         closing = Closing(orbit, names, symmetric=False)
         begin = closing.start[-len(names) :]
@@ -36,7 +44,7 @@ def _equations(orbit: Orbit, names: tuple[str, str], direction: Floats) -> Equat
             closed = closing.at(z, begin + shift * direction)
             return (closed.defect, closed.slope) if closed else (z * np.nan, np.outer(z, z) * np.nan)
 
-        return at
+        return at, phases
     values = values_of(orbit.params)
     where = [PARAMETER_NAMES.index(name) for name in names]
     side = np.array(orbit.word.sides, dtype=np.int64)
@@ -46,16 +54,32 @@ def _equations(orbit: Orbit, names: tuple[str, str], direction: Floats) -> Equat
         moved[where] += shift * direction
         return closing_at(moved, orbit.word.p, side, z)[:2]
 
-    return of_bare_values
+    return of_bare_values, phases
 
 
-def branching_curvature(orbit: Orbit, names: tuple[str, str], direction: Floats) -> float:
+def _of_rounds(kind: str, orbit: Orbit, names: tuple[str, str], direction: Floats) -> tuple[Equations, Floats]:
+    """Return the same of an orbit that sticks, the unknowns being phase and velocity of a release."""
+    twice = f"{orbit.word.letters * 2}/{2 * orbit.word.p}T"
+    way = Round(Word(twice) if kind == "period_doubling" else orbit.word)
+    values = np.array([orbit.params.as_dict()[name] for name in names])
+    begin = release_of(orbit)
+
+    def of_rounds(z: Floats, shift: float = 0.0) -> tuple[Floats, Floats]:
+        moved = dict(zip(names, (values + shift * direction).tolist(), strict=True))
+        return closing_of_round(way, orbit.params.replace(**moved), float(z[0]), float(z[1]))
+
+    return of_rounds, np.array([begin.phase, begin.v1])
+
+
+def branching_curvature(kind: str, orbit: Orbit, names: tuple[str, str], direction: Floats) -> float:
     """Return c of ``parameters = c s² direction``, along the family that branches off, s being its distance.
 
     Parameters
     ----------
+    kind : str
+        Type of the branching point.
     orbit : Orbit
-        The orbit at the branching point, as one of the family that comes out of it (`unfolded`).
+        The orbit there.
     names : tuple of str, str
         Parameters that vary.
     direction : (2,) float array
@@ -66,8 +90,7 @@ def branching_curvature(orbit: Orbit, names: tuple[str, str], direction: Floats)
     float
         Zero where the branching is degenerate, changing from supercritical to subcritical.
     """
-    at = _equations(orbit, names, direction)
-    phases = orbit.t * frequency_of(orbit.params)
+    at, phases = _equations(kind, orbit, names, direction)
     slope = at(phases)[1]
     u, _, v = np.linalg.svd(slope)
     left, null = u[:, -1], v[-1]

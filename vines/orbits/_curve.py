@@ -27,7 +27,8 @@ class SpecialPoint:
         degenerate_symmetry_breaking; grazing, where the orbits of the curve cease to be admissible; tie, where two
         balls hit together, beyond which their impacts have changed places; on grazing
         curves grazing_fold, grazing_flip, grazing_symmetry_breaking, grazing_neimark_sacker, double_grazing,
-        degenerate_grazing. Docs/orbits.md says what each is.
+        degenerate_grazing, and the first four of these by their names on curves of incomplete_chatter and
+        release_tangency. Docs/orbits.md says what each is.
     values : tuple of float, float
         The two parameters there.
     orbit : Orbit
@@ -49,7 +50,8 @@ class Curve:
     Attributes
     ----------
     type : str
-        fold, symmetry_breaking, period_doubling, neimark_sacker or grazing.
+        fold, symmetry_breaking, period_doubling, neimark_sacker or grazing; of orbits that stick also
+        incomplete_chatter and release_tangency.
     word : Word
     symmetric : bool
         Whether the orbits are their own mirror images.
@@ -63,7 +65,8 @@ class Curve:
     ends : tuple of str, str
         Why it ends at either end: ``box``, ``grazing`` (of a curve of another type: its orbits cease to be
         admissible), ``tie``, ``double_grazing``, ``degenerate_grazing``, ``resonance_1_1`` or ``resonance_1_2`` (of a
-        Neimark-Sacker curve, whose pair turns real), ``closed``, ``points`` (as many as were allowed), ``domain``
+        Neimark-Sacker curve, whose pair turns real), ``incomplete_chatter`` or ``release_tangency`` (beyond which
+        orbits that stick do not), ``closed``, ``points`` (as many as were allowed), ``domain``
         (next to where the system, or its steady response, does not exist), ``rounding`` (the equations are left with
         fewer than nine digits), ``lost``.
     """

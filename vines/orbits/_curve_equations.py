@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
+from collections.abc import Sequence
 
 import numpy as np
 import numpy.typing as npt
@@ -10,13 +11,11 @@ import numpy.typing as npt
 from vines.model import Word
 from vines.orbits._closing import difference, stays_symmetric
 from vines.orbits._orbit import Orbit
+from vines.orbits._problem import Point
 
 __all__ = ["CurveEquations"]
 
 Floats = npt.NDArray[np.float64]
-
-_STEP = 1e-6
-"""Step of the differences, relative to unknowns of size one: they steer Newton's method and do not move its goal."""
 
 _TOUCHING = 1e-5
 """Time between the turning point that touches and one that the survey finds, below which they are one."""
@@ -50,9 +49,12 @@ class CurveEquations(ABC):
         The ball that turns there, 0 where balls have no numbers.
     start : (m,) float array
         The unknowns and parameters at the bifurcation.
+    step : float
+        Of the differences, relative to unknowns of size one: they steer Newton's method and do not move its goal.
     """
 
     start: Floats
+    step: float = 1e-6
 
     def __init__(self, kind: str, orbit: Orbit, parameters: tuple[str, str], spans: tuple[float, float]) -> None:
         self.word: Word = orbit.word
@@ -96,6 +98,11 @@ class CurveEquations(ABC):
         mine &= rows[:, 5] == self.ball
         return float(rows[~mine, 3].min(initial=2.0))
 
+    def runs_out(self, points: Sequence[Point]) -> str | None:
+        """Return what the orbits of the curve need that runs out just behind its last point, None if nothing does."""
+        del points
+        return None
+
     def equations(self, y: Floats) -> tuple[Floats, Floats]:
         """Return the equations at y, and their derivatives by differences."""
         matrix = np.empty((len(y) - 1, len(y)))
@@ -103,6 +110,6 @@ class CurveEquations(ABC):
         if not np.isfinite(here).all():
             return here, np.full_like(matrix, np.nan)
         for k in range(len(y)):
-            step = _STEP * (max(abs(y[k]), 0.01) if k >= len(y) - 2 else 1.0)
+            step = self.step * (max(abs(y[k]), 0.01) if k >= len(y) - 2 else 1.0)
             matrix[:, k] = difference(self.residual, y, k, step)
         return here, matrix

@@ -11,7 +11,7 @@ import numpy.typing as npt
 
 from vines.domains import Interval, Named, Names, Number, Of, Whole, stated
 from vines.errors import OrbitNotFound, ParameterError
-from vines.model import Params, word_for
+from vines.model import Params
 from vines.orbits._arclength import Chord, Walk
 from vines.orbits._branch import Bifurcation
 from vines.orbits._chain_curve import ChainCurve
@@ -20,8 +20,10 @@ from vines.orbits._curve import Curve, SpecialPoint
 from vines.orbits._curve_equations import CurveEquations
 from vines.orbits._curve_problem import CurveProblem
 from vines.orbits._joined import is_joint, left_family
+from vines.orbits._own_word import sticking_word
 from vines.orbits._problem import Point, ZeroSet
 from vines.orbits._special import END, Special, special_functions
+from vines.orbits._sticking_curve import StickingCurve
 
 __all__ = ["follow_curve"]
 
@@ -71,7 +73,8 @@ def follow_curve(
     Parameters
     ----------
     bifurcation : Bifurcation
-        A fold, symmetry breaking, period doubling, Neimark-Sacker point or grazing.
+        A fold, symmetry breaking, period doubling, Neimark-Sacker point or grazing; of orbits that stick also an
+        incomplete chatter or a release tangency.
     parameters : tuple of str, str
         Two of mu, A, Omega, r, lam; of another system two of its own.
     box : mapping of str to (float, float)
@@ -104,8 +107,14 @@ def follow_curve(
     >>> curve = follow_curve(branch.bifurcations[0], box={"A": (0.015, 0.02), "mu": (0.008, 0.012)})
     >>> curve.type, curve.ends
     ('symmetry_breaking', ('box', 'box'))
+
+    Where the chatter of 1:1 that sticks on both walls is only just complete:
+
+    >>> branch = continue_orbit(find_orbit("L*R*", Params(mu=0.01, A=0.3)), "A", 0.1)
+    >>> curve = follow_curve(branch.bifurcations[-1], box={"A": (0.2, 0.3), "mu": (0.008, 0.012)}, step=0.2)
+    >>> curve.type, curve.ends
+    ('incomplete_chatter', ('box', 'box'))
     """
-    word_for(bifurcation.word, bifurcation.orbit.params.system, sticking=False)
     low, high = _bounds(bifurcation, parameters, box)
     problem = _problem(bifurcation, parameters, high - low)
     zero = ZeroSet(problem, *problem.spans)
@@ -178,6 +187,9 @@ def _problem(bifurcation: Bifurcation, parameters: tuple[str, str], spans: Float
             "have a cusp there; give two others, or follow a fold"
         )
     form = CurveProblem if isinstance(orbit.params, Params) else ChainCurve
+    if orbit.word.sticking:
+        sticking_word(orbit.word, orbit.params)
+        form = StickingCurve
     return form(bifurcation.type, orbit, parameters, tuple(spans.tolist()))
 
 
@@ -216,12 +228,13 @@ class _Way:
         if self.end == "lost":
             here = self.points[-1] if self.points else begin
             ahead = here.y + self.step * self.zero.scale * here.tangent
-            self.end = "lost" if np.isfinite(self.problem.residual(ahead)).all() else "domain"
+            exists = np.isfinite(self.problem.residual(ahead)).all()
+            self.end = self.problem.runs_out([begin, *self.points]) or ("lost" if exists else "domain")
 
     def _record(self, here: Point, there: Point, last: bool) -> str | None:
         """Add what lies between two points, and the second one; return why the curve ends there, if it does."""
         if not np.abs(self.problem.residual(there.y)).max() < _ROUNDING:
-            return "rounding"
+            return self.problem.runs_out([self.begin, *self.points]) or "rounding"
         after = [special.function(there) for special in self.functions]
         hits = [self._cusp(here, there)] + [
             self._locate(special, here, there, a, b)

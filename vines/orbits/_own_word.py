@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from vines.errors import OrbitNotFound, ParameterError
-from vines.model import Params, Word
+from vines.model import Params, Word, of_moderate_length
 
 __all__ = ["own_word", "sticking_word", "whole_word"]
 
@@ -46,7 +46,7 @@ def whole_word(word: str | Word, p: Any) -> Word:
     Traceback (most recent call last):
     vines.errors.ParameterError: L2R2 has impacts of ball 2, the system has balls 1 … 2; give a word in which each hits
     """
-    word = own_word(word, p)
+    word = of_moderate_length(own_word(word, p))
     balls = getattr(p, "balls", 1)
     numbers = sorted(set(word.balls))
     if numbers != (list(range(1, balls + 1)) if balls > 1 else [0]):

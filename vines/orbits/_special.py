@@ -12,10 +12,9 @@ import numpy.typing as npt
 from vines.orbits._conditions import TIE, grazing_margin, tie_margin
 from vines.orbits._criticality import branching_curvature
 from vines.orbits._curve_equations import CurveEquations
-from vines.orbits._joined import unfolded
 from vines.orbits._problem import Point
 
-__all__ = ["END", "RESONANCES", "Special", "special_functions"]
+__all__ = ["BOUNDS", "END", "RESONANCES", "STICKING_BOUNDS", "Special", "special_functions"]
 
 Multipliers = npt.NDArray[np.complex128]
 
@@ -24,6 +23,10 @@ END = "grazing"
 
 RESONANCES = {"resonance_1_1": 1.0, "resonance_1_2": -1.0, "resonance_1_3": -0.5, "resonance_1_4": 0.0}
 """Cosine of the angle of the critical pair at the strong resonances."""
+
+STICKING_BOUNDS = ("incomplete_chatter", "release_tangency")
+BOUNDS = ("grazing", *STICKING_BOUNDS)
+"""Types of curves at which no multiplier is critical."""
 
 _LARGEST = 1e7
 """Modulus of a multiplier beyond which the others are too much rounding to tell what they do."""
@@ -65,7 +68,7 @@ def special_functions(problem: CurveEquations) -> tuple[Special, ...]:
     def critical(point: Point) -> tuple[Multipliers, Multipliers]:
         """Return the multipliers that make the bifurcation, and the others."""
         m = multipliers(point)
-        if kind == "grazing":
+        if kind in BOUNDS:
             mine: tuple[int, ...] = ()
         elif kind == "neimark_sacker":
             mine = min(combinations(range(len(m)), 2), key=lambda pair: abs(1 - m[pair[0]] * m[pair[1]]))
@@ -94,7 +97,7 @@ def special_functions(problem: CurveEquations) -> tuple[Special, ...]:
         along = point.tangent[-2:]
         direction = np.array([-along[1], along[0]]) / np.linalg.norm(along) * problem.spans
         try:
-            return branching_curvature(unfolded(kind, point.orbit), problem.names, direction)
+            return branching_curvature(kind, point.orbit, problem.names, direction)
         except np.linalg.LinAlgError:  # at the border of where the system exists
             return np.nan
 
@@ -109,15 +112,20 @@ def special_functions(problem: CurveEquations) -> tuple[Special, ...]:
         return abs(curvature(point)) < 1.0
 
     ties = (Special(TIE, tie_margin, _always),) if any(problem.word.balls) else ()
-    fold = Special(f"{kind}_fold" if kind == "grazing" else f"fold_{flip}", one, _always)
+    fold = Special(f"{kind}_fold" if kind in BOUNDS else f"fold_{flip}", one, _always)
+    of_a_bound = (
+        *ties,
+        fold,
+        Special(f"{kind}_{flip}", minus_one, _always),
+        Special(f"{kind}_neimark_sacker", pairs, on_circle),
+    )
+    if kind in STICKING_BOUNDS:
+        return of_a_bound
     if kind == "grazing":
         if not problem.touches:
             return ties
         return (
-            *ties,
-            fold,
-            Special(f"grazing_{flip}", minus_one, _always),
-            Special("grazing_neimark_sacker", pairs, on_circle),
+            *of_a_bound,
             Special("double_grazing", other_margin, _always),
             Special("degenerate_grazing", bend, _always),
         )

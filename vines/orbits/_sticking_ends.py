@@ -15,7 +15,17 @@ import numpy as np
 
 from vines.orbits._problem import Point
 
-__all__ = ["GRAZING", "INCOMPLETE_CHATTER", "RELEASE_TANGENCY", "End", "chatter_exponent", "end_of"]
+__all__ = [
+    "GRAZING",
+    "INCOMPLETE_CHATTER",
+    "RELEASE_TANGENCY",
+    "End",
+    "SelfSimilar",
+    "chatter_exponent",
+    "end_of",
+    "self_similar",
+    "what_vanishes",
+]
 
 GRAZING = "grazing"
 INCOMPLETE_CHATTER = "incomplete_chatter"
@@ -35,19 +45,30 @@ class End(NamedTuple):
     beyond: float
 
 
-def chatter_exponent(r: float) -> float:
-    """Return the power of the distance to the end with which the stick after a chatter vanishes there.
+class SelfSimilar(NamedTuple):
+    """The chatter that is only just complete, to lowest order in the time s left of it.
 
-    At the end a chatter accumulates just where the contact force vanishes. Near that place the ball is pushed by
-    w'' = j s towards the wall, s the time left, and the hops with departure speed u = rho j s² repeat at rho = rho*:
-    each leaves 1 - y of the time, with (3 - y)(1 - y)² = r (3 - 2 y). A deviation of rho grows at each impact by a
-    factor k; once it is as large as rho itself the chatter is over, complete or not, after a number of impacts that is
-    the logarithm of the distance to the end over that of k. What is left then is the stick.
+    Attributes
+    ----------
+    hop : float
+        Departure speed over j s², j being the rate at which the push falls.
+    shrink : float
+        Of the time left, from one impact to the next.
+    growth : float
+        Of a small deviation of `hop`.
+    """
 
-    Examples
-    --------
-    >>> print(f"{chatter_exponent(0.35):.4f} {chatter_exponent(0.65):.4f}")
-    0.6068 0.6012
+    hop: float
+    shrink: float
+    growth: float
+
+
+def self_similar(r: float) -> SelfSimilar:
+    """Return how a chatter accumulates that is only just complete, where the contact force vanishes (0 < r < 1).
+
+    Near that place the ball is pushed by w'' = j s towards the wall, s the time left, and the hops with departure speed
+    u = rho j s² repeat at rho = rho*: each leaves 1 - y of the time, with (3 - y)(1 - y)² = r (3 - 2 y). A deviation of
+    rho grows at each impact (docs/sticking.md).
     """
     low, high = 0.0, 1.0
     for _ in range(200):
@@ -58,7 +79,22 @@ def chatter_exponent(r: float) -> float:
             high = y
     y = 0.5 * (low + high)
     grows = r * ((1 / 2 - 2 * y / 3) / (1 - y) ** 2 + 2 * (y / 2 - y * y / 3) / (1 - y) ** 3) / (1 / 2 - y / 3)
-    return math.log(1 / (1 - y)) / math.log(grows)
+    return SelfSimilar(y / 2 - y * y / 6, 1 - y, grows)
+
+
+def chatter_exponent(r: float) -> float:
+    """Return the power of the distance to the end with which the stick after a chatter vanishes there.
+
+    Once a deviation has grown as large as rho itself the chatter is over, complete or not, after a number of impacts
+    that is the logarithm of the distance to the end over that of its growth. What is left then is the stick.
+
+    Examples
+    --------
+    >>> print(f"{chatter_exponent(0.35):.4f} {chatter_exponent(0.65):.4f}")
+    0.6068 0.6012
+    """
+    limit = self_similar(r)
+    return math.log(1 / limit.shrink) / math.log(limit.growth)
 
 
 def _speeds(point: Point) -> float:
@@ -67,9 +103,13 @@ def _speeds(point: Point) -> float:
 
 
 def _stick(point: Point) -> float:
-    """Return the length of the shortest spell, to the power with which it falls as the distance to its end."""
+    """Return the length of the shortest spell, to the power with which it falls as the distance to its end.
+
+    On the curve of such an end spells without length are not those that end next.
+    """
     spells, r = point.orbit.spells, point.orbit.params.r
-    shortest = float(np.min(spells["t_release"] - spells["t_start"]))
+    lengths = spells["t_release"] - spells["t_start"]
+    shortest = float(np.min(lengths[lengths > 0], initial=math.inf))
     return max(shortest, 0.0) ** (1 / chatter_exponent(r)) if 0 < r < 1 else shortest
 
 
@@ -80,6 +120,26 @@ _MARGINS: tuple[tuple[str, Callable[[Point], float]], ...] = (
     (RELEASE_TANGENCY, lambda point: float(np.min(point.orbit.spells["falls"]))),
     (RELEASE_TANGENCY, lambda point: float(np.min(point.orbit.spells["least_force"]))),
 )
+
+
+def what_vanishes(before: Point, last: Point, within: float) -> tuple[str, float] | None:
+    """Return which margin runs out behind two points of a curve, and after how many more moves from one to the other.
+
+    Parameters
+    ----------
+    before, last : Point
+    within : float
+        Most moves.
+    """
+    least, found = within, None
+    for kind, margin in _MARGINS:
+        first, second = margin(before), margin(last)
+        if not (math.isfinite(first) and math.isfinite(second) and second < first):
+            continue
+        moves = second / (first - second)
+        if abs(moves) < least:
+            least, found = abs(moves), (kind, moves)
+    return found
 
 
 def end_of(points: Sequence[Point], width: float) -> End | None:
@@ -96,13 +156,6 @@ def end_of(points: Sequence[Point], width: float) -> End | None:
     before = next((point for point in reversed(points) if abs(point.value - last.value) > _BASE * width), None)
     if before is None:
         return None
-    least, found = _NEAR, None
     move = last.value - before.value
-    for kind, margin in _MARGINS:
-        first, second = margin(before), margin(last)
-        if not (math.isfinite(first) and math.isfinite(second) and second < first):
-            continue
-        beyond = move * second / (first - second)
-        if abs(beyond) < least * width:
-            least, found = abs(beyond) / width, End(kind, beyond)
-    return found
+    found = what_vanishes(before, last, _NEAR * width / abs(move))
+    return None if found is None else End(found[0], move * found[1])

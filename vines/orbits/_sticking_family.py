@@ -13,9 +13,34 @@ from vines.orbits._family import DIFFERENCE
 from vines.orbits._orbit import Orbit
 from vines.orbits._sticking_orbit import Release, Round, release_of, sticking_orbit
 
-__all__ = ["StickingProblem"]
+__all__ = ["StickingProblem", "closing_of_round"]
 
 Floats = npt.NDArray[np.float64]
+
+
+def closing_of_round(way: Round, p: Params, phase: float, v1: float) -> tuple[Floats, Floats]:
+    """Return by how much a release comes back late and too fast, and the slopes of both in its phase and velocity.
+
+    They are nan where other contacts come.
+
+    Parameters
+    ----------
+    way : Round
+    p : Params
+    phase, v1 : float
+        Of the release.
+
+    Returns
+    -------
+    (defect, slope)
+        Shapes (2,) and (2, 2).
+    """
+    met = way.run(p, Release(phase, v1))
+    if met is None:
+        return np.full(2, math.nan), np.full((2, 2), math.nan)
+    out = met[1]
+    slope = np.array([[(out[2] - 1.0) / p.Omega, out[3]], [out[4] / p.Omega, out[5] - way.sign]])
+    return np.array([out[0] - way.span(p.period), out[1] - way.sign * v1]), slope
 
 
 class StickingProblem:
@@ -51,36 +76,25 @@ class StickingProblem:
         except ParameterError:
             return None
 
-    def _defect(self, y: Floats) -> tuple[Floats, Floats] | None:
-        """Return by how much the release comes late and too fast, and the slopes of the round; None without a round."""
+    def _closing(self, y: Floats) -> tuple[Floats, Floats]:
         p = self._params(float(y[-1]))
-        met = self._round.run(p, Release(float(y[0]), float(y[1]))) if p is not None else None
-        if p is None or met is None:
-            return None
-        out = met[1]
-        return np.array([out[0] - self._round.span(p.period), out[1] - self._round.sign * y[1]]), out
+        if p is None:
+            return np.full(2, math.nan), np.full((2, 2), math.nan)
+        return closing_of_round(self._round, p, float(y[0]), float(y[1]))
 
     def equations(self, y: Floats) -> tuple[Floats, Floats]:
         """Return what is left of time and velocity, shape (2,), and its derivatives, shape (2, 3); nan without a round.
 
         Derivatives by the release are those of the tangent map, those by the parameter differences.
         """
-        here = self._defect(y)
-        if here is None:
-            return np.full(2, math.nan), np.full((2, 3), math.nan)
-        value, out = here
-        matrix = np.empty((2, 3))
-        frequency = y[-1] if self.parameter == "Omega" else self._fixed.Omega
-        matrix[:, 0] = np.array([out[2] - 1.0, out[4]]) / frequency
-        matrix[:, 1] = out[3], out[5] - self._round.sign
-        matrix[:, 2] = self._by_parameter(y, value)
-        return value, matrix
+        defect, slope = self._closing(y)
+        return defect, np.column_stack([slope, self._by_parameter(y, defect)])
 
     def _by_parameter(self, y: Floats, here: Floats) -> Floats:
         step = DIFFERENCE * max(abs(float(y[-1])), 0.01)
-        sides = [(shift, self._defect(np.array([y[0], y[1], y[2] + shift]))) for shift in (step, -step)]
-        known = [(shift, met[0]) for shift, met in sides if met is not None]
-        if not known:
+        sides = [(shift, self._closing(np.array([y[0], y[1], y[2] + shift]))[0]) for shift in (step, -step)]
+        known = [(shift, defect) for shift, defect in sides if np.isfinite(defect).all()]
+        if not known or not np.isfinite(here).all():
             return np.full(2, math.nan)
         # Where there is a round on one side only its difference to what is here has to do.
         (a, above), (b, below) = known if len(known) == 2 else (known[0], (0.0, here))

@@ -14,7 +14,17 @@ from vines.dynamics.kernels import advance, begin, flow_basis, jump_basis
 from vines.dynamics.kernels import rows as col
 from vines.kernels import linked_njit, new_vector, njit, zero_matrix
 
-__all__ = ["CHATTER", "ROOM", "force_slope", "newton_round", "pass_event", "round_kernel", "search_rounds"]
+__all__ = [
+    "CHATTER",
+    "LONGEST",
+    "ROOM",
+    "force_slope",
+    "newton_round",
+    "put_at_release",
+    "round_kernel",
+    "round_slopes",
+    "search_rounds",
+]
 
 CHATTER = 2
 """Size of the mark of a contact that is a complete chatter; that of a single impact is 1."""
@@ -22,7 +32,7 @@ CHATTER = 2
 ROOM = 8192
 """Events that a round may have at most."""
 
-_LONGEST = 2.0
+LONGEST = 2.0
 """A round may last that many spans and one forcing period more."""
 
 _HALVINGS = 12
@@ -40,7 +50,7 @@ def force_slope(c, phase):
 
 
 @njit
-def _release(c, side, phase, v1, state):
+def put_at_release(c, side, phase, v1, state):
     """Put a run just after a release on a wall; say whether there can be one: the contact force has to fall."""
     force = c.A * math.sin(phase) + c.lam * c.Omega * c.A * math.cos(phase)
     for k in range(state.shape[0]):
@@ -52,22 +62,26 @@ def _release(c, side, phase, v1, state):
     return side * (force_slope(c, phase) - v1) < 0.0
 
 
-@njit
-def pass_event(c, row, Y):
-    """Apply the effect of an event to the disturbances that are the columns of Y, at a merge better than `jump_basis`.
-
-    A disturbed run has a gap then, which what is left of its chatter closes; meanwhile the damper gives the common
-    motion lam mu/(1 + mu)² times the gap (docs/sticking.md), which is as small as the hops that the merge leaves out.
-    """
-    if row[col.KIND] != col.STICK:
-        jump_basis(c, row, Y)
-        return
-    share = c.lam * c.mu / ((1.0 + c.mu) * (1.0 + c.mu))
-    closes = Y[0] - Y[2]
-    jump_basis(c, row, Y)
-    for j in range(4):
-        Y[1, j] += share * closes[j]
-        Y[3, j] += share * closes[j]
+@linked_njit
+def round_slopes(c, phase, v1, rows, out):
+    """Fill `out` with time and velocity at the last row, a release, and their derivatives by those of the first."""
+    count = rows.shape[0]
+    last = rows[count - 1]
+    last[col.A_V1], last[col.A_V2] = last[col.V1], last[col.V2]
+    out[0], out[1] = last[col.TIME], last[col.V1]
+    # Columns: the start later by dt, with the same velocity, carried back to the time of the start; a larger velocity.
+    Y = zero_matrix(4, 4)
+    Y[0, 0] = Y[2, 0] = force_slope(c, phase) - v1
+    Y[0, 1] = Y[2, 1] = -c.lam
+    Y[1, 1] = Y[3, 1] = 1.0
+    for i in range(1, count):
+        flow_basis(c, rows[i - 1, col.MODE], rows[i, col.TAU], Y)
+        jump_basis(c, rows[i], Y)
+    # A disturbed run is let go when its own force vanishes. Until then x1'' is 0, to first order.
+    falls = force_slope(c, last[col.PHASE]) - last[col.V1]
+    for j in range(2):
+        out[2 + j] = (c.lam * Y[1, j] + Y[0, j]) / falls
+        out[4 + j] = Y[1, j]
 
 
 @linked_njit
@@ -97,10 +111,10 @@ def round_kernel(c, side, wanted, span, phase, v1, rows, out):
         Rows filled, 0 where other contacts come.
     """
     state = new_vector(col.STATE)
-    if not _release(c, side, phase, v1, state):
+    if not put_at_release(c, side, phase, v1, state):
         return 0
     begin(c, state, rows)
-    stop = _LONGEST * span + c.period
+    stop = LONGEST * span + c.period
     count, reached, chatters = 1, 0, False
     while True:
         if count == rows.shape[0]:
@@ -130,22 +144,7 @@ def round_kernel(c, side, wanted, span, phase, v1, rows, out):
             reached += 1
             if reached == wanted.shape[0]:
                 break
-    last = rows[count - 1]
-    last[col.A_V1], last[col.A_V2] = last[col.V1], last[col.V2]
-    out[0], out[1] = last[col.TIME], last[col.V1]
-    # Columns: the start later by dt, with the same velocity, carried back to the time of the start; a larger velocity.
-    Y = zero_matrix(4, 4)
-    Y[0, 0] = Y[2, 0] = force_slope(c, phase) - v1
-    Y[0, 1] = Y[2, 1] = -c.lam
-    Y[1, 1] = Y[3, 1] = 1.0
-    for i in range(1, count):
-        flow_basis(c, rows[i - 1, col.MODE], rows[i, col.TAU], Y)
-        pass_event(c, rows[i], Y)
-    # A disturbed run is let go when its own force vanishes. Until then x1'' is 0, to first order.
-    falls = force_slope(c, last[col.PHASE]) - last[col.V1]
-    for j in range(2):
-        out[2 + j] = (c.lam * Y[1, j] + Y[0, j]) / falls
-        out[4 + j] = Y[1, j]
+    round_slopes(c, phase, v1, rows[:count], out)
     return count
 
 

@@ -21,7 +21,7 @@ from vines.orbits._orbit import SPELL, Orbit
 from vines.orbits._sticking_map import CHATTER, ROOM, newton_round, round_kernel
 from vines.orbits._sticking_survey import FALLS, LEAST_FORCE, SLOWEST, survey_sticking
 
-__all__ = ["Release", "Round", "mirrored_sticking", "release_of", "sticking_orbit"]
+__all__ = ["Release", "Round", "mirrored_sticking", "orbit_of_rows", "release_of", "sticking_orbit"]
 
 Floats = npt.NDArray[np.float64]
 
@@ -52,11 +52,13 @@ class Round:
         One with a star.
     half : bool
         Whether to go half the way only, to the mirror image of the release; the word has to be symmetric.
+    first : int, optional
+        Another contact that sticks, after whose release to begin.
     """
 
-    def __init__(self, word: Word, half: bool = False) -> None:
+    def __init__(self, word: Word, half: bool = False, first: int | None = None) -> None:
         marks = [side * (CHATTER if sticks else 1) for side, sticks in zip(word.sides, word.sticks, strict=True)]
-        first = word.sticks.index(True)
+        first = word.sticks.index(True) if first is None else first
         self.word, self.half = word, half
         self.side = word.sides[first]
         self.sign = -1.0 if half else 1.0
@@ -136,7 +138,7 @@ def sticking_orbit(word: Word, p: Params, release: Release, remark: str = "") ->
             if whole is not None:
                 release, (rows, out) = found, whole
                 half = np.diag([1.0, -1.0]) @ again[1][2:].reshape(2, 2)
-    return _assembled(way, p, release, rows, out, half, remark)
+    return orbit_of_rows(way, p, release, rows, out, half, remark)
 
 
 def _skew(way: Round, p: Params, release: Release, rows: Floats) -> float:
@@ -179,9 +181,26 @@ def _places(way: Round, rows: Floats) -> npt.NDArray[np.int64]:
     return np.array(places, dtype=np.int64)
 
 
-def _assembled(
-    way: Round, p: Params, release: Release, rows: Floats, out: Floats, half: Floats | None, remark: str
+def orbit_of_rows(
+    way: Round, p: Params, release: Release, rows: Floats, out: Floats, half: Floats | None, remark: str = ""
 ) -> Orbit:
+    """Return the orbit of a round that closes.
+
+    Parameters
+    ----------
+    way : Round
+        The whole way.
+    p : Params
+    release : Release
+        From which it begins.
+    rows : (M, ROW) float array
+        Its events.
+    out : (6,) float array
+        Where it comes, with the slopes, as `round_kernel` gives it.
+    half : (2, 2) float array or None
+        The slopes of half the way, of an orbit that is its own mirror image.
+    remark : str
+    """
     word, c = way.word, constants(p)
     t, states, places, start = _contacts(way, p, release, rows)
     twice = np.concatenate([rows, rows[1:]])
@@ -250,9 +269,9 @@ def _spells(way: Round, run: Trajectory, margins: Floats, start: float, begin: f
     return out
 
 
-def release_of(orbit: Orbit) -> Release:
-    """Return the release after the first contact of the canonical word that sticks."""
-    spell = orbit.spells[0]
+def release_of(orbit: Orbit, number: int = 0) -> Release:
+    """Return the release after the first contact of the canonical word that sticks, or after another one of them."""
+    spell = orbit.spells[number]
     return Release(float(spell["phase_release"]), float(spell["v1"]))
 
 

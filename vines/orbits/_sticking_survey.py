@@ -10,16 +10,17 @@ from vines.dynamics.kernels import (
     flight,
     flow_basis,
     free_ball,
+    jump_basis,
     pull,
     turn,
 )
 from vines.dynamics.kernels import rows as col
-from vines.kernels import copy_values, linked_njit, new_cube, njit, zero_matrix
-from vines.orbits._sticking_map import force_slope, pass_event
+from vines.kernels import copy_values, linked_njit, new_cube, new_matrix, njit, zero_matrix
+from vines.orbits._sticking_map import force_slope
 from vines.orbits._survey import NO_TURNING
 from vines.orbits._turning import turning_points_kernel
 
-__all__ = ["FALLS", "LEAST_FORCE", "SLOWEST", "survey_sticking"]
+__all__ = ["FALLS", "LEAST_FORCE", "RESOLVED", "SLOWEST", "least_force", "round_turnings", "survey_sticking"]
 
 SLOWEST, LEAST_FORCE, FALLS = range(3)
 """Margins of a spell: least speed of an impact of its chatter that a faster one follows; least contact force at a
@@ -28,7 +29,7 @@ minimum within the spell; rate at which the force falls at the release. The firs
 _SHORT = 1e-4
 """Flights shorter than this turn once, away from the wall, and their end at an impact is certain."""
 
-_RESOLVED = 1e-4
+RESOLVED = 1e-4
 """Speed of an impact beside which one before it counts as slow: the last ones of a chatter are in order to rounding."""
 
 _PARTS = 64
@@ -36,19 +37,37 @@ _PARTS = 64
 
 
 @linked_njit
-def _clearance(c, row, tau):
-    """Return the least distance of a turning point of a flight to the wall that it points at."""
-    motion = flight(c, c.free, row[col.X1], row[col.A_V1], row[col.PHASE], 0.0)
-    least = NO_TURNING
-    for at in turning_points_kernel(c, motion, row[col.A_V2], tau):
-        if at < _SHORT:
-            # Just after a release the ball has hardly left the wall, and rounding turns it.
+def round_turnings(c, rows):
+    """Return all turning points of the flights of a round: row, time since it, wall it points at, clearance, w''.
+
+    Parameters
+    ----------
+    c : vines.dynamics._constants.Constants
+    rows : (M, ROW) float array
+
+    Returns
+    -------
+    ndarray, shape (k, 5)
+    """
+    found = []
+    for i in range(rows.shape[0] - 1):
+        row, tau = rows[i], rows[i + 1, col.TAU]
+        if row[col.MODE] != 0.0 or tau <= _SHORT:
             continue
-        x, _, a, _, _ = derivatives(c.free, c.Omega, *turn(c.free, c.Omega, *motion, at))
-        way, _ = free_ball(c, row[col.A_V2], at)
-        w = x - (row[col.X2] + way)
-        least = min(least, 1.0 - (w if pull(c, a) < 0.0 else -w))
-    return least
+        motion = flight(c, c.free, row[col.X1], row[col.A_V1], row[col.PHASE], 0.0)
+        for at in turning_points_kernel(c, motion, row[col.A_V2], tau):
+            if at < _SHORT:
+                # Just after a release the ball has hardly left the wall, and rounding turns it.
+                continue
+            x, _, a, _, _ = derivatives(c.free, c.Omega, *turn(c.free, c.Omega, *motion, at))
+            way, _ = free_ball(c, row[col.A_V2], at)
+            wall = 1.0 if pull(c, a) < 0.0 else -1.0
+            found.append((float(i), at, wall, 1.0 - wall * (x - (row[col.X2] + way)), a))
+    out = new_matrix(len(found), 5)
+    for i in range(len(found)):
+        for k in range(5):
+            out[i, k] = found[i][k]
+    return out
 
 
 @njit
@@ -59,11 +78,11 @@ def _force(c, side, motion, tau):
 
 
 @linked_njit
-def _least_force(c, row, tau):
-    """Return the least contact force at a minimum within a spell, inf if it has none."""
+def least_force(c, row, tau):
+    """Return the least contact force at a minimum within a spell, inf if it has none, and when it is."""
     side = row[col.MODE]
     motion = flight(c, c.stuck, row[col.X1], row[col.A_V1], row[col.PHASE], 0.0)
-    least = math.inf
+    least, when = math.inf, math.nan
     before = _force(c, side, motion, 0.0)[1]
     for k in range(1, _PARTS + 1):
         here = _force(c, side, motion, tau * k / _PARTS)[1]
@@ -75,9 +94,11 @@ def _least_force(c, row, tau):
                     low = middle
                 else:
                     high = middle
-            least = min(least, _force(c, side, motion, 0.5 * (low + high))[0])
+            force = _force(c, side, motion, 0.5 * (low + high))[0]
+            if force < least:
+                least, when = force, 0.5 * (low + high)
         before = here
-    return least
+    return least, when
 
 
 @njit
@@ -99,7 +120,7 @@ def _to_contact(c, rows, first, last, J):
     _just_after(c, rows[first], Y)
     for i in range(first + 1, last):
         flow_basis(c, rows[i - 1, col.MODE], rows[i, col.TAU], Y)
-        pass_event(c, rows[i], Y)
+        jump_basis(c, rows[i], Y)
     flow_basis(c, rows[last - 1, col.MODE], rows[last, col.TAU], Y)
     row = rows[last]
     motion = flight(c, c.free, row[col.X1], row[col.V1], row[col.PHASE], 0.0)
@@ -140,12 +161,12 @@ def survey_sticking(c, rows, contacts, spells):
         for i in range(4):
             copy_values(jacobians[k, i], J[i])
     clearance = NO_TURNING
+    turnings = round_turnings(c, rows[contacts[0] : contacts[N] + 1])
+    for k in range(turnings.shape[0]):
+        clearance = min(clearance, turnings[k, 3])
     spell = 0
     for i in range(contacts[0], contacts[N]):
-        tau = rows[i + 1, col.TAU]
         if rows[i, col.MODE] == 0.0:
-            if tau > _SHORT:
-                clearance = min(clearance, _clearance(c, rows[i], tau))
             continue
         if rows[i, col.KIND] != col.STICK:
             continue
@@ -155,7 +176,7 @@ def survey_sticking(c, rows, contacts, spells):
             while rows[j, col.KIND] != col.IMPACT:
                 j -= 1
             speed = abs(rows[j, col.V1] - rows[j, col.V2])
-            if speed < fastest and fastest > _RESOLVED:
+            if speed < fastest and fastest > RESOLVED:
                 slowest = min(slowest, speed)
             fastest = max(fastest, speed)
             j -= 1
@@ -163,7 +184,7 @@ def survey_sticking(c, rows, contacts, spells):
         while rows[ends, col.KIND] != col.RELEASE:
             ends += 1
         spells[spell, SLOWEST] = slowest
-        spells[spell, LEAST_FORCE] = _least_force(c, rows[i], rows[ends, col.TIME] - rows[i, col.TIME])
+        spells[spell, LEAST_FORCE], _ = least_force(c, rows[i], rows[ends, col.TIME] - rows[i, col.TIME])
         spells[spell, FALLS] = abs(force_slope(c, rows[ends, col.PHASE]) - rows[ends, col.V1])
         spell += 1
     return jacobians, clearance

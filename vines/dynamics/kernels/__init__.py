@@ -15,6 +15,7 @@ from vines.dynamics._constants import (
     constants_kernel,
     oscillator,
 )
+from vines.dynamics._contact import CONTACT
 from vines.dynamics._flight import (
     derivatives,
     flight,
@@ -37,11 +38,13 @@ from vines.dynamics._impact_law import (
 from vines.dynamics._integrals import largest_displacement, segment_integrals
 from vines.dynamics._room import constants, room_of, table_of
 from vines.dynamics._saltation import jacobian_kernel
+from vines.dynamics._sticking import next_release
 from vines.dynamics._tangent import directions, flow_basis, jump_basis, lyapunov_blocks, offset, tangent_product
 from vines.dynamics._totals import ball_mass, segment_state, window_totals
 from vines.dynamics._window import open_window, run_window, width_of, with_room
 
 __all__ = [
+    "CONTACT",
     "Constants",
     "ParameterTable",
     "advance",
@@ -64,6 +67,7 @@ __all__ = [
     "jump_basis",
     "largest_displacement",
     "lyapunov_blocks",
+    "next_release",
     "offset",
     "open_window",
     "oscillator",

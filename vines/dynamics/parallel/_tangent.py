@@ -79,9 +79,11 @@ def _jump_basis(c, row, Y):
     elif row[KIND] == STICK:
         mass, mu = 1.0 + riding(c, before), of_ball(c.each, b, MU)
         share = 1.0 / (mass + mu)
+        # As for one ball: the rest of the chatter closes the gap of a disturbed run, and the damper acts meanwhile.
+        damped = c.lam * mu * share * share
         for j in range(Y.shape[1]):
             x = share * (mass * Y[0, j] + mu * Y[2 + 2 * b, j])
-            v = share * (mass * Y[1, j] + mu * Y[3 + 2 * b, j])
+            v = share * (mass * Y[1, j] + mu * Y[3 + 2 * b, j]) + damped * (Y[0, j] - Y[2 + 2 * b, j])
             Y[0, j], Y[1, j] = x, v
             for i in range(c.balls):
                 if i == b or ride & (1 << i):

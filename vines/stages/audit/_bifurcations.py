@@ -102,7 +102,7 @@ def curve_equations(rows: Rows) -> Iterator[Defect]:
     off = np.where(types == "period_doubling", np.abs(m + 1).min(axis=1), off)
     i, j = np.triu_indices(m.shape[1], 1)
     off = np.where(types == "neimark_sacker", np.abs(m[:, i] * m[:, j] - 1).min(axis=1), off)
-    off = np.where(types == "grazing", np.nan, off) / slack
+    off = np.where(np.isin(types, _WITHOUT), np.nan, off) / slack
     yield Defect("critical multiplier", "+1, -1, or a pair of product 1, by the type", _CRITICAL, off)
     inside = rows["min_clearance"] >= -1e-9
     wrong = (rows["admissible"] == 1) & ~inside

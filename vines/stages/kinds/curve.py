@@ -7,14 +7,18 @@ from typing import Annotated, Any, Literal
 import msgspec
 from msgspec import Meta
 
-from vines.errors import DeclarationError
-from vines.model import VI_NES, Params, most_balls, read_system, word_for
+from vines.errors import DeclarationError, ParameterError
+from vines.model import VI_NES, Params, Word, most_balls, read_system, word_for
 from vines.pipeline import Kind, Pipeline, Stage
 from vines.stages.kinds._checks import check_axes
 from vines.stages.kinds._family import of_systems
 from vines.stages.kinds._parameters import PARAMETERS
 
 __all__ = ["KIND", "CurveOptions", "FamilyCurveOptions"]
+
+
+_BOUNDS = ("incomplete_chatter", "release_tangency")
+"""Types that only orbits that stick have, which are those of the VI-NES."""
 
 
 class CurveOptions(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -24,10 +28,18 @@ class CurveOptions(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     and from `seeds` values of the first, and along what comes out of these families by symmetry breaking.
     """
 
-    word: Annotated[str, Meta(description="Word of the impacts, such as LR")]
+    word: Annotated[str, Meta(description="Word of the impacts, such as LR, or L*R* of orbits that stick")]
     type: Annotated[
-        Literal["fold", "symmetry_breaking", "period_doubling", "neimark_sacker", "grazing"],
-        Meta(description="Which bifurcation is followed"),
+        Literal[
+            "fold",
+            "symmetry_breaking",
+            "period_doubling",
+            "neimark_sacker",
+            "grazing",
+            "incomplete_chatter",
+            "release_tangency",
+        ],
+        Meta(description="Which bifurcation is followed; the last two are bounds of orbits that stick"),
     ]
     lines: Annotated[int, Meta(ge=1, description="Values of the second parameter on which it is sought")] = 3
     seeds: Annotated[int, Meta(ge=2, description="Values of the first parameter at which families are sought")] = 9
@@ -42,7 +54,12 @@ class FamilyCurveOptions(CurveOptions, frozen=True, forbid_unknown_fields=True, 
 
 def _check(params: dict[str, float], options: CurveOptions) -> None:
     Params(**params)
-    word_for(options.word, VI_NES, sticking=False)
+    word = word_for(options.word, VI_NES)
+    if options.type in _BOUNDS and not word.sticking:
+        raise ParameterError(
+            f"type is {options.type!r}, a bound of orbits that stick, and {options.word!r} does not; give a word with "
+            "a star, such as L*R*"
+        )
 
 
 def _fits(stage: Stage, pipeline: Pipeline) -> None:
@@ -50,6 +67,11 @@ def _fits(stage: Stage, pipeline: Pipeline) -> None:
     check_axes(stage, 2, "a curve is followed in two parameters", "give vary.X and vary.Y")
     system = stage.kind.system
     options: Any = stage.options
+    if system != VI_NES.name and (options.type in _BOUNDS or Word(options.word).sticking):
+        raise DeclarationError(
+            f"orbits that stick, and their bounds, are followed for the system {VI_NES.name!r} only; give another "
+            "word or type"
+        )
     varied = [axis.name for axis in stage.axes]
     for name in read_system(system, min(most_balls(system), 1)).mirror.broken_by:
         if options.type == "symmetry_breaking" and (name in varied or stage.params.get(name, 0) != 0):

@@ -134,10 +134,13 @@ def family_label(branch: Mapping[str, Any]) -> str:
     '1:1 symmetric'
     >>> family_label({"word": "LLR", "name": "2:1", "symmetric": False})
     '2:1'
+    >>> family_label({"word": "L*R*", "name": "1:1", "symmetric": True})
+    '1:1 symmetric, L*R*'
     """
-    if not Word(branch["word"]).symmetric:
-        return branch["name"]
-    return f"{branch['name']} {'symmetric' if branch['symmetric'] else 'asymmetric'}"
+    word = Word(branch["word"])
+    which = f" {'symmetric' if branch['symmetric'] else 'asymmetric'}" if word.symmetric else ""
+    # Orbits that stick have the name of those that do not.
+    return f"{branch['name']}{which}{f', {word}' if word.sticking else ''}"
 
 
 def family_of(branch: Mapping[str, Any]) -> str:
