@@ -25,6 +25,7 @@ from vines.kernels import linked_njit, new_vector
 __all__ = [
     "BATCHES",
     "GROWTHS",
+    "KNOWN_CORRELATION",
     "PART",
     "close_batch",
     "error_of_mean",
@@ -44,6 +45,10 @@ PART = 4
 
 LEAST_FREEDOM = 6.0
 """Fewest degrees of freedom of an error; eight parts without any correlation have seven."""
+
+KNOWN_CORRELATION = 2.0 / 3.0
+"""Degrees of freedom of an error over those that it had if the correlation were known and not estimated from the same
+few numbers: so the mean square of z of random chaotic points is nearest to 1 (benchmarks/errors.py)."""
 
 MEMORIES = 4.0
 """Least length of a part in units of 1/lam, twice the memory of the oscillator: eight parts show no longer one."""
@@ -123,6 +128,7 @@ def error_of_mean(series, size):
         return alone
     if not freedom >= LEAST_FREEDOM:
         return math.nan
+    freedom = (freedom + 1.0) * KNOWN_CORRELATION
     return together * math.sqrt(freedom / (freedom - 2.0))
 
 
