@@ -17,6 +17,7 @@ from vines.dynamics.kernels import Constants
 from vines.model import Params, Word
 from vines.orbits._boxes import NODES, common_zeros
 from vines.orbits._flights import sample_kernel, start_kernel
+from vines.orbits._tails import tails
 
 __all__ = ["Starts", "can_search", "search_flights"]
 
@@ -72,7 +73,10 @@ def search_flights(word: Word, p: Params, c: Constants, halves: bool) -> Starts:
         sample_kernel(c, span, flip, side, symmetric_zero, low, width, NODES, out)
         return out
 
-    low, width, whole = common_zeros(sample, N - 1, _FIRST * word.p, _LEVELS)
+    def tail(low: Floats, width: float) -> Floats:
+        return tails(c, span, flip, side, symmetric_zero, low, width, len(NODES))
+
+    low, width, whole = common_zeros(sample, tail, N - 1, _FIRST * word.p, _LEVELS)
     times = []
     for box in low:
         starts = []
