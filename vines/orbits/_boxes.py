@@ -21,6 +21,9 @@ _TO_COEFFICIENTS = (
     * (2.0 / _ORDER)
     * np.where(np.arange(_ORDER) == 0, 0.5, 1.0)[:, None]
 )
+_NOISE = 8.0
+"""What rounding adds to the values shows in the last coefficients: so many times the largest of them is allowed for."""
+
 _MOST = 60_000
 """Boxes of one size at most; more are left where the functions vanish on a curve."""
 
@@ -43,7 +46,8 @@ def common_zeros(
     sample : callable
         Takes lower corners, shape (M, dimension), and a width; returns values, shape (M, K**dimension, F), at `NODES`.
     tail : callable
-        Takes the same; returns by how much the functions may differ there from their interpolants, shape (M, F).
+        Takes the same; returns by how much the functions may differ there from their interpolants, shape (M, F);
+        -inf where it is known that they do not vanish together.
     dimension : int
         1 or 2.
     first : int
@@ -91,7 +95,10 @@ def _kept(values: Floats, tails: Floats, dimension: int) -> npt.NDArray[np.bool_
     grid = values.reshape(boxes, *[_ORDER] * dimension, functions)
     if dimension == 1:
         coefficients = np.einsum("ai,mif->maf", _TO_COEFFICIENTS, grid)
+        noise = np.abs(coefficients[:, -2:]).max(axis=1)
     else:
         coefficients = np.einsum("ai,bj,mijf->mabf", _TO_COEFFICIENTS, _TO_COEFFICIENTS, grid, optimize=True)
+        size = np.abs(coefficients)
+        noise = np.maximum(size[:, -2:].max(axis=(1, 2)), size[:, :, -2:].max(axis=(1, 2)))
     flat = np.abs(coefficients.reshape(boxes, -1, functions))
-    return np.all(flat[:, 0] <= flat[:, 1:].sum(axis=1) + tails, axis=1)
+    return np.all(flat[:, 0] <= flat[:, 1:].sum(axis=1) + tails + _NOISE * noise, axis=1)

@@ -2,15 +2,13 @@
 
 The functions of `sample_kernel` are entire in the coordinates of a box, and determinants. On a polydisc around the box
 each entry of the matrix has a bound (that over kicks, velocities of the ball and (a, b, 1), which has no poles), and a
-determinant is no larger than the product of the sums of its rows; where a divisor may vanish within the polydisc the
-maximum principle moves the bound to a torus on which it does not. A function bounded by M
-within the Bernstein ellipses of parameter rho is approximated by its interpolant in K nodes to within 4 M rho^(1-K)/(rho-1)
-a direction (Trefethen, Approximation Theory and Approximation Practice, theorem 8.2).
+determinant is no larger than the product of the norms of its rows (Hadamard); where a divisor may vanish within the
+polydisc the maximum principle moves the bound to a torus on which it does not. A function bounded by M within the
+Bernstein ellipses of parameter rho is approximated by its interpolant in K nodes to within 4 M rho^(1-K)/(rho - 1) a
+direction (Trefethen, Approximation Theory and Approximation Practice, theorem 8.2).
 """
 
 from __future__ import annotations
-
-import math
 
 import numpy as np
 import numpy.typing as npt
@@ -28,10 +26,7 @@ _LEAST = 0.75
 """Smallest radius, in widths of the box: it has to hold an ellipse around it."""
 
 _LEBESGUE = 2.5
-"""More than the Lebesgue constant of eight Chebyshev nodes, 2.36: what interpolation in one direction does to the other."""
-
-_ROUNDING = 1e-14
-"""Of a function, relative to its bound, where no flight is short."""
+"""More than the Lebesgue constant of eight Chebyshev nodes, 2.3: what one direction does to the error of the other."""
 
 
 def tails(
@@ -58,11 +53,7 @@ def tails(
     per_direction = 4.0 * rho ** (1.0 - nodes) / (rho - 1.0)
     share = per_direction.sum(axis=1) if dimension == 1 else per_direction @ np.array([1.0, _LEBESGUE])
     bound = _bounds(c, span, flip, side, half, middle, radius, gaps)
-    # A flight between equal walls divides a difference that rounding leaves as it is.
-    inside = width * (0.5 - 0.5 * math.cos(0.5 * math.pi / nodes))
-    first, last = np.maximum(low, 0.0) + inside, np.maximum(1.0 - low - width, 0.0) + inside
-    shortest = np.minimum(first[:, 0], last[:, 0] * (1.0 if dimension == 1 else np.minimum(first, last)[:, -1]))
-    return bound * (share + _ROUNDING * (1.0 + 1.0 / (span * shortest)))[:, None]
+    return bound * share[:, None]
 
 
 def _discs(middle: Floats, width: float, span: float, half: bool) -> tuple[Floats, dict[float, Floats]]:
@@ -121,16 +112,20 @@ def _bounds(
     swing = weight * np.exp((damping + gamma) * shift)
     wave = np.cosh(c.Omega * shift)
     mu, e = c.law.ratio, c.law.pass1
-    # Sums of the rows: the kicks in units of e and the velocities of the ball, (a, b), and 1.
-    flights = [(tau + 2.0 * e * N * swing / gamma, 2.0 * wave, float(step)) for tau, step in zip(most, steps, strict=True)]
-    laws = [(2.0 + e * N * abs(s) * swing / gamma, c.Omega * wave, 0.0)] * N
+    # Squares of the norms of the rows: over kicks in units of e and velocities of the ball, over a or b, over 1.
+    flights = [
+        (tau**2 + N * (2.0 * e * swing / gamma) ** 2, (2.0 * wave) ** 2, float(step) ** 2)
+        for tau, step in zip(most, steps, strict=True)
+    ]
+    own, others = (1.0 + e * abs(s) * swing / gamma) ** 2, (N - 1) * (e * abs(s) * swing / gamma) ** 2
+    laws = [(1.0 + own + others, (c.Omega * wave) ** 2, 0.0)] * N
 
     def minor(rows: int, waves: int, one: int) -> Floats:
         """Bound the minor of so many rows of the momentum, over the unknowns and so many of (a, b) and of 1."""
-        total = (e + 2.0 * mu) ** rows / divisor
+        square = (e**2 + 2.0 * mu**2) ** rows / divisor**2
         for known, sway, constant in (*flights, *laws):
-            total = total * (known + waves * sway + one * constant)
-        return total
+            square = square * (known + waves * sway + one * constant)
+        return np.sqrt(square)
 
     pair = 2.0 * minor(2, 1, 1) ** 2 + (c.free.qr**2 + c.free.qi**2) * minor(2, 2, 0) ** 2
     return np.stack([minor(3, 2, 1), pair, pair, pair] if N == 3 else [pair], axis=1)
