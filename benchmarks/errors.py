@@ -83,9 +83,10 @@ def _z(many: Classified) -> dict[str, Floats] | None:
     chaos = (many.regime == "chaotic") & many.settled
     if np.mean(chaos) < MOST:
         return None
-    typical = np.nanmedian(many.errors[chaos], axis=0)
-    chaos &= np.all((many.errors < OTHER * typical) & (many.errors > typical / OTHER) | np.isnan(many.errors), axis=1)
-    errors = dict(zip(NAMES, (*many.errors[chaos].T, many.lyapunov_error[chaos]), strict=True))
+    told = np.column_stack([many.errors, many.lyapunov_error])
+    typical = np.nanmedian(told[chaos], axis=0)
+    chaos &= np.all((told < OTHER * typical) & (told > typical / OTHER) | np.isnan(told), axis=1)
+    errors = dict(zip(NAMES, told[chaos].T, strict=True))
     values = {name: many.measures[name][chaos] for name in NAMES[:3]} | {"lyapunov": many.lyapunov[chaos]}
     # The mean of n is itself off by 1/n of the variance.
     n = int(np.sum(chaos))

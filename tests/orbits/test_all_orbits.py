@@ -8,9 +8,12 @@ from vines.dynamics._room import constants
 from vines.errors import OrbitNotFound
 from vines.model import Params, Word
 from vines.orbits import all_orbits, find_orbit, symmetric_orbits
+from vines.orbits._boxes import NODES
 from vines.orbits._equations import newton_kernel
-from vines.orbits._flights import linear_kernel, start_kernel
+from vines.orbits._flights import linear_kernel, sample_kernel, start_kernel
 from vines.orbits._general import ITERATIONS, proper, same
+from vines.orbits._shortest import shortest_crossing
+from vines.orbits._tails import tails
 
 pytestmark = pytest.mark.long(14)
 
@@ -162,3 +165,48 @@ def test_one_orbit_in_forty_digits(independent):
             y = independent.map_to(P, side[j], side[1 - j], y, mp.mpf(orbit.flight_times[j]))
         assert max(abs(a - b) for a, b in zip(y[:3], start[:3], strict=True)) < 1e-13
         assert abs(y[3] - start[3] - 2 * mp.pi) < 1e-13
+
+
+@pytest.mark.parametrize(("text", "halves"), [("LR", False), ("LLR", False), ("LLR/2T", False), ("LLRR", True)])
+def test_no_interpolant_is_farther_from_its_function_than_its_bound(text, halves):
+    word, rng = Word(text), np.random.default_rng(4)
+    flip, N = (-1, len(word) // 2) if halves else (1, len(word))
+    side = np.array(word.sides[1:] + word.sides[:1] if text == "LLRR" else word.sides, dtype=np.int64)[:N]
+    half, dimension = N == 2 and not halves, N - 1
+    worst = 0.0
+    for width in (1 / 12, 1 / 48, 1 / 384):
+        p = random_params(rng)
+        c, span = constants(p), word.p * p.period * N / len(word)
+        low = rng.uniform(0, 1 - width, (40, dimension))
+        bound = tails(c, span, flip, side, half, low, width, len(NODES))
+        places = rng.uniform(0.05, 0.95, 6)
+        values = [np.empty((40, len(at) ** dimension, 1 if N == 2 else 4)) for at in (NODES, places)]
+        for at, out in zip((NODES, places), values, strict=True):
+            sample_kernel(c, span, flip, side, half, low, width, at, out)
+        nodal, true = (v.reshape(40, *[len(at)] * dimension, -1) for v, at in zip(values, (NODES, places), strict=True))
+        lagrange = np.array([[np.prod([(x - m) / (n - m) for m in NODES if m != n]) for n in NODES] for x in places])
+        ours = (
+            np.einsum("ai,mif->maf", lagrange, nodal)
+            if dimension == 1
+            else np.einsum("ai,bj,mijf->mabf", lagrange, lagrange, nodal)
+        )
+        wrong = np.abs(ours - true).reshape(40, -1, true.shape[-1]).max(axis=1)
+        rounding = 1e-12 * np.abs(nodal).reshape(40, -1, true.shape[-1]).max(axis=1)
+        assert np.all(wrong <= bound + rounding)
+        worst = max(worst, float((wrong / bound).max()))
+    assert worst > 1e-12
+
+
+def test_no_orbit_crosses_the_cavity_faster_than_the_balance_of_energy_allows():
+    rng = np.random.default_rng(8)
+    met = 0
+    for k in range(24):
+        word, p = Word(SHORT[k % len(SHORT)]), random_params(rng)
+        least = shortest_crossing(p, len(word), word.p * p.period)
+        assert 0 < least < word.p * p.period
+        for orbit in all_orbits(word, p):
+            crosses = orbit.side != np.roll(orbit.side, -1)
+            assert np.all(orbit.flight_times[crosses] > least)
+            met += 1
+    assert met > 10
+    assert shortest_crossing(Params(mu=0.01, A=0.02, Omega=1.1, lam=0.0), 2, 6.0) == 0.0

@@ -9,7 +9,15 @@ from vines.attractors._approach import LARGEST_P, STABLE, comes_to_orbit, neares
 from vines.attractors._coming import note_decay
 from vines.attractors._contacts import contacts, difference, repetition
 from vines.attractors._judge import NEAR, note_drift
-from vines.dynamics.kernels import directions, lyapunov_blocks, open_window, run_window, shift_time, spread_of_mean
+from vines.dynamics.kernels import (
+    KNOWN_CORRELATION,
+    directions,
+    lyapunov_blocks,
+    open_window,
+    run_window,
+    shift_time,
+    spread_of_mean,
+)
 from vines.dynamics.kernels import rows as col
 from vines.kernels import cold_njit, identity, new_matrix, new_vector, njit
 
@@ -26,6 +34,9 @@ FLAT = 1.5e-3
 
 SURE = 3.0
 """Standard errors by which an exponent must differ from zero to be told from it."""
+
+LEAST_FREEDOM = 3.0
+"""Fewest degrees of freedom of an exponent's error."""
 
 FAR = 0.1
 """Runs that repeat to within this may circle a periodic orbit, slowly coming to it or leaving it."""
@@ -170,8 +181,8 @@ def _note_longer(c, rows, n, length, longest, verdict):
 def _error_told(grown, n, rate):
     """Return the standard error of the largest exponent with the correlation of its blocks.
 
-    What few correlated blocks say is uncertain itself: it is the standard deviation of Student's law, of three degrees
-    of freedom at least.
+    What few correlated blocks say is uncertain itself: it is the standard deviation of Student's law. The correlation
+    comes from the same few blocks, which costs a third of the degrees of freedom; three are left at least.
     """
     if n < 4:
         return math.inf
@@ -182,7 +193,7 @@ def _error_told(grown, n, rate):
         series[b] = grown[b, 0] - rate * grown[b, d]
         time += grown[b, d] / n
     _, together, freedom = spread_of_mean(series)
-    freedom = max(freedom, 3.0)
+    freedom = max((freedom + 1.0) * KNOWN_CORRELATION, LEAST_FREEDOM)
     return together / time * math.sqrt(freedom / (freedom - 2.0))
 
 

@@ -25,6 +25,7 @@ from vines.kernels import linked_njit, new_vector
 __all__ = [
     "BATCHES",
     "GROWTHS",
+    "KNOWN_CORRELATION",
     "PART",
     "close_batch",
     "error_of_mean",
@@ -44,6 +45,10 @@ PART = 4
 
 LEAST_FREEDOM = 6.0
 """Fewest degrees of freedom of an error; eight parts without any correlation have seven."""
+
+KNOWN_CORRELATION = 2.0 / 3.0
+"""Degrees of freedom of an exponent's error over those that it had if the correlation of its parts were known and not
+estimated from them: so the mean square of z of random chaotic points is nearest to 1 (benchmarks/errors.py)."""
 
 MEMORIES = 4.0
 """Least length of a part in units of 1/lam, twice the memory of the oscillator: eight parts show no longer one."""
@@ -172,6 +177,18 @@ def standard_errors(lam, values, total, errors):
 
 
 @linked_njit
+def _error_of_rate(series, size):
+    """Return what `error_of_mean` does, the correlation of more and shorter parts being an estimate."""
+    alone, together, freedom = spread_of_mean(series)
+    if alone <= ALIKE * abs(size):
+        return alone
+    if not freedom >= LEAST_FREEDOM:
+        return math.nan
+    freedom = (freedom + 1.0) * KNOWN_CORRELATION
+    return together * math.sqrt(freedom / (freedom - 2.0))
+
+
+@linked_njit
 def errors_of_rates(growth, errors):
     """Put the standard errors of rates of growth into `errors`.
 
@@ -201,4 +218,4 @@ def errors_of_rates(growth, errors):
         else:
             for b in range(n):
                 series[b] = growth[b, k] - total / time * growth[b, d]
-            errors[k] = error_of_mean(series, total / n) * n / time
+            errors[k] = _error_of_rate(series, total / n) * n / time

@@ -4,6 +4,7 @@ from vines.orbits import _balls as _balls
 from vines.orbits import _capsule as _capsule
 from vines.orbits._all import Orbits, all_orbits
 from vines.orbits._branch import Bifurcation, Branch
+from vines.orbits._carry import carry_orbit, of_two_mirror_images, one_of
 from vines.orbits._cascade import follow_cascade
 from vines.orbits._continuation import continue_orbit
 from vines.orbits._curve import Curve, SpecialPoint, curve_rows
@@ -15,6 +16,7 @@ from vines.orbits._margins import Margin
 from vines.orbits._optimum import Optimum, optimise
 from vines.orbits._orbit import Orbit
 from vines.orbits._own_word import own_word
+from vines.orbits._partners import partners
 from vines.orbits._reduced import Reduced, manifold_amplitude, manifold_range, reduced_orbits, reduced_range
 from vines.orbits._rows import bifurcation_row, branch_row, orbit_outline, orbit_row
 from vines.orbits._switch import switch_branch
@@ -37,6 +39,7 @@ __all__ = [
     "all_orbits",
     "bifurcation_row",
     "branch_row",
+    "carry_orbit",
     "continue_orbit",
     "curve_rows",
     "find_orbit",
@@ -46,10 +49,13 @@ __all__ = [
     "manifold_amplitude",
     "manifold_range",
     "mirror_image",
+    "of_two_mirror_images",
+    "one_of",
     "optimise",
     "orbit_outline",
     "orbit_row",
     "own_word",
+    "partners",
     "reduced_orbits",
     "reduced_range",
     "switch_branch",

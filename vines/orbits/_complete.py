@@ -17,6 +17,8 @@ from vines.dynamics.kernels import Constants
 from vines.model import Params, Word
 from vines.orbits._boxes import NODES, common_zeros
 from vines.orbits._flights import sample_kernel, start_kernel
+from vines.orbits._shortest import shortest_crossing
+from vines.orbits._tails import tails
 
 __all__ = ["Starts", "can_search", "search_flights"]
 
@@ -72,7 +74,14 @@ def search_flights(word: Word, p: Params, c: Constants, halves: bool) -> Starts:
         sample_kernel(c, span, flip, side, symmetric_zero, low, width, NODES, out)
         return out
 
-    low, width, whole = common_zeros(sample, N - 1, _FIRST * word.p, _LEVELS)
+    crossing = shortest_crossing(p, len(word), word.p * p.period)
+
+    def tail(low: Floats, width: float) -> Floats:
+        found = tails(c, span, flip, side, symmetric_zero, low, width, len(NODES))
+        found[_too_short(span, flip, side, low, width, crossing)] = -np.inf
+        return found
+
+    low, width, whole = common_zeros(sample, tail, N - 1, _FIRST * word.p, _LEVELS)
     times = []
     for box in low:
         starts = []
@@ -84,6 +93,20 @@ def search_flights(word: Word, p: Params, c: Constants, halves: bool) -> Starts:
             starts.append(np.append(t[N - turned :] - word.p * p.period, t[: N - turned]) if turned else t)
         times.append(starts)
     return Starts(times, whole)
+
+
+def _too_short(
+    span: float, flip: int, side: npt.NDArray[np.int64], low: Floats, width: float, crossing: float
+) -> npt.NDArray[np.bool_]:
+    """Say of each box whether the ball would cross the cavity faster than it can everywhere in it."""
+    high, rest = low + width, 1.0 - low
+    longest = (
+        [high[:, 0], rest[:, 0]] if len(side) == 2 else [high[:, 0], rest[:, 0] * high[:, 1], rest[:, 0] * rest[:, 1]]
+    )
+    after = np.append(side[1:], flip * side[0])
+    return np.any(
+        [span * tau < crossing for tau, crosses in zip(longest, after != side, strict=True) if crosses], axis=0
+    )
 
 
 def _places(dimension: int) -> Iterator[Floats]:

@@ -7,7 +7,7 @@ energy totals.
 from vines.dynamics import _advance as rows
 from vines.dynamics import _totals as totals
 from vines.dynamics._advance import advance, begin, pass_over, set_state, shift_time, state_now
-from vines.dynamics._batches import spread_of_mean
+from vines.dynamics._batches import KNOWN_CORRELATION, spread_of_mean
 from vines.dynamics._constants import (
     Constants,
     ParameterTable,
@@ -45,6 +45,7 @@ from vines.dynamics._window import open_window, run_window, width_of, with_room
 
 __all__ = [
     "CONTACT",
+    "KNOWN_CORRELATION",
     "Constants",
     "ParameterTable",
     "advance",

@@ -1,0 +1,83 @@
+"""The orbit that a periodic run has settled to."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+import numpy as np
+
+from vines.attractors._attractor import Attractor
+from vines.domains import Of, stated
+from vines.dynamics import simulate
+from vines.errors import OrbitNotFound, ParameterError
+from vines.model import STATE_NAMES, VI_NES, Word
+from vines.orbits import Orbit, find_orbit
+
+__all__ = ["orbit_of", "orbit_through"]
+
+RELEASE = 3
+"""Kind of an event of a `Trajectory` by which a spell of sticking ends."""
+
+_TRIED = 8
+"""Repetitions of the word, or releases, from which Newton's method sets out."""
+
+
+@stated(ParameterError, attractor=Of("Attractor", how="as vines.settle returns it"))
+def orbit_of(attractor: Attractor) -> Orbit:
+    """Return the periodic orbit that an attractor is, with the multipliers and measures of `vines.find_orbit`.
+
+    It is found from the attractor itself, so that it is the one of its word that the run settled to.
+
+    Parameters
+    ----------
+    attractor : Attractor
+        A periodic one of the VI-NES.
+
+    Raises
+    ------
+    OrbitNotFound
+        If it is not periodic, or Newton's method finds no orbit of its word from there.
+
+    Examples
+    --------
+    >>> from vines.attractors import settle
+    >>> from vines.model import Params
+    >>> orbit = orbit_of(settle(Params(mu=0.01, A=0.023)))
+    >>> orbit.word.name, orbit.stable, orbit.admissible
+    ('2:1', True, True)
+    """
+    if attractor.word is None:
+        raise OrbitNotFound(f"the attractor is {attractor.regime}, only a periodic one is an orbit; settle elsewhere")
+    return orbit_through(Word(str(attractor.word)), attractor.params, attractor.final)
+
+
+def orbit_through(word: Word, p: Any, final: Mapping[str, float]) -> Orbit:
+    """Return the orbit of a word that a run is on: its coordinates and the forcing phase [rad] at some instant.
+
+    Raises
+    ------
+    OrbitNotFound
+        If Newton's method finds none from there.
+    """
+    for guess in _guesses(word, p, final):
+        try:
+            return find_orbit(word, p, guess=guess)
+        except (OrbitNotFound, ParameterError):
+            continue
+    raise OrbitNotFound(f"no {word} orbit at {p} from the run that settled to it; let it settle for longer")
+
+
+def _guesses(word: Word, p: Any, final: Mapping[str, float]) -> Iterator[list[float]]:
+    """Yield times of the contacts of the word, or time and velocity of a release, along the run."""
+    at = {name: final[name] for name in STATE_NAMES}
+    run = simulate(p, **at, phi=final["phase"], periods=2 * word.p + 1, max_impacts_per_period=2000)
+    early = final["phase"] / p.Omega
+    if word.sticking:
+        events = run.events[run.events["kind"] == RELEASE]
+        yield from ([event["phase"] / p.Omega, event["v1"]] for event in events[-_TRIED:])
+        return
+    hits, N = run.impacts, len(word)
+    letters = VI_NES.letters(hits["side"])
+    places = [k for k in range(len(hits) - N + 1) if letters[k : k + N] == word.letters]
+    yield from ((np.asarray(hits["t"][k : k + N]) + early).tolist() for k in places[:_TRIED])

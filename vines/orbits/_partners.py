@@ -1,0 +1,73 @@
+"""Stable orbits beside one that has lost its stability: of twice its period, or without its symmetry."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+import numpy.typing as npt
+
+from vines.errors import OrbitNotFound, ParameterError
+from vines.model import Word
+from vines.orbits._find import find_orbit
+from vines.orbits._floquet import monodromy
+from vines.orbits._general import same
+from vines.orbits._orbit import Orbit
+from vines.orbits._seeds import doubled_times
+
+__all__ = ["partners"]
+
+Floats = npt.NDArray[np.float64]
+
+_MOST = 64
+"""Most impacts of an orbit of twice the period."""
+
+_KICKS = (0.01, 0.05, 0.2)
+"""How far impacts are moved along the critical direction, in flight times of the orbit."""
+
+
+def partners(orbit: Orbit) -> Iterator[Orbit]:
+    """Yield admissible stable orbits that Newton's method finds along the direction in which an orbit is unstable.
+
+    Of one without sticking whose largest multiplier is real: below -1 orbits of twice the period, above 1 and
+    symmetric such without the symmetry.
+
+    Examples
+    --------
+    >>> from vines.model import Params
+    >>> next(partners(find_orbit("LR", Params(mu=0.01, A=0.019)))).symmetric
+    False
+    """
+    largest = complex(orbit.multipliers[0])
+    if orbit.word.sticking or abs(largest) <= 1 or abs(largest.imag) > 1e-9 * abs(largest):
+        return
+    if largest.real < 0:
+        if 2 * len(orbit.word) > _MOST:
+            return
+        word = Word(f"{orbit.word.letters * 2}/{2 * orbit.word.p}T")
+        guesses = doubled_times(orbit)
+    elif orbit.symmetric:
+        word, guesses = orbit.word, _kicked(orbit)
+    else:
+        return
+    for guess in guesses:
+        try:
+            found = find_orbit(word, orbit.params, guess=guess)
+        except (OrbitNotFound, ParameterError):
+            continue
+        if found.stable and found.admissible and not (word == orbit.word and same(orbit, found.t, found.states)):
+            yield found
+
+
+def _kicked(orbit: Orbit) -> Iterator[Floats]:
+    """Yield the impact times of an orbit moved along the eigenvector of its largest multiplier."""
+    values, vectors = np.linalg.eig(monodromy(orbit.jacobians).astype(complex))
+    moved = [np.real(vectors)[:, int(np.argmax(np.abs(values)))]]
+    for J in orbit.jacobians[:-1]:
+        moved.append(J @ moved[-1])
+    along = np.array(moved)[:, 3]
+    if not np.abs(along).max() > 0:
+        return
+    along *= orbit.flight_times.min() / np.abs(along).max()
+    for size in _KICKS:
+        yield orbit.t + size * along
