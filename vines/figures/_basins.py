@@ -11,16 +11,15 @@ import numpy.typing as npt
 
 from vines.figures._fit import place_legend
 from vines.figures._style import look, new_figure
-from vines.model import VI_NES
+from vines.model import VI_NES, most_balls, read_system
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-__all__ = ["BasinMap", "basins_figure"]
+__all__ = ["BasinMap", "basins_figure", "start_symbol"]
 
 Floats = npt.NDArray[np.float64]
 
-SYMBOLS = {each.name: f"${each.symbol}$" for each in VI_NES.state} | {"phase": rf"phase ${VI_NES.phase.symbol}$"}
 HUES = ("#33658a", "#e07a1f", "#117733", "#aa4499", "#ddcc77", "#86bbd8")
 CHAOS = ("#d2d2d2", "#a9a9a9", "#808080")
 UNSETTLED = "#000000"
@@ -42,7 +41,7 @@ class BasinMap:
     Attributes
     ----------
     axes : (str, str)
-        Coordinates along x and y.
+        Coordinates along x and y, as `start_symbol` writes them.
     x, y : (n,) array
         Centres of the cells.
     level : (n,) array of int
@@ -66,6 +65,20 @@ class BasinMap:
     names: Sequence[str]
     regimes: Sequence[str]
     steps: tuple[float, float]
+
+
+def start_symbol(name: str, system: str = VI_NES.name) -> str:
+    r"""Return what an axis calls a coordinate of a start of a system.
+
+    Examples
+    --------
+    >>> start_symbol("v2"), start_symbol("phase", "impact_pair")
+    ("$x_2'$", 'phase $\\theta$')
+    """
+    known = read_system(system, most_balls(system))
+    if name == known.phase.name:
+        return f"phase ${known.phase.symbol}$"
+    return next(f"${each.symbol}$" for each in known.state if each.name == name)
 
 
 def basins_figure(data: BasinMap, *, title: str = "", width: float = 7.0) -> Figure:
@@ -92,8 +105,8 @@ def basins_figure(data: BasinMap, *, title: str = "", width: float = 7.0) -> Fig
         figure = new_figure(width, 0.8 * width)
         ax = figure.add_subplot()
         ax.imshow(image, extent=extent, origin="lower", aspect="auto", interpolation="none")
-        ax.set_xlabel(f"{SYMBOLS[data.axes[0]]} at the start")
-        ax.set_ylabel(f"{SYMBOLS[data.axes[1]]} at the start")
+        ax.set_xlabel(f"{data.axes[0]} at the start")
+        ax.set_ylabel(f"{data.axes[1]} at the start")
         handles = [
             Patch(facecolor=colour, edgecolor="#777777", linewidth=0.5, label=name)
             for colour, name in zip((*colours, UNSETTLED), data.names, strict=False)
