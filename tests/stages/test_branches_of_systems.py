@@ -17,6 +17,13 @@ points = 4
 families = "all"
 seeds = 3
 switch = 1
+[stages.sticks]
+system = "impact_pair"
+kind = "branch"
+word = "L*R*"
+params = { r = 0.3 }
+vary.B = { from = 3.0, to = 2.5 }
+points = 4
 [stages.balls]
 system = "parallel"
 kind = "branch"
@@ -43,6 +50,9 @@ def test_all_families_of_a_pair_and_of_two_balls(project, monkeypatch):
     assert len(children) == 1
     assert not children[0]["symmetric"]
     assert branches[broken["branch_id"]]["symmetric"]
+    (sticks,) = [each for each in branches.values() if each["word"] == "L*R*"]
+    (end,) = [each for each in met if each["branch_id"] == sticks["branch_id"]]
+    assert (end["type"], sticks["end_to"]) == ("incomplete_chatter", "incomplete_chatter")
     assert len(vines.table("parallel_branches").to_pylist()) >= 1
     found = verify("families", recompute=20)
     assert found.good, [line.first for line in found.lines if line.first]
