@@ -21,7 +21,7 @@ def attractors(count, seed):
     """Yield random attractors that stick."""
     rng = np.random.default_rng(seed)
     while count:
-        tilt = float(rng.choice([0.0, rng.uniform(-0.5, 0.5)]))
+        tilt = float(rng.choice([0.0, rng.uniform(-0.5, 0.5), rng.uniform(-3.0, 3.0)]))
         p = ImpactPair(B=float(10 ** rng.uniform(-1, 1)), G=tilt, r=float(rng.uniform(0.05, 0.6)))
         found = vines.settle(p, w_dot=float(rng.uniform(-3, 3)), settle=100, patience=0, errors=False)
         if found.regime == "periodic" and found.settled and "*" in found.word:

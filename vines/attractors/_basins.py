@@ -215,8 +215,8 @@ class _Grid:
     def states(self, x: Floats, y: Floats) -> Floats:
         """Return the states of the starts, or of what they have become when the forcing is at the common phase."""
         full = self.starts(x, y)
-        part_alike(self.p, full, APART)
         states = np.stack([full[name] for name in names_of(self.p)], axis=1)
+        part_alike(self.p, states, APART)
         if "phase" in self.names:
             lag = (self.phase - full["phase"]) % (2.0 * math.pi) / (2.0 * math.pi)
             for share in np.unique(lag[lag > 0]).tolist():

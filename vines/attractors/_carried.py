@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -97,13 +96,14 @@ def _carry_block(c, states, stop, cap, rows, finals, sums):
                 sums[k, j] = totals[j]
 
 
-def part_alike(p: Any, starts: Mapping[str, Floats], by: float) -> None:
-    """Let balls that would move as one for ever, since they start in one state, each start faster by so much."""
+def part_alike(p: Any, states: Floats, by: float) -> None:
+    """Let balls that would move as one for ever, since they are in one state, each be faster by so much, in place."""
+    names = names_of(p)
     for group in getattr(p, "together", ()):
-        own = [np.stack([starts[f"x2_{ball}"], starts[f"v2_{ball}"]]) for ball in group]
-        for place, ball in enumerate(group):
-            before = sum((np.all(own[place] == other, axis=0) for other in own[:place]), np.zeros(len(own[place][0])))
-            starts[f"v2_{ball}"][:] += by * before
+        x, v = ([names.index(f"{name}_{ball}") for ball in group] for name in ("x2", "v2"))
+        own = np.stack([states[:, x], states[:, v]], axis=-1)
+        for place in range(1, len(group)):
+            states[:, v[place]] += by * np.all(own[:, place, None] == own[:, :place], axis=2).sum(axis=1)
 
 
 def sort_alike(p: Any, states: Floats) -> Floats:
