@@ -19,7 +19,7 @@ def _map(nx: int = 6, ny: int = 4) -> BasinMap:
     attractor = np.where(x < 0.25, 0, 1)
     attractor[-1] = -1
     return BasinMap(
-        axes=("x2", "v2"),
+        axes=("$x_2$", "$x_2'$"),
         x=x,
         y=y,
         level=np.zeros(nx * ny, dtype=np.int64),
@@ -102,7 +102,7 @@ def test_cells_smaller_than_a_pixel_are_mixed() -> None:
     x, y = (grid.ravel() for grid in np.meshgrid(side + 0.0, [0.0]))
     quarters = np.array([-0.25, 0.25])
     data = BasinMap(
-        axes=("x2", "v2"),
+        axes=("$x_2$", "$x_2'$"),
         x=np.concatenate([x[1:], quarters, quarters]),
         y=np.concatenate([y[1:], [-0.25, -0.25, 0.25, 0.25]]),
         level=np.concatenate([np.zeros(1199, dtype=np.int64), np.ones(4, dtype=np.int64)]),

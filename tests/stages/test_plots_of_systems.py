@@ -18,10 +18,21 @@ pytestmark = pytest.mark.long(40)
 
 # Of each system a sweep, one of two parameters, a branch and a run; `pair_` and `two_` begin their names.
 PARAMETERS = {
-    "impact_pair": ("pair", "r = 0.5, G = 0.05", "B", "[0.6, 0.65, 0.7]", "G", "[0.04, 0.05]", "LR", "B = 0.6"),
+    "impact_pair": (
+        "pair",
+        "r = 0.5, G = 0.05",
+        "B",
+        "[0.6, 0.65, 0.7]",
+        "G",
+        "[0.04, 0.05]",
+        "LR",
+        "B = 0.6",
+        "w",
+        "w_dot",
+    ),
     "parallel": (
         *("two", "mu = [0.01, 0.01], beta = [1.0, 1.4]", "A", "[0.028, 0.029, 0.03]", "Omega", "[0.999, 1.0]"),
-        *("L1L2R1R2", "A = 0.03"),
+        *("L1L2R1R2", "A = 0.03", "x2_1", "phase"),
     ),
 }
 STAGES = """
@@ -62,9 +73,16 @@ system = "{system}"
 params = {{ {params}, {at} }}
 settle = 100
 record = 3
+[stages.{short}_plane]
+kind = "basins"
+system = "{system}"
+params = {{ {params}, {at} }}
+x = {{ name = "{x}", from = -0.9, to = 0.9, count = 4 }}
+y = {{ name = "{y}", from = -0.9, to = 0.9, count = 4 }}
 """
 # What a figure of each plot says beside its name, for each system that it draws.
 DRAWN = {
+    "basins": ("{short}_plane",),
     "bifurcation": ("{short}_up", "{short}_branch"),
     "multipliers": ("{short}_branch",),
     "regimes": ("{short}_map",),
@@ -106,11 +124,12 @@ def figure(plot, system):
 def stages():
     """Return the declarations of the stages that are drawn."""
     text = ""
-    for system, (short, params, axis, values, other, others, word, at) in PARAMETERS.items():
+    for system, (short, params, axis, values, other, others, word, at, x, y) in PARAMETERS.items():
         most = params.replace(", G = 0.05", "")
         first, last = values.strip("[]").split(", ")[0], values.strip("[]").split(", ")[-1]
         known = {"short": short, "system": system, "params": params, "most": most, "axis": axis, "values": values}
-        text += STAGES.format(**known, other=other, others=others, word=word, at=at, first=first, last=last)
+        known |= {"other": other, "others": others, "word": word, "at": at, "x": x, "y": y}
+        text += STAGES.format(**known, first=first, last=last)
     return text
 
 
@@ -146,7 +165,7 @@ def test_what_a_plot_cannot_do_is_refused_with_what_it_can_and_what_can_do_it(de
     said = str(caught.value)
     short = PARAMETERS[system][0]
     assert f"the plot {plot!r} cannot draw the system {system!r} of {short}_up; it can draw vi_nes" in said
-    assert f"plots that can draw {system!r}: bifurcation, " in said
+    assert f"plots that can draw {system!r}: basins, bifurcation, " in said
     assert "\n" not in said
 
 
@@ -189,11 +208,16 @@ def test_every_plot_draws_the_pair_and_two_balls_with_names_of_their_own(declare
             plot, short = stage.name.split("_")
             found[plot, short] = PLOTS.get(plot).draw(shown, stage.options)
     capsule = "amplitude of the capsule  $B$"
-    known = {capsule, "forcing amplitude  $A$", "time  $t/T$", "gap  $w$"}
+    known = {capsule, "forcing amplitude  $A$", "time  $t/T$", "gap  $w$", "$w$ at the start", "$x_{2,1}$ at the start"}
     for (plot, short), drawn in found.items():
         named = {ax.get_xlabel() for ax in drawn.axes} - {""}
         assert named <= known, plot
-        assert (capsule in named) == (short == "pair"), plot
+        assert (capsule in named) == (short == "pair" and plot != "basins"), plot
+
+    assert [found["basins", s].axes[0].get_ylabel() for s in ("pair", "two")] == [
+        "$w'$ at the start",
+        r"phase $\phi$ at the start",
+    ]
 
     # impacts and lines of the two balls in their colours, at the speeds of check value a3
     ax = found["bifurcation", "two"].axes[0]

@@ -135,3 +135,14 @@ def test_the_response_of_the_family_on_a_small_grid(root):
         "four_up": 0.005,
         "tilted_up": 0.02,
     }
+
+
+@pytest.mark.full
+def test_what_coexists_on_a_small_grid(root):
+    fewer = {"stages.harvester.vary.B.count": 3, "stages.harvester.random": 2}
+    for name, count in (("harvester_plane", 8), ("cavities", 5)):
+        fewer |= {f"stages.{name}.{axis}.count": count for axis in ("x", "y")}
+    run("coexisting", overrides=fewer)
+    assert len(list((root / "data" / "results").rglob("picture.svg"))) == 3
+    found = vines.query("select name from impact_pair_attractors where stage = 'harvester_plane'").to_pylist()
+    assert {row["name"] for row in found} == {"1:1", "2:1", "2:2/2T", None}

@@ -29,7 +29,7 @@ class Motion(NamedTuple):
     n, m, p : int or None
         If periodic, contacts on L and on R in p forcing periods.
     kinetic_ratio, max_abs_x1, rms_x1 : float or None
-        K2/K1, largest and rms x1.
+        K2/K1, largest and rms x1; None where a system has no such displacement.
     kinetic_ratio_error, rms_x1_error : float or None
         Their standard errors.
     """
@@ -39,7 +39,7 @@ class Motion(NamedTuple):
     m: int | None
     p: int | None
     kinetic_ratio: float
-    max_abs_x1: float
+    max_abs_x1: float | None
     rms_x1: float | None = None
     kinetic_ratio_error: float | None = None
     rms_x1_error: float | None = None
@@ -89,6 +89,7 @@ def apart(one: Motion, other: Motion) -> float:
         return max(
             abs(a - b) / (1.0 + abs(a))
             for a, b in ((one.max_abs_x1, other.max_abs_x1), (one.kinetic_ratio, other.kinetic_ratio))
+            if a is not None and b is not None
         )
     means = ((one.kinetic_ratio, one.kinetic_ratio_error), (one.rms_x1, one.rms_x1_error))
     others = ((other.kinetic_ratio, other.kinetic_ratio_error), (other.rms_x1, other.rms_x1_error))

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
-from vines.dynamics import ensemble
-from vines.model import STATE_NAMES, Params
+from vines.attractors._carried import carried
 
 __all__ = ["WINDOW", "Group", "averages", "match", "observe", "sort_into", "steady"]
 
@@ -47,6 +47,8 @@ class Group:
         The same window by window.
     owner : int
         Number of the attractor, -1 while it has none: a transient that is soon left.
+    signs : ndarray, shape (7,)
+        What the mirror image does to the averages; 1 where motions have none.
     """
 
     regimes: list[str] = field(default_factory=list)
@@ -55,10 +57,11 @@ class Group:
     errors: list[Floats] = field(default_factory=list)
     windows: list[Floats] = field(default_factory=list)
     owner: int = -1
+    signs: Floats = field(default_factory=lambda: SIGNS)
 
     def add(self, regime: str, state: Floats, windows: Floats, error: Floats, sign: int) -> None:
         """Count a run with this attractor, or with its mirror image if `sign` is -1."""
-        seen = windows if sign > 0 else windows * SIGNS
+        seen = windows if sign > 0 else windows * self.signs
         self.regimes.append(regime)
         self.states.append(state if sign > 0 else -state)
         self.means.append(np.mean(seen, axis=0))
@@ -74,7 +77,7 @@ class Group:
     def mean(self) -> Floats:
         """Averages over all its runs; the odd ones are 0 if the attractor is its own mirror image."""
         mean = np.mean(self.means, axis=0)
-        return np.where(SIGNS < 0, 0.0, mean) if self.symmetric else mean
+        return np.where(self.signs < 0, 0.0, mean) if self.symmetric else mean
 
     @property
     def error(self) -> Floats:
@@ -84,7 +87,7 @@ class Group:
     @property
     def symmetric(self) -> bool:
         """Whether it is not told from its own mirror image."""
-        odd = SIGNS < 0
+        odd = self.signs < 0
         return bool(np.all(np.abs(np.mean(self.means, axis=0))[odd] <= SURE * self.error[odd] + 1e-12))
 
     def spread(self, length: int) -> Floats:
@@ -120,22 +123,19 @@ def averages(measures: npt.NDArray[np.void]) -> Floats:
     )
 
 
-def observe(p: Params, states: Floats, phase: float, windows: int) -> tuple[Floats, Floats]:
+def observe(p: Any, states: Floats, phase: float, windows: int) -> tuple[Floats, Floats]:
     """Run on from states at one phase of the forcing and take averages window by window.
 
     Returns
     -------
-    values, end : ndarray, shape (n, windows, 7) and (n, 4)
+    values, end : ndarray, shape (n, windows, 7) and (n, d)
         Averages, and the states at the end.
     """
     values = np.empty((len(states), windows, len(SIGNS)))
     now = states
     for k in range(windows):
-        run = ensemble(
-            p, dict(zip(STATE_NAMES, now.T, strict=True)) | {"phase": phase}, periods=WINDOW, record="measures"
-        )
-        values[:, k] = averages(run.measures) if run.measures is not None else np.nan
-        now = np.stack([run.final[name] for name in STATE_NAMES], axis=1)
+        now, measures = carried(p, now, phase, WINDOW, measured=True)
+        values[:, k] = averages(measures) if measures is not None else np.nan
     return values, now
 
 
@@ -162,7 +162,7 @@ def _apart(values: Floats, errors: Floats, group: Group, spread: Floats) -> tupl
     """Return how many standard errors averages are from those of a group, or of its mirror image, and which of both."""
     allowed = np.hypot(errors, spread) + FLOOR * np.abs(group.mean) + 1e-12
     straight, reflected = (
-        np.max(np.abs(values - mean) / allowed, axis=-1) for mean in (group.mean, group.mean * SIGNS)
+        np.max(np.abs(values - mean) / allowed, axis=-1) for mean in (group.mean, group.mean * group.signs)
     )
     return np.minimum(straight, reflected), np.where(reflected < straight, -1, 1)
 
@@ -184,7 +184,7 @@ def match(values: Floats, length: int, groups: list[Group]) -> tuple[npt.NDArray
     return chosen, signs[np.arange(len(values)), best] if groups else np.ones(len(values), dtype=np.int64)
 
 
-def sort_into(groups: list[Group], regimes: list[str], states: Floats, values: Floats) -> None:
+def sort_into(groups: list[Group], regimes: list[str], states: Floats, values: Floats, *, mirrored: bool) -> None:
     """Put long runs into the groups that they agree with within the standard errors, or into new ones.
 
     Parameters
@@ -193,6 +193,8 @@ def sort_into(groups: list[Group], regimes: list[str], states: Floats, values: F
         Added to.
     regimes, states, values
         Of each run: what it is called, a state, averages window by window.
+    mirrored : bool
+        Whether the mirror image of a motion is a motion too.
     """
     # An error from few batches is uncertain itself: one that is small by chance is not believed.
     usual = np.median([mean_and_error(windows)[1] for windows in values], axis=0) if len(values) else 0.0
@@ -205,6 +207,6 @@ def sort_into(groups: list[Group], regimes: list[str], states: Floats, values: F
         if best >= 0 and apart[best][0] < SURE:
             sign = int(apart[best][1])
         else:
-            groups.append(Group())
+            groups.append(Group(signs=SIGNS if mirrored else np.ones(len(SIGNS))))
             best = len(groups) - 1
         groups[best].add(regime, state, windows, error, sign)

@@ -11,14 +11,15 @@ import numpy as np
 import numpy.typing as npt
 
 from vines.attractors._attractor import Attractor
+from vines.attractors._carried import carried, names_of, part_alike
 from vines.attractors._search import Lifetime, Search
+from vines.attractors._settle import APART
 from vines.attractors._shares import share_error
 from vines.bounds import check_periods, shown
 from vines.domains import Named, Number, Numbers, Parameters, Whole, stated
-from vines.dynamics import ensemble
+from vines.dynamics.kernels import room_of
 from vines.dynamics.runs import LARGEST
 from vines.errors import StateError, nearest
-from vines.model import START_NAMES, STATE_NAMES, Params
 
 __all__ = ["Basins", "basins"]
 
@@ -31,7 +32,7 @@ class Basins:
 
     Attributes
     ----------
-    params : Params
+    params : Params, or those of another system
         Parameters.
     axes : tuple of str
         The two coordinates.
@@ -53,7 +54,7 @@ class Basins:
         For each of them, how long runs stay on it: chaos may be left after a long time.
     """
 
-    params: Params
+    params: Any
     axes: tuple[str, str]
     x: Floats
     y: Floats
@@ -73,7 +74,7 @@ class Basins:
 
 
 @stated(
-    p=Parameters(any_system=False),
+    p=Parameters(),
     others=Named(Number(), optional=True),
     refine=Whole(least=0, most=12),
     settle=Number(least=0),
@@ -81,7 +82,7 @@ class Basins:
     watch=Number(least=16),
 )
 def basins(
-    p: Params,
+    p: Any,
     x: tuple[str, Sequence[float] | Floats],
     y: tuple[str, Sequence[float] | Floats],
     *,
@@ -95,12 +96,14 @@ def basins(
 
     Parameters
     ----------
-    p : Params
+    p : Params, or the parameters of another system
         Parameters.
     x, y : (name, values)
-        Two of x1, v1, x2, v2, phase with evenly spaced values, the centres of the cells.
+        Two of x1, v1, x2, v2, phase, or of the coordinates of another system and phase, with evenly spaced values, the
+        centres of the cells.
     others : mapping, optional
-        The other coordinates, 0 where nothing is said. Starts with a gap |x1 - x2| > 1 are left out.
+        The other coordinates, 0 where nothing is said. Starts with a ball outside its cavity, |x1 - x2| > 1, are left
+        out; balls that would start alike, and so move as one for ever, start `APART`.
     refine : int
         How often cells whose neighbours belong to another attractor are halved in both directions.
     settle : float
@@ -122,6 +125,7 @@ def basins(
 
     Examples
     --------
+    >>> from vines.model import Params
     >>> found = basins(Params(mu=0.01, A=0.023), ("x2", [-0.5, 0.0, 0.5]), ("v2", [0.1, 0.2]))
     >>> [a.name for a in found.attractors], found.fraction(0)[0]
     (['2:1'], 1.0)
@@ -133,9 +137,10 @@ def basins(
     for name, value in (("settle", settle), ("patience", patience), ("watch", watch)):
         check_periods(name, value, p.period)
     names = (x[0], y[0])
+    known = [each.name for each in p.system.start]
     for name in (*names, *(others or {})):
-        if name not in START_NAMES:
-            raise StateError(f"unknown coordinate {name!r}: {nearest(name, START_NAMES)}")
+        if name not in known:
+            raise StateError(f"unknown coordinate {name!r}: {nearest(name, known)}")
     if names[0] == names[1] or set(names) & set(others or {}):
         raise StateError(f"the coordinates {names[0]}, {names[1]} must be two, and not among the others")
     xs, ys = np.asarray(x[1], dtype=np.float64), np.asarray(y[1], dtype=np.float64)
@@ -144,7 +149,7 @@ def basins(
     gx, gy = (values.ravel() for values in np.meshgrid(xs, ys, indexing="xy"))
     inside = grid.allowed(gx, gy)
     if not inside.any():
-        raise StateError("no start of the grid has |x1 - x2| <= 1: the ball would be outside the cavity")
+        raise StateError("no start of the grid has every ball in its cavity, |x1 - x2| <= 1; give other coordinates")
     label = np.full(len(gx), -2)
     mirrored = np.zeros(len(gx), dtype=bool)
     periods = np.zeros(len(gx))
@@ -193,29 +198,28 @@ def _edges(label: npt.NDArray[np.int64]) -> npt.NDArray[np.bool_]:
 class _Grid:
     """The starts: two coordinates from the grid, the others given, all brought to one phase of the forcing."""
 
-    def __init__(self, p: Params, names: tuple[str, str], others: dict[str, float]) -> None:
+    def __init__(self, p: Any, names: tuple[str, str], others: dict[str, float]) -> None:
         self.p, self.names, self.others = p, names, others
         self.phase = others.get("phase", 0.0) % (2.0 * math.pi)
 
     def starts(self, x: Floats, y: Floats) -> dict[str, Floats]:
         """Return all coordinates of the starts."""
-        full = {name: np.full(len(x), self.others.get(name, 0.0)) for name in START_NAMES}
-        full[self.names[0]], full[self.names[1]] = x, y
+        full = {each.name: np.full(len(x), self.others.get(each.name, 0.0)) for each in self.p.system.start}
+        full[self.names[0]], full[self.names[1]] = np.array(x), np.array(y)
         return full
 
     def allowed(self, x: Floats, y: Floats) -> npt.NDArray[np.bool_]:
-        """Return which starts have the ball in the cavity."""
-        full = self.starts(x, y)
-        return np.abs(full["x1"] - full["x2"]) <= 1.0
+        """Return which starts have every ball in its cavity."""
+        return np.all(np.abs(room_of(self.p).gaps(self.p, self.starts(x, y))) <= 1.0, axis=-1)
 
     def states(self, x: Floats, y: Floats) -> Floats:
         """Return the states of the starts, or of what they have become when the forcing is at the common phase."""
         full = self.starts(x, y)
+        states = np.stack([full[name] for name in names_of(self.p)], axis=1)
+        part_alike(self.p, states, APART)
         if "phase" in self.names:
             lag = (self.phase - full["phase"]) % (2.0 * math.pi) / (2.0 * math.pi)
             for share in np.unique(lag[lag > 0]).tolist():
                 some = lag == share
-                final = ensemble(self.p, {name: values[some] for name, values in full.items()}, periods=share).final
-                for name in STATE_NAMES:
-                    full[name][some] = final[name]
-        return np.stack([full[name] for name in STATE_NAMES], axis=1)
+                states[some], _ = carried(self.p, states[some], full["phase"][some], share)
+        return states

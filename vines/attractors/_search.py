@@ -4,18 +4,18 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
 from vines.attractors._attractor import Attractor
 from vines.attractors._averages import WINDOW, Group, averages, match, observe, sort_into, steady
+from vines.attractors._carried import carried, names_of, sort_alike
 from vines.attractors._classified import Classified
 from vines.attractors._classify import classify_many
 from vines.attractors._sections import NEAR, ON, Section, sections_of
 from vines.attractors._settle import settle_from
-from vines.dynamics import ensemble
-from vines.model import STATE_NAMES, V2, Params
 
 __all__ = ["Lifetime", "Search"]
 
@@ -64,14 +64,14 @@ class Search:
 
     Parameters
     ----------
-    p : Params
+    p : Params, or the parameters of another system
     phase : float
         Forcing phase at which states are compared.
     settle, patience, watch : float
         As for `basins`.
     """
 
-    def __init__(self, p: Params, phase: float, settle: float, patience: float, watch: float) -> None:
+    def __init__(self, p: Any, phase: float, settle: float, patience: float, watch: float) -> None:
         self.p, self.phase, self.watch = p, phase, watch
         self.patience = math.ceil(patience / ROUND) * ROUND
         self.settle = min(math.ceil(settle / ROUND) * ROUND, self.patience)
@@ -83,7 +83,7 @@ class Search:
         """States of runs on each attractor that never repeats."""
 
     def run(self, states: Floats) -> tuple[Numbers, npt.NDArray[np.bool_], Floats]:
-        """Bring states, shape (n, 4), to their attractors.
+        """Bring states, shape (n, d), to their attractors.
 
         Returns
         -------
@@ -111,7 +111,7 @@ class Search:
         last = fell.copy()
         while len(still) and runs.elapsed < goal:
             runs.go_on(self.p, self.phase, still)
-            away = self._distances(runs.states[still])
+            away = self._distances(runs.states[still], coming=True)
             # Nearer all the time, and at last half as far: only inside the basin is that so.
             fell = np.where((away < NEAR) & (away <= last), fell, away)
             last = away
@@ -123,12 +123,11 @@ class Search:
                 still, fell, last = still[~caught], fell[~caught], last[~caught]
         return still
 
-    def _distances(self, states: Floats) -> Floats:
-        return (
-            np.stack([s.distance(states) for s in self.sections], axis=1)
-            if self.sections
-            else np.empty((len(states), 0))
-        )
+    def _distances(self, states: Floats, *, coming: bool = False) -> Floats:
+        if not self.sections:
+            return np.empty((len(states), 0))
+        ordered = sort_alike(self.p, states)
+        return np.stack([s.distance(ordered, coming=coming) for s in self.sections], axis=1)
 
     def _label(self, runs: _Runs, which: Numbers, sections: Numbers) -> None:
         owners = np.array([s.owner for s in self.sections], dtype=np.int64)
@@ -136,8 +135,9 @@ class Search:
         runs.reach(which, owners[sections], mirrored[sections])
 
     def _classify(self, states: Floats, patience: float) -> Classified:
-        starts = dict(zip(STATE_NAMES, states.T, strict=True)) | {"phase": self.phase}
-        return classify_many(self.p, starts, settle=0, record=WINDOW, patience=patience, watch=self.watch, errors=False)
+        starts = dict(zip(names_of(self.p), states.T, strict=True)) | {"phase": self.phase}
+        options = {"settle": 0, "record": WINDOW, "patience": patience, "watch": self.watch}
+        return classify_many(self.p, starts, **options, errors=False, apart=0.0)
 
     def _learn(self, runs: _Runs, still: Numbers) -> None:
         """Follow a sample of the open runs to the end, to know the attractors before all others are asked."""
@@ -150,7 +150,7 @@ class Search:
         """Return which runs are on a periodic orbit, or rest, and the section of each; new orbits become known."""
         regular = np.flatnonzero(found.settled & ((found.p > 0) | (found.regime == "no_impact")))
         section = np.full(len(regular), -1)
-        final = found.final[regular, :4]
+        final = found.final[regular, :-1]
         resting = found.regime[regular] == "no_impact"
         if resting.any():
             section[resting] = self._rest(found, int(regular[resting][0]))
@@ -179,8 +179,9 @@ class Search:
             if self.attractors[section.owner].regime == "no_impact":
                 return k
         self.attractors.append(found.attractor(run))
-        nothing = np.empty((0, 4))
-        self.sections.append(Section(len(self.attractors) - 1, False, nothing, np.empty((0, 4, 4), complex), 1.0))
+        d = len(names_of(self.p))
+        nothing = np.empty((0, d)), np.empty((0, d, d), complex)
+        self.sections.append(Section(len(self.attractors) - 1, False, *nothing, 1.0))
         return len(self.sections) - 1
 
     def _decide(self, runs: _Runs, still: Numbers) -> Numbers:
@@ -191,7 +192,7 @@ class Search:
         for k in range(0, len(still), CHUNK):
             part = still[k : k + CHUNK]
             found = self._classify(runs.states[part], 0.0)
-            runs.states[part] = found.final[:, :4]
+            runs.states[part] = found.final[:, :-1]
             runs.periods[part] = runs.elapsed + WINDOW
             on, section = self._on_orbits(found)
             self._label(runs, part[on], section)
@@ -243,7 +244,7 @@ class Search:
         wild = found.settled & np.isin(found.regime, ("chaotic", "quasiperiodic"))
         stay = np.flatnonzero(wild & ~self._captured(end) & steady(values))
         known = len(self.groups)
-        sort_into(self.groups, found.regime[stay].tolist(), end[stay], values[stay])
+        sort_into(self.groups, found.regime[stay].tolist(), end[stay], values[stay], mirrored=self.p.mirrored)
         for k in range(known, len(self.groups)):
             if self._lasts(k):
                 self.groups[k].owner = len(self.attractors)
@@ -254,7 +255,7 @@ class Search:
         group = self.groups[k]
         count = min(max(SAMPLE, len(group.states)), WATCHED)
         states = np.array(group.states)[np.arange(count) % len(group.states)]
-        states[:, V2] += np.linspace(-BESIDE, BESIDE, count)
+        states[:, -1] += np.linspace(-BESIDE, BESIDE, count)
         values, end = observe(self.p, states, self.phase, self.windows)
         late = max(self.windows // 4, 1)
         which, _ = match(values[:, -late:].mean(axis=1), late, self.groups)
@@ -267,7 +268,7 @@ class Search:
         """Return one run of a group as an attractor."""
         shown = None
         for state in group.states:
-            at = dict(zip(STATE_NAMES, state.tolist(), strict=True)) | {"phase": self.phase}
+            at = dict(zip(names_of(self.p), state.tolist(), strict=True)) | {"phase": self.phase}
             shown = settle_from(self.p, at, settle=0, record=SHOWN, patience=0, watch=self.watch)
             if shown.regime == group.regime:
                 break
@@ -311,12 +312,9 @@ class _Runs:
         self.periods = np.zeros(n)
         self.elapsed = 0.0
 
-    def go_on(self, p: Params, phase: float, which: Numbers) -> None:
+    def go_on(self, p: Any, phase: float, which: Numbers) -> None:
         """Let some of them go on for a round; after whole periods the phase is the same."""
-        starts = dict(zip(STATE_NAMES, self.states[which].T, strict=True)) | {"phase": phase}
-        final = ensemble(p, starts, periods=ROUND).final
-        for k, name in enumerate(STATE_NAMES):
-            self.states[which, k] = final[name]
+        self.states[which], _ = carried(p, self.states[which], phase, ROUND)
         self.elapsed += ROUND
         self.periods[which] = self.elapsed
 

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
 from vines.attractors._attractor import Attractor
+from vines.attractors._carried import names_of, sort_alike
 from vines.dynamics import simulate, tangent_map
-from vines.model import STATE_NAMES, V1, V2, VI_NES, Params
 
 __all__ = ["NEAR", "ON", "Section", "sections_of"]
 
@@ -36,13 +37,16 @@ class Section:
         Number of the attractor.
     mirrored : bool
         Whether this is its mirror image (x, t) -> (-x, t + T/2).
-    points : ndarray, shape (p, 4)
-        x1, v1, x2, v2.
-    frames : ndarray of complex, shape (p, 4, 4)
+    points : ndarray, shape (p, d)
+        Coordinates of the system: x1, v1, x2, v2 of the VI-NES.
+    frames : ndarray of complex, shape (p, d, d)
         Maps the difference to a point, over `scale`, to its parts along the eigenvectors of the period map: what is
         near the orbit comes nearer in these coordinates at every return, however it turns.
     scale : float
         Largest speed among the points.
+    resting : tuple of (int, float)
+        Of each ball that rests and is never hit, the column of its position, which may be any, and how far from the
+        middle the orbit does not reach it. The frames are those of the other coordinates.
     """
 
     owner: int
@@ -50,49 +54,80 @@ class Section:
     points: Floats
     frames: npt.NDArray[np.complex128]
     scale: float
+    resting: tuple[tuple[int, float], ...] = ()
 
-    def distance(self, states: Floats) -> Floats:
-        """Return how far states, shape (n, 4), are from the nearest of the points, inf where that is not near."""
+    def distance(self, states: Floats, *, coming: bool = False) -> Floats:
+        """Return how far states, shape (n, d), are from the nearest of the points, inf where that is not near.
+
+        Where balls rest on the orbit they have to; of states that are `coming`, and not on it yet, they have to be
+        where it does not reach them too.
+        """
         nearest = np.full(len(states), np.inf)
-        for point, frame in zip(self.points, self.frames, strict=True):
+        points = self.points
+        there = np.ones(len(states), dtype=bool)
+        if self.resting:
+            for column, room in self.resting:
+                there &= states[:, column + 1] == 0.0
+                if coming:
+                    there &= np.abs(states[:, column]) < room
+            states, points = (np.delete(each, _columns(self.resting), axis=1) for each in (states, points))
+        for point, frame in zip(points, self.frames, strict=True):
             away = (states - point) / self.scale
-            # Eigenvectors have length 1: a difference is at most the sum of its four parts.
-            close = np.flatnonzero(np.max(np.abs(away), axis=1) < 4.0 * NEAR)
+            # Eigenvectors have length 1: a difference is at most the sum of its parts.
+            close = np.flatnonzero(there & (np.max(np.abs(away), axis=1) < float(len(frame)) * NEAR))
             nearest[close] = np.minimum(nearest[close], np.max(np.abs(away[close] @ frame.T), axis=1))
         return nearest
 
 
-def sections_of(p: Params, attractor: Attractor, owner: int) -> list[Section]:
+def _columns(resting: tuple[tuple[int, float], ...]) -> list[int]:
+    """Return the columns of balls that rest."""
+    return [column + k for column, _ in resting for k in (0, 1)]
+
+
+def sections_of(p: Any, attractor: Attractor, owner: int) -> list[Section]:
     """Return the section of a periodic attractor at the forcing phase of its final state, and that of its mirror image.
 
     Parameters
     ----------
-    p : Params
+    p : Params, or the parameters of another system
     attractor : Attractor
         A periodic one.
     owner : int
         Its number.
     """
-    at = attractor.final
-    periods = int(attractor.p or 1)
-    run = simulate(
-        p, x1=at["x1"], v1=at["v1"], x2=at["x2"], v2=at["v2"], phi=at["phase"], periods=periods + VI_NES.mirror.shift
-    )
+    at: dict[str, Any] = {name: value for name, value in attractor.final.items() if name not in ("t", "phase")}
+    phase, periods = attractor.final["phase"], int(attractor.p or 1)
+    mirror, names = p.system.mirror, names_of(p)
+    run = simulate(p, **at, phi=phase, periods=periods + mirror.shift)
     times = np.arange(periods) * p.period
     found = []
-    for mirrored in (False, True) if not attractor.symmetric else (False,):
-        samples = run.sample(times=np.minimum(times + (VI_NES.mirror.shift * p.period if mirrored else 0.0), run.t_end))
-        points = np.stack([samples[name] for name in STATE_NAMES], axis=1) * (VI_NES.mirror.sign if mirrored else 1.0)
-        scale = max(1e-3, float(np.max(np.abs(points[:, [V1, V2]]))))
-        frames = np.stack([_frame(p, point, at["phase"], periods) for point in points])
-        found.append(Section(owner, mirrored, points, frames, scale))
+    for mirrored in (False, True) if p.mirrored and not attractor.symmetric else (False,):
+        samples = run.sample(times=np.minimum(times + (mirror.shift * p.period if mirrored else 0.0), run.t_end))
+        points = np.stack([samples[name] for name in names], axis=1) * (mirror.sign if mirrored else 1.0)
+        points = sort_alike(p, points)
+        scale = max(1e-3, float(np.max(np.abs(points[:, 1::2]))))
+        resting = _resting(p, points, attractor.measures.max_abs_x1)
+        frames = np.stack([_frame(p, point, phase, periods, _columns(resting)) for point in points])
+        found.append(Section(owner, mirrored, points, frames, scale, resting))
     return found
 
 
-def _frame(p: Params, point: Floats, phase: float, periods: int) -> npt.NDArray[np.complex128]:
-    x1, v1, x2, v2 = point.tolist()
-    run = simulate(p, x1=x1, v1=v1, x2=x2, v2=v2, phi=phase, periods=periods)
-    vectors = np.linalg.eig(tangent_map(run))[1].astype(np.complex128)
+def _resting(p: Any, points: Floats, reach: float) -> tuple[tuple[int, float], ...]:
+    """Return the balls that rest on an orbit whose largest displacement is `reach`; a tilt leaves none where it is."""
+    if not p.mirrored:
+        return ()
+    names = names_of(p)
+    columns = [(names.index(f"x2_{ball}"), beta) for ball, beta in enumerate(getattr(p, "beta", ()), start=1)]
+    return tuple((x, beta - reach) for x, beta in columns if np.all(points[:, x + 1] == 0.0))
+
+
+def _frame(p: Any, point: Floats, phase: float, periods: int, without: list[int]) -> npt.NDArray[np.complex128]:
+    at: dict[str, Any] = dict(zip(names_of(p), point.tolist(), strict=True))
+    run = simulate(p, **at, phi=phase, periods=periods)
+    growth = tangent_map(run)
+    if without:
+        growth = np.delete(np.delete(growth, without, axis=0), without, axis=1)
+    vectors = np.linalg.eig(growth)[1].astype(np.complex128)
     if not np.linalg.cond(vectors) < FLAT:
-        return np.eye(4, dtype=np.complex128)
+        return np.eye(len(growth), dtype=np.complex128)
     return np.asarray(np.linalg.inv(vectors), dtype=np.complex128)

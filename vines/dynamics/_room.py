@@ -74,6 +74,26 @@ class Room:
         """Put a run at its start."""
         set_state(state, float(x1), float(v1), float(x2), float(v2), phase, t)
 
+    def gaps(self, p: Any, at: Mapping[str, Any]) -> Any:
+        """Return the gap of each ball over half the length of its cavity, shape (n, balls), of n states by name."""
+        return np.stack([at["x1"] - at["x2"]], axis=-1)
+
+    def draw(self, p: Any, rng: np.random.Generator) -> dict[str, float]:
+        """Return a start at phase 0, drawn at random.
+
+        The oscillator is within twice its amplitude without a ball, .1 at least and 3 at most, and as fast; the ball is
+        anywhere in the cavity and as fast.
+        """
+        size = float(np.clip(2.0 * self.amplitude(p, 1.0), 0.1, 3.0))
+        x1, v1, v2 = rng.uniform(-size, size, 3).tolist()
+        return {"x1": x1, "v1": v1, "x2": x1 - float(rng.uniform(-1.0, 1.0)), "v2": v2}
+
+    def amplitude(self, p: Any, mass: float) -> float:
+        """Return the steady amplitude of x1 of an oscillator of this mass without a ball."""
+        damping = p.lam * p.Omega
+        detuning = math.hypot(1.0 - mass * p.Omega**2, damping)
+        return p.A * math.hypot(1.0, damping) / detuning if detuning > 0.0 else math.inf
+
     def push(self, p: Any, x1: Any, v1: Any, phase: Any) -> Any:
         """Return w'' of a free ball."""
         force = p.A * (np.sin(phase) + p.lam * p.Omega * np.cos(phase))

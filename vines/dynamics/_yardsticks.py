@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from typing import Any
 
 from vines.domains import Parameters, stated
@@ -24,7 +23,7 @@ def no_ball(p: Any) -> float:
     >>> print(f"{no_ball(Params(mu=0.01, A=0.02)):.6f}")
     1.667069
     """
-    return _amplitude(p, 1.0)
+    return room_of(p).amplitude(p, 1.0)
 
 
 @stated(p=Parameters())
@@ -37,10 +36,4 @@ def ball_locked(p: Any) -> float:
     >>> print(f"{ball_locked(Params(mu=0.01, A=0.02)):.6f}")
     1.280589
     """
-    return _amplitude(p, 1.0 + room_of(p).mass(p))
-
-
-def _amplitude(p: Any, mass: float) -> float:
-    damping = p.lam * p.Omega
-    detuning = math.hypot(1.0 - mass * p.Omega**2, damping)
-    return p.A * math.hypot(1.0, damping) / detuning if detuning > 0.0 else math.inf
+    return room_of(p).amplitude(p, 1.0 + room_of(p).mass(p))

@@ -1,6 +1,7 @@
 from ._axes import SHOWN as SHOWN
 from ._basins import BasinMap as BasinMap
 from ._basins import basins_figure as basins_figure
+from ._basins import start_symbol as start_symbol
 from ._bifurcation import bifurcation_figure as bifurcation_figure
 from ._chart import CurveLine as CurveLine
 from ._chart import Region as Region

@@ -13,16 +13,15 @@ from vines.figures._axes import name_axis
 from vines.figures._colours import CHAOS, HUES
 from vines.figures._fit import place_legend
 from vines.figures._style import font, look, new_figure
-from vines.model import VI_NES
+from vines.model import VI_NES, most_balls, read_system
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-__all__ = ["BasinMap", "basins_figure"]
+__all__ = ["BasinMap", "basins_figure", "start_symbol"]
 
 Floats = npt.NDArray[np.float64]
 
-SYMBOLS = {each.name: f"${each.symbol}$" for each in VI_NES.state} | {"phase": rf"phase ${VI_NES.phase.symbol}$"}
 UNSETTLED = "#000000"
 """Colours as in the map of regimes: periodic attractors coloured, chaotic ones grey, what has not settled black."""
 
@@ -42,7 +41,7 @@ class BasinMap:
     Attributes
     ----------
     axes : (str, str)
-        Coordinates along x and y.
+        Coordinates along x and y, as `start_symbol` writes them.
     x, y : (n,) array
         Centres of the cells.
     level : (n,) array of int
@@ -55,6 +54,8 @@ class BasinMap:
         For each attractor, with its share; and what is written for the cells that have not settled, if there are any.
     steps : (float, float)
         Sizes of an uncut cell.
+    coordinates : (str, str)
+        Names of the coordinates, by which the look of a figure knows its axes.
     """
 
     axes: tuple[str, str]
@@ -66,6 +67,21 @@ class BasinMap:
     names: Sequence[str]
     regimes: Sequence[str]
     steps: tuple[float, float]
+    coordinates: tuple[str, str] = ("x", "y")
+
+
+def start_symbol(name: str, system: str = VI_NES.name) -> str:
+    r"""Return what an axis calls a coordinate of a start of a system.
+
+    Examples
+    --------
+    >>> start_symbol("v2"), start_symbol("phase", "impact_pair")
+    ("$x_2'$", 'phase $\\theta$')
+    """
+    known = read_system(system, most_balls(system))
+    if name == known.phase.name:
+        return f"phase ${known.phase.symbol}$"
+    return next(f"${each.symbol}$" for each in known.state if each.name == name)
 
 
 def basins_figure(data: BasinMap, *, title: str = "", width: float = 7.0) -> Figure:
@@ -92,8 +108,8 @@ def basins_figure(data: BasinMap, *, title: str = "", width: float = 7.0) -> Fig
         figure = new_figure(width, 0.8 * width)
         ax = figure.add_subplot()
         ax.imshow(image, extent=extent, origin="lower", aspect="auto", interpolation="none")
-        name_axis(ax, "x", data.axes[0], f"{SYMBOLS[data.axes[0]]} at the start")
-        name_axis(ax, "y", data.axes[1], f"{SYMBOLS[data.axes[1]]} at the start")
+        name_axis(ax, "x", data.coordinates[0], f"{data.axes[0]} at the start")
+        name_axis(ax, "y", data.coordinates[1], f"{data.axes[1]} at the start")
         handles = [
             Patch(facecolor=colour, edgecolor="#777777", linewidth=0.5, label=name)
             for colour, name in zip((*colours, UNSETTLED), data.names, strict=False)

@@ -21,6 +21,7 @@ from vines.orbits._joined import mirror_image
 from vines.orbits._orbit import Orbit
 from vines.orbits._own_word import sticking_word, whole_word
 from vines.orbits._seeds import base_word, doubled_times, harvested_times, random_times, simplex_times
+from vines.orbits._sticking_capsule import capsule_orbits, rides_capsule
 from vines.orbits._sticking_search import search_sticking
 from vines.orbits._values import marks_of, unit_of
 
@@ -49,7 +50,8 @@ class Orbits(list[Orbit]):
     complete : bool
         Whether every orbit of the word is in the list. True for words of two and three impacts, where all flight times
         are searched; two orbits nearer than 1e-5 of a forcing period, next to a fold, may count as one. A word without
-        a star has no orbits that stick, so that nothing is said about those; words with a star are never complete.
+        a star has no orbits that stick, so that nothing is said about those; words with a star
+        are complete for the impact pair only, where a release fixes all that follows.
     remark : str
         How they were searched for.
     nearest : float
@@ -102,7 +104,11 @@ def all_orbits(word: str | Word, p: Any) -> Orbits:
     """
     word = whole_word(word, p)
     if word.sticking:
-        found, how = search_sticking(sticking_word(word, p), p)
+        word = sticking_word(word, p)
+        if rides_capsule(p):
+            found, how = capsule_orbits(word, p)
+            return Orbits(found, complete=True, remark=how, nearest=np.inf)
+        found, how = search_sticking(word, p)
         return Orbits(_in_order(found), complete=word.n == 0 or word.m == 0, remark=how, nearest=np.inf)
     refuse_resonance(p)
     if len(word) > LONGEST:

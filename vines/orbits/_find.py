@@ -14,6 +14,7 @@ from vines.orbits._all import Orbits, all_orbits
 from vines.orbits._general import refine, search
 from vines.orbits._orbit import Orbit
 from vines.orbits._own_word import sticking_word, whole_word
+from vines.orbits._sticking_capsule import capsule_sticks, rides_capsule
 from vines.orbits._sticking_search import no_sticking_orbit, refine_sticking
 from vines.orbits._symmetric import no_symmetric_orbit
 
@@ -61,10 +62,14 @@ def find_orbit(word: str | Word, p: Any, guess: Orbit | npt.ArrayLike | None = N
     """
     word = whole_word(word, p)
     if guess is not None:
+        if word.sticking and rides_capsule(p):
+            return capsule_sticks(word, p)
         return refine_sticking(sticking_word(word, p), p, guess) if word.sticking else refine(word, p, guess)
     found = all_orbits(word, p)
     if found:
         return choose(found)
+    if word.sticking and rides_capsule(p):
+        return capsule_sticks(word, p)
     if word.sticking:
         raise no_sticking_orbit(word, p, found.remark)
     if isinstance(p, Params) and word.symmetric and len(word) == 2:

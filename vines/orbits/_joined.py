@@ -16,6 +16,7 @@ from vines.orbits._family import GeneralProblem
 from vines.orbits._general import origin, refine
 from vines.orbits._orbit import Orbit
 from vines.orbits._problem import ZeroSet
+from vines.orbits._sticking_capsule import capsule_sticks, rides_capsule
 from vines.orbits._sticking_orbit import mirrored_sticking
 from vines.orbits._values import frequency_of
 
@@ -36,6 +37,8 @@ def mirror_image(orbit: Orbit) -> Orbit:
     >>> print(mirror_image(find_orbit("LLR", Params(mu=0.01, A=0.023))).word)
     LRR
     """
+    if orbit.word.sticking and rides_capsule(orbit.params):
+        return capsule_sticks(orbit.word.mirror, orbit.params)
     if orbit.word.sticking:
         return mirrored_sticking(orbit)
     word, t, states = orbit.word.mirror, orbit.t + orbit.params.period / 2, -orbit.states

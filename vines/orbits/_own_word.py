@@ -6,6 +6,7 @@ from typing import Any
 
 from vines.errors import OrbitNotFound, ParameterError
 from vines.model import Params, Word, of_moderate_length
+from vines.orbits._sticking_capsule import rides_capsule
 
 __all__ = ["own_word", "sticking_word", "whole_word"]
 
@@ -57,16 +58,16 @@ def whole_word(word: str | Word, p: Any) -> Word:
 
 
 def sticking_word(word: Word, p: Any) -> Word:
-    """Return a word with a star if its orbits can be computed: so far those of the VI-NES.
+    """Return a word with a star if its orbits can be computed: those of the VI-NES and of the impact pair.
 
     Raises
     ------
     OrbitNotFound
         For another system.
     """
-    if not isinstance(p, Params):
+    if not (isinstance(p, Params) or rides_capsule(p)):
         raise OrbitNotFound(
-            f"{word} sticks, and orbits that stick are computed for the VI-NES only, not for {p.system.name!r}; follow "
-            "it by simulation"
+            f"{word} sticks, and orbits that stick are computed for the VI-NES and the impact pair, not for "
+            f"{p.system.name!r}; follow it by simulation"
         )
     return word

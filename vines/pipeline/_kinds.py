@@ -75,7 +75,7 @@ class Kind:
         name with the parameters, options, tables and body for that system with so many numbered balls (0 where none
         has a number). Its options have the field ``system``, which so belongs to the key.
     meaningless : mapping of str to str
-        Systems that it never will do, and why; the refusal says so.
+        Systems that it does not do for what they are, and why; the refusal says so.
     system : str
         The system that it is for.
     balls : int

@@ -13,7 +13,9 @@ from vines.schema._declared import expand
 
 __all__ = ["OF_EACH_SYSTEM", "of_system", "of_systems", "system_table"]
 
-OF_EACH_SYSTEM = ("bifurcations", "branches", "curves", "impacts", "orbits", "points", "transients")
+OF_EACH_SYSTEM = (
+    "attractors", "basins", "bifurcations", "branches", "curves", "impacts", "orbits", "points", "transients"
+)  # fmt: skip
 """Tables that every system has: the VI-NES under these names, another one with its name before them."""
 
 

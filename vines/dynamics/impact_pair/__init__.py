@@ -42,6 +42,15 @@ class _Pair(Room):
         x1, v1, x2, v2 = at
         return {"w": x1 - x2, "w_dot": v1 - v2}
 
+    def gaps(self, p: Any, at: Mapping[str, Any]) -> Any:
+        return np.stack([at["w"]], axis=-1)
+
+    def draw(self, p: Any, rng: np.random.Generator) -> dict[str, float]:
+        # Motions in the long run rarely meet an end at three times the speed of the capsule, and a fall through all of
+        # it adds 2 sqrt(G).
+        size = max(3.0 * p.B + 2.0 * math.sqrt(abs(p.G)), 0.1)
+        return {"w": float(rng.uniform(-1.0, 1.0)), "w_dot": float(rng.uniform(-size, size))}
+
     def push(self, p: Any, x1: Any, v1: Any, phase: Any) -> Any:
         return p.G - p.B * np.sin(phase)
 

@@ -57,6 +57,19 @@ class _Parallel(Room):
               phase: float, t: float) -> None:  # fmt: skip
         set_balls(c, state, float(x1), float(v1), x2, v2, phase, t)
 
+    def gaps(self, p: Any, at: Mapping[str, Any]) -> Any:
+        return np.stack([(at["x1"] - at[f"x2_{k}"]) / p.beta[k - 1] for k in range(1, p.balls + 1)], axis=-1)
+
+    def draw(self, p: Any, rng: np.random.Generator) -> dict[str, float]:
+        # As of the VI-NES, the longest cavity being the unit.
+        unit = max(p.beta)
+        size = unit * float(np.clip(2.0 * self.amplitude(p, 1.0) / unit, 0.1, 3.0))
+        x1, v1, *v2 = rng.uniform(-size, size, 2 + p.balls).tolist()
+        found = {"x1": x1, "v1": v1}
+        for k, (beta, speed) in enumerate(zip(p.beta, v2, strict=True), start=1):
+            found |= {f"x2_{k}": x1 - beta * float(rng.uniform(-1.0, 1.0)), f"v2_{k}": speed}
+        return found
+
     def law(self, p: Any, balls: Any) -> ImpactLaw:
         at = np.asarray(balls) - 1
         return impact_law(np.array(p.mu)[at], np.array(p.r)[at])

@@ -10,9 +10,13 @@ from vines import schema
 from vines.model import most_balls, read_system
 from vines.stages.audit._bifurcations import curve_equations
 from vines.stages.audit._defect import Defect, forced_amplitude, relative
+from vines.stages.audit._others import cell_defects
+from vines.stages.audit._points import share_defects
 from vines.stages.audit._rows import Floats, Rows
 
 __all__ = [
+    "family_attractor_defects",
+    "family_basin_defects",
     "family_curve_defects",
     "family_impact_defects",
     "family_orbit_defects",
@@ -112,6 +116,25 @@ def family_point_defects(table: str, rows: Rows) -> Iterator[Defect]:
     done = rows.text("status") == "ok"
     yield from _balance(rows, done, "energy_change")
     yield from _yardsticks(rows, done)
+
+
+def family_attractor_defects(table: str, rows: Rows) -> Iterator[Defect]:
+    """Yield the checks of rows of a table of attractors."""
+    yield _parameters(table, rows)
+    yield from share_defects(rows)
+    gap = np.zeros(len(rows))
+    if rows.has("end_w"):
+        gap = np.abs(rows["end_w"]) - 1
+    for ball in range(1, most_balls(schema.table(table).system) + 1):
+        off = np.abs(rows["end_x1"] - rows[f"end_x2_{ball}"]) / rows[f"beta_{ball}"] - 1
+        gap = np.fmax(gap, off)
+    yield Defect("states", "every ball in its cavity at the end", 1e-9, np.maximum(gap, 0.0))
+
+
+def family_basin_defects(table: str, rows: Rows) -> Iterator[Defect]:
+    """Yield the checks of rows of a table of basins."""
+    yield _parameters(table, rows)
+    yield from cell_defects(rows)
 
 
 def family_orbit_defects(table: str, rows: Rows) -> Iterator[Defect]:

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+from vines.stages.audit._systems import base_of
+
 if TYPE_CHECKING:
     from vines.stages.audit._ledger import Ledger
     from vines.store import Result
@@ -32,9 +34,11 @@ def check_links(ledger: Ledger, where: str, result: Result) -> None:
     def column(table: str, name: str) -> Any:
         return pq.read_table(result.folder / f"{table}.parquet", columns=[name]).column(name)
 
-    for table, name, other, target in _LINKS:
-        if table not in result.tables or other not in result.tables:
+    own = {base_of(table): table for table in result.tables}
+    for base, name, beside, target in _LINKS:
+        if base not in own or beside not in own:
             continue
+        table, other = own[base], own[beside]
         values = column(table, name)
         lost = pc.and_(
             pc.invert(pc.is_in(values, value_set=column(other, target).combine_chunks())), pc.is_valid(values)

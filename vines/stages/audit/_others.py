@@ -78,6 +78,11 @@ def _closed_form(rows: Rows) -> Floats:
 def basin_defects(rows: Rows) -> Iterator[Defect]:
     """Yield the checks of rows of the table ``basins``."""
     yield from model_defects(rows, np.ones(len(rows), dtype=bool))
+    yield from cell_defects(rows)
+
+
+def cell_defects(rows: Rows) -> Iterator[Defect]:
+    """Yield the checks of cells of basins of any system."""
     bad = ~(rows["weight"] > 0) | ~(rows["attractor"] >= -1) | ~(rows["periods"] >= 0)
     yield Defect("cells", "weight > 0, an attractor or -1", 0.0, np.where(bad, np.inf, 0.0))
     total = np.full(len(rows), np.nan)

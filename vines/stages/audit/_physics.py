@@ -14,6 +14,8 @@ from vines.pipeline import kinds
 from vines.stages.audit._bifurcations import bifurcation_defects, branch_defects, curve_defects
 from vines.stages.audit._defect import Defect
 from vines.stages.audit._family import (
+    family_attractor_defects,
+    family_basin_defects,
     family_curve_defects,
     family_impact_defects,
     family_orbit_defects,
@@ -55,6 +57,8 @@ _CHECKS: dict[str, Callable[[Rows], Iterator[Defect]]] = {
     "rig_impacts": rig_impact_defects,
 }
 _OF_SYSTEMS: dict[str, Callable[[str, Rows], Iterator[Defect]]] = {
+    "attractors": family_attractor_defects,
+    "basins": family_basin_defects,
     "curves": family_curve_defects,
     "impacts": family_impact_defects,
     "orbits": family_orbit_defects,
@@ -83,7 +87,7 @@ def check_physics(ledger: Ledger, where: str, result: Result, name: str) -> None
     path = result.folder / f"{name}.parquet"
     motion = _Motion(result) if name == "impacts" and "points" in result.tables else None
     start = 0
-    for piece in _pieces(path, whole=name in _WHOLE, by_point=motion is not None):
+    for piece in _pieces(path, whole=base_of(name) in _WHOLE, by_point=motion is not None):
         table = schema.cast(name, piece)  # columns that came later are empty
         check_table(ledger, where, name, table)
         rows = Rows(table)

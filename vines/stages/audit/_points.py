@@ -96,8 +96,13 @@ def attractor_defects(rows: Rows) -> Iterator[Defect]:
     yield from model_defects(rows, known)
     gap = np.abs(rows["end_x1"] - rows["end_x2"]) - 1
     yield Defect("states", "|w| <= 1 at the end", 1e-9, np.where(known, np.maximum(gap, 0.0), np.nan))
+    yield from share_defects(rows)
+    above = np.where(rows["rms_x1"] > rows["max_abs_x1"] * (1 + 1e-12), np.inf, 0.0)
+    yield Defect("displacements", "rms_x1 <= max_abs_x1", 0.0, np.where(known, above, np.nan))
+
+
+def share_defects(rows: Rows) -> Iterator[Defect]:
+    """Yield the check of the shares of attractors."""
     share = rows["fraction"]
     outside = np.where((share >= -1e-12) & (share <= 1 + 1e-12), 0.0, np.inf)
     yield Defect("shares", "between 0 and 1", 0.0, np.where(np.isnan(share), np.nan, outside))
-    above = np.where(rows["rms_x1"] > rows["max_abs_x1"] * (1 + 1e-12), np.inf, 0.0)
-    yield Defect("displacements", "rms_x1 <= max_abs_x1", 0.0, np.where(known, above, np.nan))

@@ -117,7 +117,7 @@ def _can(result: Result, table: str) -> bool:
 
 def _from_starts(result: Result, table: str) -> bool:
     """Say whether a row of the table stands for starts, which are settled again."""
-    return kind(result.manifest["kind"]).again == "starts" and table in ("attractors", "basins")
+    return kind(result.manifest["kind"]).again == "starts" and base_of(table) in ("attractors", "basins")
 
 
 def _again(source: _Source, place: int, points: PointsAgain, rng: np.random.Generator) -> Comparison:

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
 
 from vines.attractors import SAME, Attractor, Classified, Motion, apart, classify_many, share_error
-from vines.dynamics import no_ball
-from vines.model import PARAMETER_NAMES, START_NAMES, Params, Word
+from vines.dynamics.kernels import room_of
+from vines.model import PARAMETER_NAMES, Params, Word
 from vines.stages.bodies._rows import outline
 
 __all__ = ["attractor_rows", "coexisting", "random_starts"]
@@ -34,7 +34,7 @@ def coexisting(
         Those of the points' own starts; each comes first in its list.
     random : int
         Number of random starts at each point: the oscillator within twice its amplitude without a ball (at most 3), the
-        ball anywhere in the cavity and as fast.
+        ball anywhere in the cavity and as fast; of another system as its room says.
     seed : int
         Seed; the starts of a point follow from it and the parameters alone.
     settle, record, watch : float
@@ -48,16 +48,8 @@ def coexisting(
     if not random:
         return found
     starts = np.concatenate([random_starts(attractor.params, random, seed) for attractor in own])
-    columns = np.array([[getattr(attractor.params, name) for name in PARAMETER_NAMES] for attractor in own])
-    many = classify_many(
-        dict(zip(PARAMETER_NAMES, np.repeat(columns, random, axis=0).T, strict=True)),
-        dict(zip(START_NAMES, starts.T, strict=False)),
-        settle=settle,
-        record=record,
-        watch=watch,
-        largest_p=largest_p,
-        impacts=impacts,
-    )
+    options: dict[str, Any] = {"settle": settle, "record": record, "watch": watch, "largest_p": largest_p}
+    many = _classified([attractor.params for attractor in own], random, starts, options | {"impacts": impacts})
     ratio, size = many.measures["kinetic_ratio"].tolist(), many.measures["max_abs_x1"].tolist()
     regimes, settled = many.regime.tolist(), many.settled.tolist()
     for point, listed in enumerate(found):
@@ -77,20 +69,32 @@ def _count(listed: list[tuple[Attractor, int]], motion: Motion, settled: bool, m
     listed.append((many.attractor(k), 1))
 
 
-def random_starts(p: Params, random: int, seed: int) -> np.ndarray:
-    """Return random starts, shape (random, 4): x1, v1, x2, v2."""
+def _classified(points: Sequence[Any], each: int, starts: np.ndarray, options: dict[str, Any]) -> Classified:
+    """Return what so many starts at each of the points settle to."""
+    named = dict(zip((each.name for each in points[0].system.state), starts.T, strict=True))
+    if not isinstance(points[0], Params):
+        # No two of them start alike, so that balls need not be told apart.
+        return classify_many([p for p in points for _ in range(each)], named, **options, apart=0.0)
+    columns = np.array([[getattr(p, name) for name in PARAMETER_NAMES] for p in points])
+    return classify_many(dict(zip(PARAMETER_NAMES, np.repeat(columns, each, axis=0).T, strict=True)), named, **options)
+
+
+def random_starts(p: Any, random: int, seed: int) -> np.ndarray:
+    """Return random starts at phase 0, shape (random, d): the coordinates of the system."""
     bits = np.array(list(p.as_dict().values())).view(np.uint32)
     rng = np.random.default_rng([seed, *bits.tolist()])
-    size = float(np.clip(2.0 * no_ball(p), 0.1, 3.0))
-    starts = np.empty((random, 4))
-    for k in range(random):
-        x1, v1, v2 = rng.uniform(-size, size, 3).tolist()
-        starts[k] = x1, v1, x1 - float(rng.uniform(-1.0, 1.0)), v2
-    return starts
+    room = room_of(p)
+    drawn = [room.draw(p, rng) for _ in range(random)]
+    return np.array([[start[each.name] for each in p.system.state] for start in drawn])
 
 
-def attractor_rows(point_id: str, found: list[tuple[Attractor, int]], random: int) -> list[dict[str, Any]]:
-    """Return rows of the table ``attractors``; shares are null where no start was drawn."""
+def attractor_rows(
+    point_id: str,
+    found: list[tuple[Attractor, int]],
+    random: int,
+    told: Callable[[Attractor], dict[str, Any]] = outline,
+) -> list[dict[str, Any]]:
+    """Return rows of the table ``attractors`` with what is told of each; shares are null where no start was drawn."""
     rows = []
     for k, (attractor, count) in enumerate(found):
         share = count / random if random else None
@@ -101,7 +105,7 @@ def attractor_rows(point_id: str, found: list[tuple[Attractor, int]], random: in
                 "attractor": k,
                 "fraction": share,
                 "fraction_error": share_error(share, random) if share is not None else None,
-                **outline(attractor),
+                **told(attractor),
             }
         )
     return rows

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -12,6 +13,7 @@ from vines.attractors import APART
 from vines.dynamics import Measures, ball_locked, no_ball
 from vines.model import Parameters
 from vines.orbits import orbit_outline
+from vines.stages.bodies._coexisting import attractor_rows
 from vines.stages.bodies._rows import measured_outline, measured_row
 from vines.stages.bodies._sweep import representative
 from vines.systems import Harvest, parameters
@@ -21,7 +23,16 @@ if TYPE_CHECKING:
     from vines.orbits import Orbit
     from vines.stages.kinds._family import HarvestLaw
 
-__all__ = ["family_impacts", "family_orbit", "family_point", "only_own", "parameters_of", "start_of"]
+__all__ = [
+    "family_attractors",
+    "family_impacts",
+    "family_orbit",
+    "family_outline",
+    "family_point",
+    "only_own",
+    "parameters_of",
+    "start_of",
+]
 
 
 def parameters_of(system: str, values: Mapping[str, float]) -> Parameters:
@@ -45,7 +56,12 @@ def start_of(p: Parameters, declared: Mapping[str, Any], before: Mapping[str, An
 
 
 def family_point(
-    point_id: str, attractor: Attractor, start: dict[str, float], carry: str | None, law: HarvestLaw | None
+    point_id: str,
+    attractor: Attractor,
+    start: dict[str, float],
+    carry: str | None,
+    law: HarvestLaw | None,
+    seed: int | None = None,
 ) -> dict[str, Any]:
     """Return the row of the system's ``points`` for one simulated point.
 
@@ -61,19 +77,35 @@ def family_point(
         The carried axis.
     law : HarvestLaw or None
         What impacts yield.
+    seed : int, optional
+        With which the start was drawn, if it was.
     """
-    repeats = attractor.settled and bool(attractor.p)
-    periods = float(attractor.p or 0) if repeats else attractor.recorded
-    hits = representative(attractor, 0)[:-1] if repeats else attractor.impacts
     return only_own(
         attractor.params,
         "points",
+        family_outline(attractor, law) | measured_row(point_id, attractor, start, carry=carry, before=0, seed=seed),
+    )
+
+
+def family_outline(attractor: Attractor, law: HarvestLaw | None) -> dict[str, Any]:
+    """Return what every table of attractors of a system tells of one; some of it may be of other systems only."""
+    repeats = attractor.settled and bool(attractor.p)
+    periods = float(attractor.p or 0) if repeats else attractor.recorded
+    hits = representative(attractor, 0)[:-1] if repeats else attractor.impacts
+    return (
         measured_outline(attractor)
-        | measured_row(point_id, attractor, start, carry=carry, before=0)
         | _powers(attractor.measures, hits, periods * attractor.params.period, law)
         | _of_balls(attractor.measures)
-        | _yardsticks(attractor.params, attractor.measures),
+        | _yardsticks(attractor.params, attractor.measures)
     )
+
+
+def family_attractors(
+    point_id: str, found: list[tuple[Attractor, int]], random: int, law: HarvestLaw | None
+) -> list[dict[str, Any]]:
+    """Return rows of the system's ``attractors`` for one point, as `attractor_rows`."""
+    rows = attractor_rows(point_id, found, random, partial(family_outline, law=law))
+    return [only_own(attractor.params, "attractors", row) for (attractor, _), row in zip(found, rows, strict=True)]
 
 
 def family_orbit(orbit: Orbit, branch_id: str | None, law: HarvestLaw | None) -> dict[str, Any]:
@@ -85,12 +117,12 @@ def family_orbit(orbit: Orbit, branch_id: str | None, law: HarvestLaw | None) ->
     return only_own(p, "orbits", values)
 
 
-def family_impacts(point_id: str, p: Parameters, impacts: np.ndarray) -> list[dict[str, Any]]:
-    """Return rows of the system's ``impacts``; the last impact has no successor and is left out."""
+def family_impacts(point_id: str, p: Parameters, impacts: np.ndarray, number: int = 0) -> list[dict[str, Any]]:
+    """Return rows of the system's ``impacts`` of one attractor; the last has no successor and is left out."""
     kept = impacts[:-1]
     columns = _at_impacts(kept) | {"index": np.arange(len(kept)), "dt_next": np.diff(impacts["t"])}
     lists = {name: values.tolist() for name, values in columns.items()}
-    fixed = {"point_id": point_id, **p.as_dict(), "attractor": 0, "ball": 0}
+    fixed = {"point_id": point_id, **p.as_dict(), "attractor": number, "ball": 0}
     return [
         only_own(p, "impacts", fixed | dict(zip(lists, row, strict=True))) for row in zip(*lists.values(), strict=True)
     ]

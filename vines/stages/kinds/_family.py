@@ -2,19 +2,31 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import replace
 from functools import partial
-from typing import Annotated, Any
+from typing import Annotated, Any, Literal
 
 import msgspec
 from msgspec import Meta
 
 from vines.errors import ParameterError
-from vines.model import VI_NES, System, read_system, word_for
+from vines.model import VI_NES, Parameters, System, read_system, word_for
 from vines.pipeline import Kind
 from vines.schema import OF_EACH_SYSTEM, system_table
-from vines.stages.kinds._simulation import Bare, InLog, Keep, LargestP, PerPeriod, Record, Settle, Watch, check_length
+from vines.stages.kinds._simulation import (
+    Bare,
+    InLog,
+    Keep,
+    LargestP,
+    PerPeriod,
+    Random,
+    Record,
+    Seed,
+    Settle,
+    Watch,
+    check_length,
+)
 from vines.systems import Harvest, parameters
 
 __all__ = [
@@ -41,15 +53,27 @@ class HarvestLaw(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 
 class FamilySweepOptions(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """The settled attractor of each point: `settle` periods, then `record` periods that are classified and measured."""
+    """The settled attractor of each point: `settle` periods, then `record` periods that are classified and measured.
+
+    A start may be "random", which draws it at each point. The table ``SYSTEM_attractors`` lists every attractor that
+    random starts come to beside the point's own.
+    """
 
     system: str
-    start: Start = {}
+    start: Annotated[
+        dict[str, float | list[float]] | Literal["random"],
+        Meta(
+            description="Start by the names of the system; what is left out is as it declares; or 'random' to draw it "
+            "at each point"
+        ),
+    ] = {}
     settle: Settle = 400
     record: Record = 64
     watch: Watch = 512
     largest_p: LargestP = msgspec.UNSET
     keep: Keep = 64
+    random: Random = 0
+    seed: Seed = 0
     harvest: Annotated[HarvestLaw | None, Meta(description="What impacts yield, for the harvested power")] = None
 
 
@@ -76,7 +100,11 @@ class FamilyTransientOptions(msgspec.Struct, frozen=True, forbid_unknown_fields=
 
 
 class FamilyBranchOptions(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """The family of periodic orbits of one word that `find_orbit` chooses at the start of the range, to its end."""
+    """Families of periodic orbits of one word, followed in the varied parameter.
+
+    `families = "one"` follows the orbit that `find_orbit` chooses at the start of the range to its end, `"all"` every
+    family that is found at one of `seeds` values of the parameter.
+    """
 
     system: str
     word: Annotated[str, Meta(description="Word of the impacts, such as LR")]
@@ -84,11 +112,21 @@ class FamilyBranchOptions(msgspec.Struct, frozen=True, forbid_unknown_fields=Tru
         int,
         Meta(ge=2, description="Evenly spaced values of the parameter that have an orbit on every sheet of a branch"),
     ] = 400
+    families: Annotated[Literal["one", "all"], Meta(description="Which families are followed")] = "one"
+    seeds: Annotated[int, Meta(ge=2, description="Values of the parameter at which families are sought")] = 13
+    switch: Annotated[
+        int, Meta(ge=0, description="Generations followed out of symmetry breakings and period doublings")
+    ] = 0
     harvest: Annotated[HarvestLaw | None, Meta(description="What impacts yield, for the harvested power")] = None
 
 
 def of_systems(
-    kind: Kind, systems: Iterable[str], options: type[msgspec.Struct], body: str, tables: tuple[str, ...]
+    kind: Kind,
+    systems: Iterable[str],
+    options: type[msgspec.Struct],
+    body: str,
+    tables: tuple[str, ...],
+    more: Callable[[Parameters, Any], None] | None = None,
 ) -> Kind:
     """Return a kind that can do other systems too.
 
@@ -104,6 +142,8 @@ def of_systems(
         As of `Kind`.
     tables : tuple of str
         Its tables as the VI-NES calls them.
+    more : callable, optional
+        ``more(p, options)`` refuses what parameters and start alone do not show.
     """
 
     def make(system: str, balls: int) -> Kind:
@@ -113,10 +153,9 @@ def of_systems(
             body=body,
             tables=tuple(system_table(system, name) if name in OF_EACH_SYSTEM else name for name in tables),
             parameters=_parameters(kind, read_system(system, balls)),
-            check=_check,
+            check=partial(_check, more),
             code=_code,
             kernels=(),
-            again=kind.again if kind.again == "points" else "",
             systems={},
             system=system,
             balls=balls,
@@ -132,7 +171,7 @@ def _parameters(kind: Kind, system: System) -> dict[str, float | None]:
     return found | {name: default for name, default in kind.parameters.items() if name not in own}
 
 
-def _check(params: dict[str, float], options: Any) -> None:
+def _check(more: Callable[[Parameters, Any], None] | None, params: dict[str, float], options: Any) -> None:
     """Refuse parameters, starts, words and laws that the system cannot have."""
     given = dict(params)
     if given.pop("V", None) is not None:
@@ -146,7 +185,10 @@ def _check(params: dict[str, float], options: Any) -> None:
     if values.get("harvest") is not None:
         Harvest(options.harvest.threshold, options.harvest.coefficients)
     check_length(values)
-    p.system.started(values.get("start", {}))
+    if values.get("start") != "random":
+        p.system.started(values.get("start", {}))
+    if more is not None:
+        more(p, options)
 
 
 def _code(options: Any) -> tuple[str, ...]:

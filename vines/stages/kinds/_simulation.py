@@ -18,7 +18,9 @@ __all__ = [
     "Keep",
     "LargestP",
     "PerPeriod",
+    "Random",
     "Record",
+    "Seed",
     "Settle",
     "Start",
     "Watch",
@@ -51,6 +53,8 @@ Keep = Annotated[
         description="Recorded periods whose impacts are kept, of a periodic attractor one repetition; 0 keeps none",
     ),
 ]
+Random = Annotated[int, Meta(ge=0, description="Further starts that are drawn at each point")]
+Seed = Annotated[int, Meta(ge=0, description="Seed of these draws")]
 InLog = Annotated[int, Meta(ge=2, description="Forcing periods in the log")]
 PerPeriod = Annotated[int, Meta(ge=2, description="Samples of the state in a forcing period")]
 Bare = Annotated[

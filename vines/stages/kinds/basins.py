@@ -2,18 +2,20 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from typing import TYPE_CHECKING, Annotated, Literal
 
 import msgspec
 from msgspec import Meta
 
 from vines.errors import ParameterError, nearest
-from vines.model import START_NAMES, Params
+from vines.model import START_NAMES, Parameters, Params
 from vines.pipeline import Kind
+from vines.stages.kinds._family import HarvestLaw, of_systems
 from vines.stages.kinds._parameters import PARAMETERS
 from vines.stages.kinds._simulation import check_length
 
-__all__ = ["KIND", "BasinsOptions", "Grid"]
+__all__ = ["KIND", "BasinsOptions", "FamilyBasinsOptions", "FamilyGrid", "Grid"]
 
 
 if TYPE_CHECKING:
@@ -35,6 +37,20 @@ class Grid(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     count: Annotated[int, Meta(ge=2, description="How many")] = 100
 
 
+Refine = Annotated[int, Meta(ge=0, description="How often cells at a boundary are halved in both directions")]
+SettleAll = Annotated[
+    int, Meta(ge=1, description="Forcing periods after which a start that came to no known orbit is classified")
+]
+PatienceOfAll = Annotated[
+    int,
+    Meta(
+        ge=1,
+        description="Forcing periods after which a start is called unsettled, and so is chaos that ends sooner",
+    ),
+]
+WatchAll = Annotated[int, Meta(ge=16, description="Forcing periods more before a Lyapunov exponent is believed")]
+
+
 class BasinsOptions(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """To which attractor each start of a grid over the coordinates `x` and `y` comes, the others as in `start`."""
 
@@ -43,35 +59,64 @@ class BasinsOptions(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     start: Annotated[
         dict[str, float], Meta(description="Values of the other coordinates; 0 where nothing is said")
     ] = {}
-    refine: Annotated[int, Meta(ge=0, description="How often cells at a boundary are halved in both directions")] = 0
-    settle: Annotated[
-        int, Meta(ge=1, description="Forcing periods after which a start that came to no known orbit is classified")
-    ] = 256
-    patience: Annotated[
-        int,
-        Meta(
-            ge=1,
-            description="Forcing periods after which a start is called unsettled, and so is chaos that ends sooner",
-        ),
-    ] = 4000
-    watch: Annotated[int, Meta(ge=16, description="Forcing periods more before a Lyapunov exponent is believed")] = 128
+    refine: Refine = 0
+    settle: SettleAll = 256
+    patience: PatienceOfAll = 4000
+    watch: WatchAll = 128
+
+
+class FamilyGrid(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """A coordinate of the start with evenly spaced values, `from` and `to` included."""
+
+    name: Annotated[str, Meta(description="Which coordinate of the system, or phase")]
+    start: Annotated[float, Meta(description="The first value")] = msgspec.field(name="from")
+    stop: Annotated[float, Meta(description="The last value")] = msgspec.field(name="to")
+    count: Annotated[int, Meta(ge=2, description="How many")] = 100
+
+
+class FamilyBasinsOptions(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """To which attractor each start of a grid over the coordinates `x` and `y` comes, the others as in `start`."""
+
+    system: str
+    x: Annotated[FamilyGrid, Meta(description="Coordinate of the start along the grid")]
+    y: Annotated[FamilyGrid, Meta(description="Coordinate of the start across the grid")]
+    start: Annotated[
+        dict[str, float | list[float]], Meta(description="Values of the other coordinates; 0 where nothing is said")
+    ] = {}
+    refine: Refine = 0
+    settle: SettleAll = 256
+    patience: PatienceOfAll = 4000
+    watch: WatchAll = 128
+    harvest: Annotated[HarvestLaw | None, Meta(description="What impacts yield, for the harvested power")] = None
 
 
 def _check(params: dict[str, float], options: BasinsOptions) -> None:
     Params(**params)
     check_length(msgspec.structs.asdict(options))
-    cells = options.x.count * options.y.count
-    if cells > MOST_CELLS:
-        raise ParameterError(f"x and y make {cells} cells, allowed are {MOST_CELLS} before they are halved")
-    names = {options.x.name, options.y.name}
-    if len(names) < 2 or names & set(options.start):
-        raise ParameterError(f"x is {options.x.name}, y is {options.y.name}: give two coordinates, not again in start")
+    _check_grid(options, START_NAMES)
     for name in options.start:
         if name not in START_NAMES:
             raise ParameterError(f"unknown coordinate {name!r} in start: {nearest(name, START_NAMES)}")
 
 
-KIND = Kind(
+def _check_grid(options: BasinsOptions | FamilyBasinsOptions, known: Collection[str]) -> None:
+    """Refuse more cells than a machine can do, and a grid over anything but two coordinates."""
+    cells = options.x.count * options.y.count
+    if cells > MOST_CELLS:
+        raise ParameterError(f"x and y make {cells} cells, allowed are {MOST_CELLS} before they are halved")
+    names = {options.x.name, options.y.name}
+    for name in names:
+        if name not in known:
+            raise ParameterError(f"unknown coordinate {name!r} of the grid: {nearest(name, known)}")
+    if len(names) < 2 or names & set(options.start):
+        raise ParameterError(f"x is {options.x.name}, y is {options.y.name}: give two coordinates, not again in start")
+
+
+def _check_family(p: Parameters, options: FamilyBasinsOptions) -> None:
+    _check_grid(options, [each.name for each in p.system.start])
+
+
+_VI_NES = Kind(
     name="basins",
     summary="to which attractor each start of a grid comes, and the attractors that coexist",
     shape="whole",
@@ -82,4 +127,13 @@ KIND = Kind(
     check=_check,
     kernels=("one_run", "lanes", "runs", "many_runs"),
     again="starts",
+)
+
+KIND = of_systems(
+    _VI_NES,
+    ("impact_pair", "parallel"),
+    FamilyBasinsOptions,
+    "vines.stages.bodies._family_basins:compute",
+    ("attractors", "basins"),
+    _check_family,
 )

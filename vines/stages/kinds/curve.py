@@ -8,7 +8,7 @@ import msgspec
 from msgspec import Meta
 
 from vines.errors import DeclarationError, ParameterError
-from vines.model import VI_NES, Params, Word, most_balls, read_system, word_for
+from vines.model import VI_NES, Parameters, Params, Word, most_balls, read_system, word_for
 from vines.pipeline import Kind, Pipeline, Stage
 from vines.stages.kinds._checks import check_axes
 from vines.stages.kinds._family import of_systems
@@ -62,6 +62,10 @@ def _check(params: dict[str, float], options: CurveOptions) -> None:
         )
 
 
+def _check_family(p: Parameters, options: FamilyCurveOptions) -> None:
+    word_for(options.word, p.system, sticking=False)
+
+
 def _fits(stage: Stage, pipeline: Pipeline) -> None:
     del pipeline
     check_axes(stage, 2, "a curve is followed in two parameters", "give vary.X and vary.Y")
@@ -93,5 +97,10 @@ _VI_NES = Kind(
 )
 
 KIND = of_systems(
-    _VI_NES, ("impact_pair", "parallel"), FamilyCurveOptions, "vines.stages.bodies._family_curve:compute", ("curves",)
+    _VI_NES,
+    ("impact_pair", "parallel"),
+    FamilyCurveOptions,
+    "vines.stages.bodies._family_curve:compute",
+    ("curves",),
+    _check_family,
 )

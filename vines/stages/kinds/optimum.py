@@ -45,5 +45,11 @@ KIND = Kind(
     vary="range",
     check=_check,
     kernels=("orbits",),
+    meaningless={
+        "impact_pair": "its capsule moves as it is driven, so that no displacement can be kept small; for its power "
+        "vary B and G in a sweep",
+        "parallel": "what several cavities are worth depends on the attractor that is reached; vary them in sweeps "
+        "and draw the plot designs",
+    },
     scaled=("A",),  # with b, the length of the cavity
 )

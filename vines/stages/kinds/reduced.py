@@ -32,4 +32,8 @@ KIND = Kind(
     check=_check,
     kernels=("orbits",),
     again="points",
+    meaningless={
+        "impact_pair": "its level 1:1 motion is known in closed form (docs/systems.md), there is nothing to reduce",
+        "parallel": "the reduction is that of one ball in a level cavity",
+    },
 )

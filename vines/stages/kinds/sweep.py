@@ -10,7 +10,7 @@ from msgspec import Meta
 from vines.pipeline import Kind
 from vines.stages.kinds._family import FamilySweepOptions, of_systems
 from vines.stages.kinds._parameters import PARAMETERS
-from vines.stages.kinds._simulation import Keep, LargestP, Record, Settle, Start, Watch, check_simulation
+from vines.stages.kinds._simulation import Keep, LargestP, Random, Record, Seed, Settle, Start, Watch, check_simulation
 
 __all__ = ["KIND", "SweepOptions"]
 
@@ -29,8 +29,8 @@ class SweepOptions(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     watch: Watch = 512
     largest_p: LargestP = msgspec.UNSET
     keep: Keep = 64
-    random: Annotated[int, Meta(ge=0, description="Further starts that are drawn at each point")] = 0
-    seed: Annotated[int, Meta(ge=0, description="Seed of these draws")] = 0
+    random: Random = 0
+    seed: Seed = 0
 
 
 def _kernels(options: SweepOptions, carried: bool) -> tuple[str, ...]:
@@ -59,5 +59,5 @@ KIND = of_systems(
     ("impact_pair", "parallel"),
     FamilySweepOptions,
     "vines.stages.bodies._family_sweep:compute",
-    ("points", "impacts"),
+    ("points", "impacts", "attractors"),
 )

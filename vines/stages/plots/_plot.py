@@ -93,7 +93,7 @@ class Plot:
 
         Examples
         --------
-        >>> [PLOTS.get(name).draws("parallel") for name in ("bifurcation", "basins")]
+        >>> [PLOTS.get(name).draws("parallel") for name in ("bifurcation", "reduced")]
         [True, False]
         """
         return system == VI_NES.name or all(system_table(system, each) in tables() for each in self.tables)

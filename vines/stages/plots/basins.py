@@ -6,7 +6,8 @@ import math
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
-from vines.stages.plots._checks import one_stage
+from vines.schema import table
+from vines.stages.plots._checks import called, one_stage
 from vines.stages.plots._plot import Plot, PlotOptions
 
 if TYPE_CHECKING:
@@ -23,7 +24,7 @@ class BasinsOptions(PlotOptions, frozen=True, tag="basins"):
 
 
 def _check(stage: Stage, pipeline: Pipeline) -> None:
-    one_stage(stage, pipeline, lambda one: "basins" in one.kind.tables, "one stage of kind basins")
+    one_stage(stage, pipeline, lambda one: bool(called(one.kind.tables, "basins")), "one stage of kind basins")
 
 
 def _draw(inputs: Mapping[str, Input], options: BasinsOptions) -> Figure:
@@ -39,9 +40,9 @@ def _map(stage: Input) -> BasinMap:
 
     from vines.figures import BasinMap
 
-    cells = stage.table("basins")
+    cells = stage.table(called(stage.tables, "basins"))
     column = {name: cells[name].to_numpy(zero_copy_only=False) for name in cells.column_names}
-    told = {row["attractor"]: row for row in stage.table("attractors").to_pylist()}
+    told = {row["attractor"]: row for row in stage.table(called(stage.tables, "attractors")).to_pylist()}
     order = sorted(told, key=lambda k: (k < 0, k))
     shown = [k for k in order if k >= 0 or told[k]["fraction"] > 0]
     steps = []
@@ -49,7 +50,8 @@ def _map(stage: Input) -> BasinMap:
         values = np.unique(column[name][column["level"] == column["level"].min()])
         steps.append(float(np.min(np.diff(values))) if len(values) > 1 else 1.0)
     return BasinMap(
-        axes=(str(column["x_name"][0]), str(column["y_name"][0])),
+        axes=(_symbol(stage, column["x_name"][0]), _symbol(stage, column["y_name"][0])),
+        coordinates=(column["x_name"][0], column["y_name"][0]),
         x=column["x"],
         y=column["y"],
         level=column["level"],
@@ -59,6 +61,13 @@ def _map(stage: Input) -> BasinMap:
         regimes=[told[k]["regime"] for k in shown if k >= 0],
         steps=(steps[0], steps[1]),
     )
+
+
+def _symbol(stage: Input, name: str) -> str:
+    """Return a coordinate as an axis shows it."""
+    from vines.figures import start_symbol
+
+    return start_symbol(str(name), table(stage.tables[0]).system)
 
 
 def _name(row: dict[str, Any]) -> str:
