@@ -29,8 +29,8 @@ from vines.orbits._family import GeneralProblem
 from vines.orbits._general import origin
 from vines.orbits._orbit import Orbit
 from vines.orbits._problem import Point, Problem, ZeroSet
-from vines.orbits._sticking_curve import bound_beside
 from vines.orbits._sticking_capsule import CapsuleSticking, rides_capsule
+from vines.orbits._sticking_curve import bound_beside
 from vines.orbits._sticking_ends import end_of
 from vines.orbits._sticking_family import StickingProblem
 from vines.orbits._symmetric import SymmetricProblem
