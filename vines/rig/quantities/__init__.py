@@ -4,12 +4,13 @@ from vines.rig.quantities._cycle import Slots, Track, matching, mean_cycle, slot
 from vines.rig.quantities._match_ring_downs import match_ring_downs
 from vines.rig.quantities._pattern import HOLDS, Pattern, Periods, cut_into_periods, find_pattern
 from vines.rig.quantities._reconstruct import reconstruct
-from vines.rig.quantities._reconstruction import IMPACT, QUANTITIES, Finding, Reconstruction
+from vines.rig.quantities._reconstruction import IMPACT, NOTED, QUANTITIES, Finding, Reconstruction
 from vines.rig.quantities._ring_down import RingDown, ring_down
 
 __all__ = [
     "HOLDS",
     "IMPACT",
+    "NOTED",
     "QUANTITIES",
     "Finding",
     "Pattern",

@@ -23,13 +23,15 @@ from vines.rig.ball import (
     uncalibrated,
 )
 from vines.rig.fit import Forced, JumpModel, Train, forced_response, root
-from vines.rig.impacts import Response, measure_response
+from vines.rig.impacts import Mode, Response, measure_response, undisturbed
 from vines.rig.quantities._cycle import Track, slots
 from vines.rig.quantities._findings import judge
 from vines.rig.quantities._forcing import Base, Tuning, measure_base, tune
+from vines.rig.quantities._hum import Hum, without_hum
 from vines.rig.quantities._pattern import Pattern, Periods, cut_into_periods, find_pattern
-from vines.rig.quantities._reconstruction import IMPACT, Reconstruction
+from vines.rig.quantities._reconstruction import IMPACT, Finding, Reconstruction
 from vines.rig.quantities._ring_down import RingDown, natural
+from vines.rig.quantities._trends import MATTERS, base_course, run_trends, trend_findings
 from vines.rig.recording import Recording, Uncertain
 from vines.rig.uncertainty import combined, mean_over_periods, standard_error
 
@@ -89,17 +91,28 @@ def _reconstructed(
     if run.protocol == "ringdown" or not run.ball:
         raise RigError(f"run {run.run_id!r} has no ball in it; a ring-down gives omega0 and lam, see ring_down")
     base = measure_base(recording)
+    recording, hum = without_hum(recording, base.f.value)
+    if hum is not None:
+        base = measure_base(recording)
     omega0, lam = natural(tuple(ringdowns), float(np.mean(run.temperature)))
     omega = base.fit.omega
     s = root(omega0.value, lam.value)
     forced = _harmonics(base, recording, s)
     friction = stated(run.more.get("friction"), FRICTION)
     mu = run.m.value / run.M.value
-    response = measure_response(
-        recording, s, omega, forced,
-        friction=mu * friction.value, u_natural=(omega0.u / omega0.value, lam.u / lam.value),
-        driven=complex(forced_response(base.e[0], omega, s)), impacts=impacts, seed=seed,
-    )  # fmt: skip
+
+    def measure(recording: Recording) -> Response:
+        return measure_response(
+            recording, s, omega, forced,
+            friction=mu * friction.value, u_natural=(omega0.u / omega0.value, lam.u / lam.value),
+            driven=complex(forced_response(base.e[0], omega, s)), impacts=impacts, seed=seed,
+        )  # fmt: skip
+
+    modes: tuple[Mode, ...] = ()
+    if impacts is None:
+        recording, response, modes = undisturbed(recording, measure)
+    else:
+        response = measure(recording)
     if len(response.fit.jumps.t) < 6:
         raise RigError(
             f"run {run.run_id!r} shows {len(response.fit.jumps.t)} impacts, allowed are 6 and more: did the ball move?"
@@ -112,7 +125,34 @@ def _reconstructed(
     periods = cut_into_periods(phase, side, (bounds[0], bounds[1]))
     pattern = find_pattern(periods, phase)
     ball = measure_rebounds(recording, response, side)
-    return _assembled(recording, base, response, side, tuning, phase, periods, pattern, ball)
+    made = _assembled(recording, base, response, side, tuning, phase, periods, pattern, ball)
+    model = JumpModel(response.bins, s, omega, response.order, forced)
+    course = base_course(base)
+    trends = {**course.trends, **run_trends(base, response, tuning, ball, model)}
+    findings = (
+        *_taken_off(hum, modes),
+        *trend_findings(recording, course, trends),
+        *judge(recording, base, response, tuning, ball),
+    )
+    return replace(made, quantities={**made.quantities, **trends}, findings=_named(findings))
+
+
+def _taken_off(hum: Hum | None, modes: tuple[Mode, ...]) -> list[Finding]:
+    """Return what was found of hum and modes, which is no fault once it is taken off."""
+    found = [] if hum is None else [Finding("hum", True, hum.text)]
+    if modes:
+        listed = "; ".join(mode.text for mode in modes)
+        found.append(
+            Finding("frame_modes", True, f"modes of the frame ring after impacts and were taken off, {listed}")
+        )
+    return found
+
+
+def _named(findings: tuple[Finding, ...]) -> tuple[Finding, ...]:
+    """Return findings without guesses that a run which changes gives rise to: it shifts one sensor's impacts, too."""
+    if any(each.name in (*MATTERS, "levels") and not each.passed for each in findings):
+        return tuple(each for each in findings if each.name not in ("oscillator_clocks", "forcing"))
+    return findings
 
 
 def _harmonics(base: Base, recording: Recording, s: complex) -> Forced:
@@ -271,7 +311,7 @@ def _assembled(
         residual=fit.residual / abs(fit.motion.s) ** response.order,
         noise=fit.noise / abs(fit.motion.s) ** response.order,
         pruned=response.pruned,
-        findings=judge(recording, base, response, tuning, ball),
+        findings=(),
         base_harmonics=base.e,
     )
 

@@ -1,4 +1,4 @@
-"""What real rigs add to recorded channels: mains hum, modes of the frame rung by impacts, a laser that loses its target.
+"""What real rigs add to recorded channels: mains hum, modes of the frame, a laser that loses its target.
 
 It works on raw runs, whoever made them: on the steps of the converter, from the times and velocity jumps of the impacts
 that the truth tells.
@@ -81,8 +81,8 @@ class Burst:
     role : str
         Which channel.
     kind : str
-        ``dropout``: at the end of its range; ``spike``: single wild samples, half a millisecond apart; ``held``: the last
-        value stays.
+        ``dropout``: at the end of its range; ``spike``: single wild samples, half a millisecond apart; ``held``: the
+        last value stays.
     begin, length : float
         From the first sample on [s].
     """
@@ -120,12 +120,11 @@ def disturbed(run: RawRun, what: Disturbances, seed: int) -> RawRun:
         If a disturbance is of a role that the run does not have.
     """
     roles = {row.role for row in run.rows}
-    asked = [*(role for each in what.hum for role in each.roles), *(each.role for each in (*what.ringing, *what.bursts))]
-    for role in asked:
+    for role in (*(role for each in what.hum for role in each.roles), *(e.role for e in (*what.ringing, *what.bursts))):
         if role not in roles:
             raise ParameterError(f"disturbances: no channel of role {role!r}; there are {', '.join(sorted(roles))}")
     rng = np.random.default_rng(np.random.SeedSequence([seed, 50]))
-    longest = max((len(c.values) / c.rate + c.start for file in run.files.values() for c in file.channels), default=0.0)
+    longest = max(_begin_and_rate(c)[0] + len(c.values) / _begin_and_rate(c)[1] for c in _channels(run))
     turns = [_mains(each, longest + 1.0, rng) for each in what.hum]
     impacts = run.truth["impacts"]
     t = np.asarray(impacts["t"], np.float64)
@@ -137,7 +136,8 @@ def disturbed(run: RawRun, what: Disturbances, seed: int) -> RawRun:
         place = next(k for k, each in enumerate(file.channels) if each.name == row.field)
         channel = file.channels[place]
         added = np.zeros(len(channel.values))
-        clock = channel.start + np.arange(len(added)) / channel.rate
+        begin, rate = _begin_and_rate(channel)
+        clock = begin + np.arange(len(added)) / rate
         for each, turn in zip(what.hum, turns, strict=True):
             if not each.roles or row.role in each.roles:
                 added += each.volts * np.sin(np.interp(clock, *turn) + rng.uniform(0, 2 * np.pi))
@@ -150,6 +150,15 @@ def disturbed(run: RawRun, what: Disturbances, seed: int) -> RawRun:
             files[row.file] = replace(file, channels=channels)
     told = [repr(each) for each in (*what.hum, *what.ringing, *what.bursts)]
     return replace(run, files=files, truth={**run.truth, "disturbances": told})
+
+
+def _channels(run: RawRun) -> list[RawChannel]:
+    return [channel for file in run.files.values() for channel in file.channels]
+
+
+def _begin_and_rate(channel: RawChannel) -> tuple[float, float]:
+    """Return the time of the first sample [s] and samples a second."""
+    return float(channel.start or 0.0), float(channel.rate or 1.0)
 
 
 def _mains(hum: Hum, duration: float, rng: np.random.Generator) -> tuple[Floats, Floats]:
@@ -168,11 +177,11 @@ def _ring(
     mode: Ringing, row: ChannelRow, channel: RawChannel, impacts: tuple[Floats, Floats], rng: np.random.Generator
 ) -> Floats:
     """Return what a mode adds to a channel, in the SI unit of its role."""
-    rate, count = float(channel.rate or 1.0), len(channel.values)
+    (begin, rate), count = _begin_and_rate(channel), len(channel.values)
     omega = 2 * np.pi * mode.frequency
     s = omega * complex(-mode.damping, np.sqrt(1 - mode.damping**2))
     total = np.zeros(count)
-    t = np.asarray(impacts[0]) + row.group_delay - channel.start
+    t = np.asarray(impacts[0]) + row.group_delay - begin
     # Velocity dv cos: displacement Im(exp(s t))/Im s, acceleration its second derivative without the jump itself.
     scale = 1 / s.imag if row.role.endswith("disp") else s**2 / s.imag
     last = int(np.ceil(12 / -s.real * rate))
@@ -197,11 +206,11 @@ def _volts(row: ChannelRow) -> float:
 
 def _recorded(channel: RawChannel, added: Floats, bursts: list[Burst], rng: np.random.Generator) -> RawChannel:
     """Return a channel with volts added and its bursts, as steps of the converter again."""
-    step, rate = float(channel.about["slope"]), float(channel.rate or 1.0)
+    step, (begin, rate) = float(channel.about["slope"]), _begin_and_rate(channel)
     full = 2 ** (_BITS - 1) - 1
     codes = np.asarray(channel.values, np.float64) + added / step
     for burst in bursts:
-        i = max(round((burst.begin - channel.start) * rate), 1)
+        i = max(round((burst.begin - begin) * rate), 1)
         part = slice(i, i + max(1, round(burst.length * rate)))
         if burst.kind == "dropout":
             codes[part] = full

@@ -131,17 +131,22 @@ def move(s: RigSettings, rng: np.random.Generator, step: float, extra: int, stat
     state[NUMBER] = 0.0
     tables = damping_table()
     before = round(s.settle / step / _COARSE)
-    swell, worn = _course(s.E_course, _COARSE * before * step), _course(s.r_course, _COARSE * before * step)
+    courses = [_course(knots, _COARSE * before * step) for knots in (s.E_course, s.r_course)]
+    swell, worn = courses
     count = round(s.duration / step) + extra
     nothing = np.empty((5, 0))
     none = np.empty((0, len(IMPACT)))
-    advance(state, 0, before, _COARSE * step, values, draws, quiet, *tables, modes, gains, swell, worn, s.ball, nothing, none)
+    advance(
+        state, 0, before, _COARSE * step, values, draws, quiet, *tables, modes, gains, swell, worn, s.ball, nothing,
+        none,
+    )  # fmt: skip
     out = np.empty((5, count + 1))
     rows = np.full((min(_MANY, 2000 * int(s.duration + 10)), len(IMPACT)), np.nan)
     first = int(state[NUMBER])
     found = advance(
-        state, _COARSE * before, count, step, values, draws, quiet, *tables, modes, gains, swell, worn, s.ball, out, rows
-    )
+        state, _COARSE * before, count, step, values, draws, quiet, *tables, modes, gains, swell, worn, s.ball, out,
+        rows,
+    )  # fmt: skip
     state[PHASE] = (p["omega"] * (_COARSE * before + count) * step + p["phi"]) % (2 * np.pi)
     impacts = np.rec.fromarrays(rows[:found].T.copy(), dtype=np.dtype([(name, np.float64) for name in IMPACT]))
     start = _COARSE * before * step

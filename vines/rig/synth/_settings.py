@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
 from typing import Literal
 
 import msgspec
@@ -159,7 +160,7 @@ class RigSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_on
             raise ParameterError(f"synthetic rig: contact_time is {self.contact_time:g} s, allowed is 2e-5 to 1e-3")
         for name in ("E_course", "r_course"):
             times = [when for when, _ in getattr(self, name)]
-            if any(later <= earlier for earlier, later in zip(times, times[1:], strict=False)):
+            if any(later <= earlier for earlier, later in pairwise(times)):
                 raise ParameterError(f"synthetic rig: times of {name} are {times}, allowed are rising ones")
         known = ("base_disp", "base_acc", "lo_disp", "lo_acc")
         for name in (*self.channels, self.fault_channel):
