@@ -39,6 +39,9 @@ __all__ = ["reconstruct"]
 
 Floats = npt.NDArray[np.float64]
 
+_BESIDE = 3e-3
+"""An impact that is nearer to a stretch without signal is marked [s]."""
+
 
 def reconstruct(
     recording: Recording,
@@ -130,16 +133,36 @@ def _reconstructed(
     course = base_course(base)
     trends = {**course.trends, **run_trends(base, response, tuning, ball, model)}
     findings = (
-        *_taken_off(hum, modes),
+        *_taken_off(recording, hum, modes, int(np.count_nonzero(made.impacts["bridged"]))),
         *trend_findings(recording, course, trends),
         *judge(recording, base, response, tuning, ball),
     )
     return replace(made, quantities={**made.quantities, **trends}, findings=_named(findings))
 
 
-def _taken_off(hum: Hum | None, modes: tuple[Mode, ...]) -> list[Finding]:
-    """Return what was found of hum and modes, which is no fault once it is taken off."""
+def _bridged(recording: Recording, t: Floats) -> npt.NDArray[np.bool_]:
+    """Say which impacts have samples without signal beside them, in a channel of the oscillator."""
+    beside = np.zeros(len(t), bool)
+    for channel in recording.channels.values():
+        if channel.role in ("lo_disp", "lo_vel") and not channel.valid.all():
+            bad = channel.start + np.flatnonzero(~channel.valid) / channel.rate
+            place = np.searchsorted(bad, t)
+            near = np.minimum(
+                np.abs(bad[np.maximum(place - 1, 0)] - t), np.abs(bad[np.minimum(place, len(bad) - 1)] - t)
+            )
+            beside |= near < _BESIDE
+    return beside
+
+
+def _taken_off(recording: Recording, hum: Hum | None, modes: tuple[Mode, ...], bridged: int) -> list[Finding]:
+    """Return what was found of hum, modes and lost signal, which is no fault once it is dealt with."""
+    lost = {
+        channel.name: channel.about["bursts"] for channel in recording.channels.values() if channel.about.get("bursts")
+    }
     found = [] if hum is None else [Finding("hum", True, hum.text)]
+    if lost:
+        text = "; ".join(f"{name} {each}" for name, each in lost.items())
+        found.append(Finding("lost_signal", True, f"{text}; {bridged} of the impacts are beside such a stretch"))
     if modes:
         listed = "; ".join(mode.text for mode in modes)
         found.append(
@@ -306,7 +329,7 @@ def _assembled(
         pattern=pattern,
         periods=periods,
         slots=found,
-        impacts=_rows(response, ball, side, phase, number),
+        impacts=_rows(recording, response, ball, side, phase, number),
         track=track,
         residual=fit.residual / abs(fit.motion.s) ** response.order,
         noise=fit.noise / abs(fit.motion.s) ** response.order,
@@ -372,7 +395,7 @@ def _energies(response: Response, ball: Rebounds, begin: Floats) -> dict[str, Un
 
 
 def _rows(
-    response: Response, ball: Rebounds, side: Floats, phase: Floats, number: npt.NDArray[np.int64]
+    recording: Recording, response: Response, ball: Rebounds, side: Floats, phase: Floats, number: npt.NDArray[np.int64]
 ) -> npt.NDArray[np.void]:
     jumps = ball.jumps
     rows = np.zeros(len(side), IMPACT)
@@ -387,4 +410,5 @@ def _rows(
     rows["w_dot"][inner], rows["w_dot_after"][inner] = ball.motion.w_before, ball.motion.w_after
     rows["r"][inner], rows["u_r"][inner] = ball.motion.r, ball.u_r
     rows["suspect"][inner] = ~ball.counted
+    rows["bridged"] = _bridged(recording, rows["t"])
     return rows

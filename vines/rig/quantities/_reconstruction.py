@@ -50,7 +50,7 @@ QUANTITIES = {
 
 IMPACT = np.dtype(
     [(n, "f8") for n in ("t", "side", "x1", "v1", "v1_after", "x2", "v2", "v2_after", "w_dot", "w_dot_after")]
-    + [("r", "f8"), ("u_r", "f8"), ("u_t", "f8"), ("phase", "f8"), ("period", "i8"), ("suspect", "?")]
+    + [("r", "f8"), ("u_r", "f8"), ("u_t", "f8"), ("phase", "f8"), ("period", "i8"), ("suspect", "?"), ("bridged", "?")]
 )
 """A reconstructed impact, SI; nan where a flight on one side of it is not in the record."""
 
