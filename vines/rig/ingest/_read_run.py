@@ -176,8 +176,8 @@ def _cut(channel: Sampled, part: Part) -> Sampled:
     last = min(round((part.end - channel.start) * channel.rate), len(channel.values))
     if last - first < _LEAST:
         raise RigError(
-            f"{channel.where}: it has {max(last - first, 0)} samples from {part.begin:g} to {part.end:g} s, the part that "
-            "run.json asks for; a run needs more"
+            f"{channel.where}: it has {max(last - first, 0)} samples from {part.begin:g} to {part.end:g} s, the part "
+            "that run.json asks for; a run needs more"
         )
     kept = slice(first, last)
     return replace(
