@@ -11,6 +11,7 @@ COMMANDS = {
     "inspect": ("vines.cli._rig_inspect", "Show what a raw file holds: channels, units, rates, gaps, clipping."),
     "formats": ("vines.cli._rig_formats", "List the formats of recordings that can be read."),
     "ingest": ("vines.cli._rig_ingest", "Read run folders into the catalogue and as MCAP logs."),
+    "split": ("vines.cli._rig_split", "Make a run of each dwell of a recording; raw files stay where they are."),
     "reconstruct": ("vines.cli._rig_reconstruct", "Bring a run to the quantities of the model, with uncertainties."),
     "compare": ("vines.cli._rig_compare", "Lay a run beside the branches of the model that coexist: the verdict."),
     "synth": ("vines.cli._rig_synth", "Make a run folder of a synthetic rig, its truth sealed."),
@@ -27,6 +28,7 @@ def command() -> None:
     vines rig inspect recording.tdms   what is in this file?
     vines rig formats                  which files can be read
     vines rig ingest my_run            into the catalogue; 'vines view' shows it
+    vines rig split staircase          a run of each dwell of a recording
     vines rig reconstruct my_run       omega0, A, mu, r, impacts, pattern, with uncertainties
     vines rig compare my_run           agree, pattern_only, disagree or undecidable, with the reason
     """  # noqa: D301

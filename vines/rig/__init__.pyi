@@ -19,8 +19,10 @@ from .recording import Recording as Recording
 from .recording import RunInfo as RunInfo
 from .recording import Sampled as Sampled
 from .recording import Uncertain as Uncertain
+from .records import Piece as Piece
 from .records import load_reconstruction as load_reconstruction
 from .records import save_reconstruction as save_reconstruction
+from .records import split_run as split_run
 from .verdict import VERDICTS as VERDICTS
 from .verdict import Calibration as Calibration
 from .verdict import Candidate as Candidate

@@ -2,7 +2,7 @@
 
 from vines.rig.fit._bins import Bins, bins_of, sinhc
 from vines.rig.fit._fitter import KEEP, LEAST, Fitter
-from vines.rig.fit._jump_model import JumpModel
+from vines.rig.fit._jump_model import JumpModel, noise_of
 from vines.rig.fit._jumps import JumpFit, Jumps
 from vines.rig.fit._linearity import straight
 from vines.rig.fit._motion import Motion, forced_response, free_part, root
@@ -31,6 +31,7 @@ __all__ = [
     "clumping",
     "forced_response",
     "free_part",
+    "noise_of",
     "root",
     "sine_fit",
     "sinhc",

@@ -62,6 +62,10 @@ class Response:
         Change of that from the first to the second half, in standard uncertainties.
     candidates, pruned : int
         Pulses looked at, and those without a velocity jump.
+    begun : Fitter
+        Of the channel before anything was found out about it.
+    delay : float
+        By how much `channel` is later than the accelerometer [s].
     """
 
     channel: Sampled
@@ -76,6 +80,8 @@ class Response:
     drift: float
     candidates: int
     pruned: int
+    begun: Fitter
+    delay: float
 
 
 def measure_response(
@@ -125,7 +131,7 @@ def measure_response(
     order = 0 if displacement is not None else 2
     bins = bins_of(channel) if order == 0 else _quiet(channel)
     model = JumpModel(bins, s, omega, order, forced, seed=seed)
-    fitter = Fitter(model, driven, recording.run.b.value, friction, u_natural)
+    fitter = begun = Fitter(model, driven, recording.run.b.value, friction, u_natural)
     sensor = accelerometer if accelerometer is not None else channel
     if impacts is not None:
         train = inside(bins, Train.alike(*impacts, U_PULSE))
@@ -152,7 +158,7 @@ def measure_response(
     )
     return Response(
         channel, order, fitter.bins, fit, pushed, train.dv, found.gain, late, u_late, found.drift, found.candidates,
-        found.candidates - len(train),
+        found.candidates - len(train), begun, delay,
     )  # fmt: skip
 
 

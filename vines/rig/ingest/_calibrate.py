@@ -10,6 +10,7 @@ import numpy.typing as npt
 from vines.errors import RigError
 from vines.rig.formats import RawChannel
 from vines.rig.ingest._clipping import clipped_samples
+from vines.rig.ingest._lost import lost_signal
 from vines.rig.ingest._overrule import Overruling
 from vines.rig.ingest._run_form import ChannelRow
 from vines.rig.ingest._sampling import sampling
@@ -22,6 +23,9 @@ U_CORNER = 0.01
 """Relative standard uncertainty of the corner of a high-pass: of a calibrated conditioner, about a per cent."""
 
 _GUARD = 2
+
+_BY_LIGHT = ("base_disp", "base_vel", "lo_disp", "lo_vel")
+"""Roles of lasers, which lose their target; shocks make an acceleration as wild as that."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -42,6 +46,8 @@ class Calibrated:
         Samples at the end of the range, or lost.
     remarks : tuple of str
         What was concluded from its file and has to be known.
+    bursts : str
+        Stretches in which a laser had lost its target, in words.
     """
 
     row: ChannelRow
@@ -51,6 +57,7 @@ class Calibrated:
     start: float
     clipped: int
     remarks: tuple[str, ...] = ()
+    bursts: str = ""
 
     @property
     def times(self) -> npt.NDArray[np.float64]:
@@ -100,11 +107,22 @@ def calibrate(
     still = row.role == "temperature"
     lost = np.abs(values) >= row.range if still else clipped_samples(values, row.range)
     share = lost.mean()
+    gone = _no_signal(values) if row.role in _BY_LIGHT else None
     if share > max_clipped:
         raise RigError(
             f"{where}: {share:.2%} of the samples are clipped at {row.range:g} {row.unit}, allowed is "
             f"{max_clipped:.2%} (max_clipped in run.json); record again with a larger range"
         )
+    remarks = found.remarks
+    bursts = "" if gone is None else _told(lost, gone[0] & ~lost, gone[1] & ~lost, rate)
+    if gone is not None and bursts:
+        lost = lost | gone[0] | gone[1]
+        remarks = (*remarks, bursts)
+        if lost.mean() > max_clipped:
+            raise RigError(
+                f"{where}: {bursts}; {lost.mean():.2%} of the samples are without signal, allowed is {max_clipped:.2%} "
+                "(max_clipped in run.json): see to the laser's target and record again"
+            )
     valid = np.ones(len(values), bool)
     if lost.any():
         places = np.flatnonzero(lost)
@@ -113,7 +131,25 @@ def calibrate(
     values = values * (factor * float(row.sign))
     if row.high_pass:
         values = _undo_high_pass(values, row.high_pass, rate, valid)
-    return Calibrated(row, values, valid, rate, found.start - row.group_delay, int(lost.sum()), found.remarks)
+    return Calibrated(row, values, valid, rate, found.start - row.group_delay, int(lost.sum()), remarks, bursts)
+
+
+def _no_signal(values: npt.NDArray[np.float64]) -> tuple[npt.NDArray[np.bool_], npt.NDArray[np.bool_]]:
+    found = lost_signal(values)
+    return found.held, found.wild
+
+
+def _told(out: npt.NDArray[np.bool_], held: npt.NDArray[np.bool_], wild: npt.NDArray[np.bool_], rate: float) -> str:
+    """Say how often and how long a laser was lost; nothing where it never was."""
+    parts = []
+    for which, what in ((out, "out of range"), (held, "held"), (wild, "wild")):
+        if which.any():
+            count = int(np.count_nonzero(np.diff(which.astype(np.int8)) == 1) + which[0])
+            parts.append(f"{count} {what} ({which.sum() / rate:.3g} s)")
+    if not parts:
+        return ""
+    share = float((out | held | wild).mean())
+    return f"the laser was lost in stretches, {', '.join(parts)}, {share:.2%} of the record"
 
 
 def _si_per_unit(row: ChannelRow, raw: RawChannel, where: str, overruling: Overruling) -> float:

@@ -15,12 +15,14 @@ from vines.rig.ingest._calibrate import U_CORNER, Calibrated, calibrate
 from vines.rig.ingest._clock import Clock, align_clocks
 from vines.rig.ingest._overrule import Overruling
 from vines.rig.ingest._run_folder import RunFolder, check_sums, raw_sums, read_folder, run_info
-from vines.rig.ingest._run_form import RECORDING, ChannelRow, RunForm
+from vines.rig.ingest._run_form import RECORDING, ChannelRow, Part, RunForm
 from vines.rig.ingest._run_json import holding
 from vines.rig.ingest._sampling import check_starts
 from vines.rig.recording import ROLES, Recording, Sampled
 
 __all__ = ["Ingested", "assemble", "read_run"]
+
+_LEAST = 16
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -94,7 +96,7 @@ def _read(folder: RunFolder, name: str) -> RawFile:
     if len(stated) > 1:
         raise RigError(f"{channels} (raw/{name}): their rows state {len(stated)} dialects of one file; write one")
     try:
-        return read_file(folder.path / "raw" / name, next(iter(stated), ""))
+        return read_file(folder.home / "raw" / name, next(iter(stated), ""))
     except RigError as error:
         raise RigError(f"{channels}: raw/{error}") from None
 
@@ -142,6 +144,8 @@ def _assemble(
     check_starts(raw)
     clocks = align_clocks(calibrated, max_offset=form.max_offset, ringdown=info.protocol == "ringdown")
     channels = [_on_the_clock(channel, clocks[channel.row.recorder]) for channel in calibrated]
+    if form.part is not None:
+        channels = [_cut(channel, form.part) for channel in channels]
     if not any(channel.role in ("lo_disp", "lo_vel", "lo_acc") for channel in channels):
         raise RigError("no channel measures the oscillator (roles lo_disp, lo_vel, lo_acc)")
     if info.protocol != "ringdown" and not any(channel.role.startswith("base") for channel in channels):
@@ -163,6 +167,24 @@ def _assemble(
         remarks={
             channel.row.name: "; ".join((*files[channel.row.file].remarks, *channel.remarks)) for channel in calibrated
         },
+    )
+
+
+def _cut(channel: Sampled, part: Part) -> Sampled:
+    """Return a stretch of a channel."""
+    first = max(round((part.begin - channel.start) * channel.rate), 0)
+    last = min(round((part.end - channel.start) * channel.rate), len(channel.values))
+    if last - first < _LEAST:
+        raise RigError(
+            f"{channel.where}: it has {max(last - first, 0)} samples from {part.begin:g} to {part.end:g} s, the part "
+            "that run.json asks for; a run needs more"
+        )
+    kept = slice(first, last)
+    return replace(
+        channel,
+        start=channel.start + first / channel.rate,
+        values=channel.values[kept],
+        valid=channel.valid[kept],
     )
 
 
@@ -192,6 +214,7 @@ def _on_the_clock(channel: Calibrated, clock: Clock) -> Sampled:
         "field": row.field,
         "recorder": row.recorder,
         "clock": clock.how,
+        "bursts": channel.bursts,
     }
     return Sampled(
         name=row.name,

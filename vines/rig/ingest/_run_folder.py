@@ -80,15 +80,24 @@ class RunFolder:
         return any(path.name == CAMPAIGN for path in self.stated)
 
     @property
+    def home(self) -> Path:
+        """The run folder that has the raw files: its own, or that of the recording that it is a part of."""
+        return _home(self.path, self.form)
+
+    @property
     def raw_files(self) -> tuple[Path, ...]:
         """The files that the channels name, each once, in their order."""
-        return tuple(dict.fromkeys(self.path / "raw" / row.file for row in self.rows))
+        return tuple(dict.fromkeys(self.home / "raw" / row.file for row in self.rows))
 
     @property
     def sidecars(self) -> tuple[Path, ...]:
         """The sidecars of the raw files that have one: ``<file>.json``."""
         beside = (path.with_name(path.name + ".json") for path in self.raw_files)
         return tuple(path for path in beside if path.is_file())
+
+
+def _home(folder: Path, form: RunForm) -> Path:
+    return folder if form.part is None else folder / form.part.of
 
 
 def run_info(form: RunForm) -> RunInfo:
@@ -169,13 +178,16 @@ def read_folder(folder: Path) -> RunFolder:
     where = str(table if base is None or own else base)
     if not cells:
         raise RigError(f"{where}: no channels; it needs one row a channel")
-    rows = tuple(row_of(_with_file(row, folder)) for row in cells)
+    home = _home(folder, run.form)
+    if run.form.part is not None and not (home / "raw").is_dir():
+        raise FileMissingError(f"{told}: it is a part of {run.form.part.of}, and there is no {home / 'raw'}")
+    rows = tuple(row_of(_with_file(row, home)) for row in cells)
     cells_from = {row.name: _proposed(row, dict(cells_from.get(row.name, {})), run.form.proposed) for row in cells}
     check_rows(rows, where)
     stated = tuple(path for path in (told, table if own else None, shared, base) if path is not None)
     found = RunFolder(folder, run.form, rows, stated, run.came_from, run.overruled, cells_from, notes)
     for path in found.raw_files:
-        if not path.resolve().is_relative_to((folder / "raw").resolve()):
+        if not path.resolve().is_relative_to((home / "raw").resolve()):
             raise RigError(f"{where}: file {path.name!r} is not below raw/; raw files are kept there")
         if not path.is_file():
             raise FileMissingError(f"{path} is missing; {where} names it")
@@ -187,8 +199,16 @@ def stated_files(folder: Path) -> tuple[Path, ...]:
     above = folder.absolute().parent
     forms = [folder / "run.json", folder / "channels.tsv", folder / SUMS]
     forms += [above / CAMPAIGN, above / "channels.tsv"] if (above / CAMPAIGN).is_file() else []
-    files = [*forms, *sorted((folder / "raw").rglob("*"))]
+    files = [*forms, *sorted((_raw_of(folder)).rglob("*"))]
     return tuple(path for path in files if path.is_file() and os.access(path, os.R_OK))
+
+
+def _raw_of(folder: Path) -> Path:
+    """Return where the raw files of a run folder are, whether it can be read or not."""
+    try:
+        return read_folder(folder).home / "raw"
+    except (RigError, FileMissingError):
+        return folder / "raw"
 
 
 def _proposed(row: Cells, came_from: dict[str, str], notes: Mapping[str, Proposal]) -> dict[str, str]:
@@ -236,7 +256,7 @@ def raw_sums(folder: RunFolder) -> dict[str, str]:
                 digest = hashlib.file_digest(stream, "sha256").hexdigest()
         except OSError as error:
             raise RigError(f"run {folder.form.run_id}: {path} cannot be read: {error.strerror}") from None
-        sums[path.relative_to(folder.path).as_posix()] = digest
+        sums[path.relative_to(folder.home).as_posix()] = digest
     return sums
 
 

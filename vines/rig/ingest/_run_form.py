@@ -7,7 +7,7 @@ from typing import Annotated, Any, Literal
 import msgspec
 from msgspec import Meta
 
-__all__ = ["RECORDING", "CampaignForm", "ChannelRow", "Proposal", "RunForm", "Stated", "schemas"]
+__all__ = ["RECORDING", "CampaignForm", "ChannelRow", "Part", "Proposal", "RunForm", "Stated", "schemas"]
 
 RECORDING = "recording "
 """How the source of a proposal begins that was taken from the recording itself, and so cannot test it."""
@@ -28,6 +28,14 @@ class Proposal(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
     value: Any
     by: str
+
+
+class Part(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """A stretch of a longer recording: where its run folder is, from this one, and which stretch."""
+
+    of: Annotated[str, Meta(min_length=1, description="Run folder whose raw files are taken; . for its own")]
+    begin: Annotated[float, Meta(description="[s] On the clock of that run")]
+    end: Annotated[float, Meta(description="[s] Likewise")]
 
 
 class RunForm(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
@@ -68,12 +76,15 @@ class RunForm(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=T
             description="Why this run differs from rig.json or channels.tsv of the campaign, by KEY or CHANNEL.COLUMN"
         ),
     ] = {}
+    part: Annotated[
+        Part | None, Meta(description="What 'vines rig split' cut out of a longer recording; null for all of it")
+    ] = None
     proposed: Annotated[
         dict[str, Proposal], Meta(description="What 'vines rig init' filled in, and from what; nothing to fill in")
     ] = {}
 
 
-_OF_A_RUN = ("run_id", "start_utc", "overrule")
+_OF_A_RUN = ("run_id", "start_utc", "overrule", "part")
 CampaignForm = msgspec.defstruct(
     "CampaignForm",
     [(each.name, each.type | None, None) for each in msgspec.structs.fields(RunForm) if each.name not in _OF_A_RUN],

@@ -23,7 +23,7 @@ _FORCED = ("f_cmd", "E_cmd", "settle")
 """Keys of a campaign that don't speak of its ring-downs."""
 _BY_PART = ("materials", "more")
 """Keys whose entries are inherited one by one."""
-_NEVER = ("run_id", "start_utc", "overrule")
+_NEVER = ("run_id", "start_utc", "overrule", "part")
 
 
 @dataclass(frozen=True, slots=True)
@@ -173,7 +173,7 @@ def _checked(given: dict[str, Any], path: Path, shared: Path | None = None) -> R
         both = f"{path}: still null" if shared is None else f"{path}: stated neither there nor in {shared}"
         tail = "README.md of 'vines rig init' says what each is"
         raise RigError(f"{both}: {', '.join(empty)}; {tail}")
-    optional = ("E_meas", "f_cmd", "E_cmd")
+    optional = ("E_meas", "f_cmd", "E_cmd", "part")
     kept = {key: value for key, value in given.items() if value is not None or key in optional or shared is None}
     run = _convert(kept, RunForm, path)
     try:
@@ -218,7 +218,7 @@ def _empty(form: Mapping[str, Any], inherits: bool) -> list[str]:
         value = form.get(key)
         if value is None and key in command and form.get("protocol") != "ringdown":
             found.append(f"{key} (null for protocol ringdown only)")
-        elif value is None and key not in (*command, "E_meas") and not (inherits and key not in needed):
+        elif value is None and key not in (*command, "E_meas", "part") and not (inherits and key not in needed):
             found.append(key)
         elif key in ("M", "m", "b", "E_meas") and isinstance(value, Mapping):
             found += [f"{key}.{part}" for part, number in value.items() if number is None]

@@ -1,16 +1,20 @@
 """From a recording to the quantities of the model, with uncertainties, pattern and gates."""
 
 from vines.rig.quantities._cycle import Slots, Track, matching, mean_cycle, slots
+from vines.rig.quantities._dwells import Dwell, dwells, envelope
+from vines.rig.quantities._forcing import measure_base
 from vines.rig.quantities._match_ring_downs import match_ring_downs
 from vines.rig.quantities._pattern import HOLDS, Pattern, Periods, cut_into_periods, find_pattern
 from vines.rig.quantities._reconstruct import reconstruct
-from vines.rig.quantities._reconstruction import IMPACT, QUANTITIES, Finding, Reconstruction
+from vines.rig.quantities._reconstruction import IMPACT, NOTED, QUANTITIES, Finding, Reconstruction
 from vines.rig.quantities._ring_down import RingDown, ring_down
 
 __all__ = [
     "HOLDS",
     "IMPACT",
+    "NOTED",
     "QUANTITIES",
+    "Dwell",
     "Finding",
     "Pattern",
     "Periods",
@@ -19,10 +23,13 @@ __all__ = [
     "Slots",
     "Track",
     "cut_into_periods",
+    "dwells",
+    "envelope",
     "find_pattern",
     "match_ring_downs",
     "matching",
     "mean_cycle",
+    "measure_base",
     "reconstruct",
     "ring_down",
     "slots",

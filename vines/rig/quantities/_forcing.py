@@ -59,6 +59,8 @@ class Tuning:
         Base motion that the response asks for, relative to the measured one, before the correction.
     misfit : float
         Distance of `ratio` from 1 in standard deviations (root of chi^2 of two degrees of freedom).
+    by_omega0 : complex
+        Change of `ratio` by a relative change of the omega0 that it is computed with.
     """
 
     omega0: Uncertain
@@ -67,6 +69,7 @@ class Tuning:
     phase: float
     ratio: complex
     misfit: float
+    by_omega0: complex
 
 
 def measure_base(recording: Recording, *, harmonics: int = 3) -> Base:
@@ -175,4 +178,5 @@ def tune(
         float(step[3]),
         ratio,
         misfit,
+        by_omega0,
     )

@@ -23,19 +23,24 @@ from vines.rig.ball import (
     uncalibrated,
 )
 from vines.rig.fit import Forced, JumpModel, Train, forced_response, root
-from vines.rig.impacts import Response, measure_response
+from vines.rig.impacts import Mode, Response, measure_response, undisturbed
 from vines.rig.quantities._cycle import Track, slots
 from vines.rig.quantities._findings import judge
 from vines.rig.quantities._forcing import Base, Tuning, measure_base, tune
+from vines.rig.quantities._hum import Hum, without_hum
 from vines.rig.quantities._pattern import Pattern, Periods, cut_into_periods, find_pattern
-from vines.rig.quantities._reconstruction import IMPACT, Reconstruction
+from vines.rig.quantities._reconstruction import IMPACT, Finding, Reconstruction
 from vines.rig.quantities._ring_down import RingDown, natural
+from vines.rig.quantities._trends import MATTERS, base_course, run_trends, trend_findings
 from vines.rig.recording import Recording, Uncertain
 from vines.rig.uncertainty import combined, mean_over_periods, standard_error
 
 __all__ = ["reconstruct"]
 
 Floats = npt.NDArray[np.float64]
+
+_BESIDE = 3e-3
+"""An impact that is nearer to a stretch without signal is marked [s]."""
 
 
 def reconstruct(
@@ -89,17 +94,28 @@ def _reconstructed(
     if run.protocol == "ringdown" or not run.ball:
         raise RigError(f"run {run.run_id!r} has no ball in it; a ring-down gives omega0 and lam, see ring_down")
     base = measure_base(recording)
+    recording, hum = without_hum(recording, base.f.value)
+    if hum is not None:
+        base = measure_base(recording)
     omega0, lam = natural(tuple(ringdowns), float(np.mean(run.temperature)))
     omega = base.fit.omega
     s = root(omega0.value, lam.value)
     forced = _harmonics(base, recording, s)
     friction = stated(run.more.get("friction"), FRICTION)
     mu = run.m.value / run.M.value
-    response = measure_response(
-        recording, s, omega, forced,
-        friction=mu * friction.value, u_natural=(omega0.u / omega0.value, lam.u / lam.value),
-        driven=complex(forced_response(base.e[0], omega, s)), impacts=impacts, seed=seed,
-    )  # fmt: skip
+
+    def measure(recording: Recording) -> Response:
+        return measure_response(
+            recording, s, omega, forced,
+            friction=mu * friction.value, u_natural=(omega0.u / omega0.value, lam.u / lam.value),
+            driven=complex(forced_response(base.e[0], omega, s)), impacts=impacts, seed=seed,
+        )  # fmt: skip
+
+    modes: tuple[Mode, ...] = ()
+    if impacts is None:
+        recording, response, modes = undisturbed(recording, measure)
+    else:
+        response = measure(recording)
     if len(response.fit.jumps.t) < 6:
         raise RigError(
             f"run {run.run_id!r} shows {len(response.fit.jumps.t)} impacts, allowed are 6 and more: did the ball move?"
@@ -112,7 +128,54 @@ def _reconstructed(
     periods = cut_into_periods(phase, side, (bounds[0], bounds[1]))
     pattern = find_pattern(periods, phase)
     ball = measure_rebounds(recording, response, side)
-    return _assembled(recording, base, response, side, tuning, phase, periods, pattern, ball)
+    made = _assembled(recording, base, response, side, tuning, phase, periods, pattern, ball)
+    model = JumpModel(response.bins, s, omega, response.order, forced)
+    course = base_course(base)
+    trends = {**course.trends, **run_trends(base, response, tuning, ball, model)}
+    findings = (
+        *_taken_off(recording, hum, modes, int(np.count_nonzero(made.impacts["bridged"]))),
+        *trend_findings(recording, course, trends),
+        *judge(recording, base, response, tuning, ball),
+    )
+    return replace(made, quantities={**made.quantities, **trends}, findings=_named(findings))
+
+
+def _bridged(recording: Recording, t: Floats) -> npt.NDArray[np.bool_]:
+    """Say which impacts have samples without signal beside them, in a channel of the oscillator."""
+    beside = np.zeros(len(t), bool)
+    for channel in recording.channels.values():
+        if channel.role in ("lo_disp", "lo_vel") and not channel.valid.all():
+            bad = channel.start + np.flatnonzero(~channel.valid) / channel.rate
+            place = np.searchsorted(bad, t)
+            near = np.minimum(
+                np.abs(bad[np.maximum(place - 1, 0)] - t), np.abs(bad[np.minimum(place, len(bad) - 1)] - t)
+            )
+            beside |= near < _BESIDE
+    return beside
+
+
+def _taken_off(recording: Recording, hum: Hum | None, modes: tuple[Mode, ...], bridged: int) -> list[Finding]:
+    """Return what was found of hum, modes and lost signal, which is no fault once it is dealt with."""
+    lost = {
+        channel.name: channel.about["bursts"] for channel in recording.channels.values() if channel.about.get("bursts")
+    }
+    found = [] if hum is None else [Finding("hum", True, hum.text)]
+    if lost:
+        text = "; ".join(f"{name} {each}" for name, each in lost.items())
+        found.append(Finding("lost_signal", True, f"{text}; {bridged} of the impacts are beside such a stretch"))
+    if modes:
+        listed = "; ".join(mode.text for mode in modes)
+        found.append(
+            Finding("frame_modes", True, f"modes of the frame ring after impacts and were taken off, {listed}")
+        )
+    return found
+
+
+def _named(findings: tuple[Finding, ...]) -> tuple[Finding, ...]:
+    """Return findings without guesses that a run which changes gives rise to: it shifts one sensor's impacts, too."""
+    if any(each.name in (*MATTERS, "levels") and not each.passed for each in findings):
+        return tuple(each for each in findings if each.name not in ("oscillator_clocks", "forcing"))
+    return findings
 
 
 def _harmonics(base: Base, recording: Recording, s: complex) -> Forced:
@@ -266,12 +329,12 @@ def _assembled(
         pattern=pattern,
         periods=periods,
         slots=found,
-        impacts=_rows(response, ball, side, phase, number),
+        impacts=_rows(recording, response, ball, side, phase, number),
         track=track,
         residual=fit.residual / abs(fit.motion.s) ** response.order,
         noise=fit.noise / abs(fit.motion.s) ** response.order,
         pruned=response.pruned,
-        findings=judge(recording, base, response, tuning, ball),
+        findings=(),
         base_harmonics=base.e,
     )
 
@@ -332,7 +395,7 @@ def _energies(response: Response, ball: Rebounds, begin: Floats) -> dict[str, Un
 
 
 def _rows(
-    response: Response, ball: Rebounds, side: Floats, phase: Floats, number: npt.NDArray[np.int64]
+    recording: Recording, response: Response, ball: Rebounds, side: Floats, phase: Floats, number: npt.NDArray[np.int64]
 ) -> npt.NDArray[np.void]:
     jumps = ball.jumps
     rows = np.zeros(len(side), IMPACT)
@@ -347,4 +410,5 @@ def _rows(
     rows["w_dot"][inner], rows["w_dot_after"][inner] = ball.motion.w_before, ball.motion.w_after
     rows["r"][inner], rows["u_r"][inner] = ball.motion.r, ball.u_r
     rows["suspect"][inner] = ~ball.counted
+    rows["bridged"] = _bridged(recording, rows["t"])
     return rows

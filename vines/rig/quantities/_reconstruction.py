@@ -12,7 +12,7 @@ from vines.rig.quantities._cycle import Slots, Track
 from vines.rig.quantities._pattern import Pattern, Periods
 from vines.rig.recording import RunInfo, Uncertain
 
-__all__ = ["IMPACT", "QUANTITIES", "Finding", "Reconstruction"]
+__all__ = ["IMPACT", "NOTED", "QUANTITIES", "Finding", "Reconstruction"]
 
 QUANTITIES = {
     "f": ("Hz", "Frequency of the base"),
@@ -41,14 +41,21 @@ QUANTITIES = {
     "impact_phase": ("rad", "Phase of the forcing at the first impact of the pattern"),
     "w_before": ("m/s", "Mean |w'| before impact"),
     "w_after": ("m/s", "Mean |w'| after impact"),
+    "drift_E": ("1", "Relative change of the base amplitude over the record"),
+    "drift_f": ("1", "Relative change of the forcing frequency over the record"),
+    "drift_r": ("1", "Change of the restitution over the record"),
+    "drift_omega0": ("1", "Relative change of the natural frequency over the record"),
 }
 """Reconstructed quantities with unit and meaning."""
 
 IMPACT = np.dtype(
     [(n, "f8") for n in ("t", "side", "x1", "v1", "v1_after", "x2", "v2", "v2_after", "w_dot", "w_dot_after")]
-    + [("r", "f8"), ("u_r", "f8"), ("u_t", "f8"), ("phase", "f8"), ("period", "i8"), ("suspect", "?")]
+    + [("r", "f8"), ("u_r", "f8"), ("u_t", "f8"), ("phase", "f8"), ("period", "i8"), ("suspect", "?"), ("bridged", "?")]
 )
 """A reconstructed impact, SI; nan where a flight on one side of it is not in the record."""
+
+NOTED = ("hum", "frame_modes", "lost_signal")
+"""Findings that a run may pass and that have to be known."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from vines.rig.quantities import IMPACT, QUANTITIES, Reconstruction
+from vines.rig.quantities import IMPACT, NOTED, QUANTITIES, Reconstruction
 from vines.rig.recording import RunInfo
 
 __all__ = ["failed_row", "impact_columns", "reconstruction_row"]
@@ -33,6 +33,7 @@ def reconstruction_row(found: Reconstruction, ring_downs: Sequence[str]) -> dict
         "fault": any(finding.fault for finding in failed),
         "failed": " ".join(finding.name for finding in failed),
         "findings": found.reasons,
+        "noted": "; ".join(each.text for each in found.findings if each.passed and each.name in NOTED),
         "pattern": pattern.name,
         "n": pattern.n,
         "m": pattern.m,

@@ -2,14 +2,20 @@
 
 from vines.rig.synth._campaign import make_campaign
 from vines.rig.synth._contact import LEAST, MOST
+from vines.rig.synth._disturb import Burst, Disturbances, Hum, Ringing, disturbed
 from vines.rig.synth._make import RawRun, make_run, raw_run, read_raw, simulate_rig
 from vines.rig.synth._settings import RigSettings, draw_settings
 
 __all__ = [
     "LEAST",
     "MOST",
+    "Burst",
+    "Disturbances",
+    "Hum",
     "RawRun",
     "RigSettings",
+    "Ringing",
+    "disturbed",
     "draw_settings",
     "make_campaign",
     "make_run",

@@ -9,13 +9,11 @@ import numpy as np
 import numpy.typing as npt
 from scipy.signal import lfilter
 
-from vines.rig.synth._motion import Motion
+from vines.rig.synth._motion import LEAD, Motion
 from vines.rig.synth._settings import RigSettings
 
 __all__ = ["LEAD", "SPARE", "Recorder", "Signal", "recorders", "signals"]
 
-LEAD = 3.0
-"""[s] Motion before the first sample, in which couplings settle and delays and offsets lie."""
 SPARE = 0.1
 """[s] Motion after the last sample."""
 GAP = 0.012
@@ -200,7 +198,7 @@ def _base_acceleration(s: RigSettings, motion: Motion, t: npt.NDArray[np.float64
         size = -p["E"] * part * omega**2 / np.hypot(1.0, ratio)
         if size:
             total += size * np.sin(omega * (t + motion.start) + n * p["phi"] + shift + np.arctan(ratio))
-    return total
+    return total * motion.swollen(t)
 
 
 def _lo_acceleration(

@@ -49,7 +49,20 @@ _SLOW = 1e-3
 
 
 @njit
-def _base(t, p):
+def _course(t, knots):
+    """Return what a course is at a time, and its slope: straight between its knots, level beyond them."""
+    n = knots.shape[1]
+    if t <= knots[0, 0]:
+        return knots[1, 0], 0.0
+    for k in range(1, n):
+        if t < knots[0, k]:
+            slope = (knots[1, k] - knots[1, k - 1]) / (knots[0, k] - knots[0, k - 1])
+            return knots[1, k - 1] + slope * (t - knots[0, k - 1]), slope
+    return knots[1, n - 1], 0.0
+
+
+@njit
+def _base(t, p, swell):
     """Return displacement and velocity of the base."""
     theta = p[_omega] * t + p[_phi]
     e = math.sin(theta)
@@ -57,6 +70,9 @@ def _base(t, p):
     if p[_h2] != 0.0 or p[_h3] != 0.0:
         e += p[_h2] * math.sin(2 * theta + p[_phi2]) + p[_h3] * math.sin(3 * theta + p[_phi3])
         de += 2 * p[_h2] * math.cos(2 * theta + p[_phi2]) + 3 * p[_h3] * math.cos(3 * theta + p[_phi3])
+    if swell.shape[1] > 0:
+        size, slope = _course(t, swell)
+        return p[_E] * size * e, p[_E] * (p[_omega] * size * de + slope * e)
     return p[_E] * e, p[_E] * p[_omega] * de
 
 
@@ -82,11 +98,11 @@ def _rates(t, e, de, x1, v1, x2, v2, side, chi, p):
 
 
 @njit
-def _step(t, h, x1, v1, x2, v2, side, chi, p):
+def _step(t, h, x1, v1, x2, v2, side, chi, p, swell):
     """Return the state after one step of the classical Runge-Kutta method."""
-    e0, d0 = _base(t, p)
-    em, dm = _base(t + 0.5 * h, p)
-    e1, d1 = _base(t + h, p)
+    e0, d0 = _base(t, p, swell)
+    em, dm = _base(t + 0.5 * h, p, swell)
+    e1, d1 = _base(t + h, p, swell)
     a, b = _rates(t, e0, d0, x1, v1, x2, v2, side, chi, p)
     u1 = v1 + 0.5 * h * a
     u2 = v2 + 0.5 * h * b
@@ -112,7 +128,7 @@ def _depth(x1, x2, side, p):
 
 
 @njit
-def _until_touch(t, h, x1, v1, x2, v2, now, chi, side, p):
+def _until_touch(t, h, x1, v1, x2, v2, now, chi, side, p, swell):
     """Return the part of a step after which the depth in a wall changes sign, by bisection to a femtosecond."""
     low = 0.0
     high = h
@@ -121,7 +137,7 @@ def _until_touch(t, h, x1, v1, x2, v2, now, chi, side, p):
         middle = 0.5 * (low + high)
         if middle in (low, high):
             break
-        y1, _, y2, _ = _step(t, middle, x1, v1, x2, v2, now, chi, p)
+        y1, _, y2, _ = _step(t, middle, x1, v1, x2, v2, now, chi, p, swell)
         if (_depth(y1, y2, side, p) > 0.0) == into:
             high = middle
         else:
@@ -146,7 +162,7 @@ def _modal_velocity(y, s):
 
 
 @njit
-def advance(state, first, count, h, p, draws, quiet, table_r, table_a, modes, gains, ball, out, rows):
+def advance(state, first, count, h, p, draws, quiet, table_r, table_a, modes, gains, swell, worn, ball, out, rows):
     """Integrate over steps of the recorder.
 
     Parameters
@@ -169,6 +185,8 @@ def advance(state, first, count, h, p, draws, quiet, table_r, table_a, modes, ga
         Eigenvalues s of the structural modes [1/s].
     gains : ndarray of complex, shape (2, n)
         Their participation, and their amplitudes, which are overwritten.
+    swell, worn : ndarray, shape (2, n)
+        Times [s] and what E is multiplied with, and what is added to r, then; none without columns.
     ball : bool
         Whether the ball is in the cavity.
     out : ndarray, shape (5, count + 1)
@@ -199,7 +217,7 @@ def advance(state, first, count, h, p, draws, quiet, table_r, table_a, modes, ga
             rest = h - done
             t = start + done
             if side == 0.0:
-                y1, u1, y2, u2 = _step(t, rest, x1, v1, x2, v2, 0.0, 0.0, p)
+                y1, u1, y2, u2 = _step(t, rest, x1, v1, x2, v2, 0.0, 0.0, p, swell)
                 hit = 0.0
                 if ball:
                     if y1 - y2 > p[_left] and u1 > u2:
@@ -212,13 +230,15 @@ def advance(state, first, count, h, p, draws, quiet, table_r, table_a, modes, ga
                     break
                 part = rest
                 if _depth(x1, x2, hit, p) < 0.0:
-                    part = _until_touch(t, rest, x1, v1, x2, v2, 0.0, 0.0, hit, p)
-                    x1, v1, x2, v2 = _step(t, part, x1, v1, x2, v2, 0.0, 0.0, p)
+                    part = _until_touch(t, rest, x1, v1, x2, v2, 0.0, 0.0, hit, p, swell)
+                    x1, v1, x2, v2 = _step(t, part, x1, v1, x2, v2, 0.0, 0.0, p, swell)
                     _ring(rings, modes, part)
                     done += part
                 side = hit
                 speed = max(abs(v1 - v2), _SLOW)
                 r = p[_r] * (speed / p[_reference]) ** -p[_exponent] + draws[number % len(draws)]
+                if worn.shape[1] > 0:
+                    r += _course(start + done, worn)[0]
                 r = min(max(r, table_r[0]), table_r[-1])
                 chi = np.interp(r, table_r, table_a) / speed
                 number += 1
@@ -246,11 +266,11 @@ def advance(state, first, count, h, p, draws, quiet, table_r, table_a, modes, ga
                     found += 1
                 continue
             part = min(p[_pause], rest)
-            y1, u1, y2, u2 = _step(t, part, x1, v1, x2, v2, side, chi, p)
+            y1, u1, y2, u2 = _step(t, part, x1, v1, x2, v2, side, chi, p, swell)
             leaves = _depth(y1, y2, side, p) <= 0.0
             if leaves and _depth(x1, x2, side, p) > 0.0:
-                part = _until_touch(t, part, x1, v1, x2, v2, side, chi, side, p)
-                y1, u1, y2, u2 = _step(t, part, x1, v1, x2, v2, side, chi, p)
+                part = _until_touch(t, part, x1, v1, x2, v2, side, chi, side, p, swell)
+                y1, u1, y2, u2 = _step(t, part, x1, v1, x2, v2, side, chi, p, swell)
             _ring(rings, modes, part)
             struck = -(p[_m] / p[_M]) * (u2 - v2) * (0.02 if quiet[(number - 1) % len(quiet)] else 1.0)
             pushed += u2 - v2

@@ -23,6 +23,9 @@ from vines.rig.synth._write import file_name, write_raw
 
 __all__ = ["RawRun", "make_run", "raw_run", "read_raw", "simulate_rig"]
 
+_COURSES = ("E_course", "r_course")
+"""Settings that the truth leaves out where they are empty."""
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class RawRun:
@@ -241,7 +244,7 @@ def _truth(s: RigSettings, seed: int, motion: Motion, step: float) -> dict[str, 
     return {
         "run_id": s.run_id,
         "seed": seed,
-        "settings": msgspec.to_builtins(s),
+        "settings": {name: v for name, v in msgspec.to_builtins(s).items() if v or name not in _COURSES},
         "clock": {"pace": pace},
         "parameters": {
             "mu": s.m / s.M, "A": p["E"] / s.b, "Omega": None if still else omega / omega0,

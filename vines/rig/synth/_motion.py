@@ -11,8 +11,10 @@ from vines.rig.synth._contact import damping_table, stiffness
 from vines.rig.synth._kernel import IMPACT, NAMES, NUMBER, PHASE, ROW, advance
 from vines.rig.synth._settings import RigSettings
 
-__all__ = ["Motion", "move"]
+__all__ = ["LEAD", "Motion", "move"]
 
+LEAD = 3.0
+"""[s] Motion before the first sample, in which couplings settle and delays and offsets lie."""
 _G = 9.80665
 _REFERENCE_TEMPERATURE = 20.0
 _MANY = 200_000
@@ -41,6 +43,8 @@ class Motion:
         State of the kernel at the end and phase of the base there, from which another run can go on.
     parameters : mapping of str to float
         What the kernel was given.
+    swell : ndarray, shape (2, n)
+        Times since the base began to move [s] and what E is multiplied with then.
     quiet : ndarray of bool
         Impacts that the accelerometer missed.
     """
@@ -56,6 +60,11 @@ class Motion:
     end: npt.NDArray[np.float64]
     parameters: dict[str, float]
     quiet: npt.NDArray[np.bool_]
+    swell: npt.NDArray[np.float64]
+
+    def swollen(self, times: npt.NDArray[np.float64]) -> npt.NDArray[np.float64] | float:
+        """Return what E is multiplied with at times since `start`."""
+        return np.interp(times + self.start, *self.swell) if self.swell.size else 1.0
 
     def base(self, times: npt.NDArray[np.float64], derivative: int = 0) -> npt.NDArray[np.float64]:
         """Return displacement (or its n-th derivative) of the base at times since `start`."""
@@ -66,7 +75,8 @@ class Motion:
                 omega = n * p["omega"]
                 angle = omega * (times + self.start) + n * p["phi"] + shift + derivative * np.pi / 2
                 total += p["E"] * part * omega**derivative * np.sin(angle)
-        return total
+        # The slope of the amplitude is left out of velocities and accelerations: it is slow beside the sine.
+        return total * self.swollen(times)
 
 
 def kernel_parameters(s: RigSettings, rng: np.random.Generator) -> dict[str, float]:
@@ -121,16 +131,22 @@ def move(s: RigSettings, rng: np.random.Generator, step: float, extra: int, stat
     state[NUMBER] = 0.0
     tables = damping_table()
     before = round(s.settle / step / _COARSE)
+    courses = [_course(knots, _COARSE * before * step) for knots in (s.E_course, s.r_course)]
+    swell, worn = courses
     count = round(s.duration / step) + extra
     nothing = np.empty((5, 0))
     none = np.empty((0, len(IMPACT)))
-    advance(state, 0, before, _COARSE * step, values, draws, quiet, *tables, modes, gains, s.ball, nothing, none)
+    advance(
+        state, 0, before, _COARSE * step, values, draws, quiet, *tables, modes, gains, swell, worn, s.ball, nothing,
+        none,
+    )  # fmt: skip
     out = np.empty((5, count + 1))
     rows = np.full((min(_MANY, 2000 * int(s.duration + 10)), len(IMPACT)), np.nan)
     first = int(state[NUMBER])
     found = advance(
-        state, _COARSE * before, count, step, values, draws, quiet, *tables, modes, gains, s.ball, out, rows
-    )
+        state, _COARSE * before, count, step, values, draws, quiet, *tables, modes, gains, swell, worn, s.ball, out,
+        rows,
+    )  # fmt: skip
     state[PHASE] = (p["omega"] * (_COARSE * before + count) * step + p["phi"]) % (2 * np.pi)
     impacts = np.rec.fromarrays(rows[:found].T.copy(), dtype=np.dtype([(name, np.float64) for name in IMPACT]))
     start = _COARSE * before * step
@@ -139,5 +155,12 @@ def move(s: RigSettings, rng: np.random.Generator, step: float, extra: int, stat
     impacts["t_mid"] -= start
     return Motion(
         step=step, start=start, x1=out[0], v1=out[1], x2=out[2], v2=out[3], acc=out[4], impacts=impacts, end=state,
-        parameters=p, quiet=quiet[(first + np.arange(found)) % _MANY],
+        parameters=p, quiet=quiet[(first + np.arange(found)) % _MANY], swell=swell,
     )  # fmt: skip
+
+
+def _course(knots: tuple[tuple[float, float], ...], begin: float) -> npt.NDArray[np.float64]:
+    """Return a course, whose times count from the first sample, on the kernel's clock, shape (2, n)."""
+    course = np.array(knots, dtype=np.float64).reshape(-1, 2).T.copy()
+    course[0] += begin + LEAD
+    return course

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
 from typing import Literal
 
 import msgspec
@@ -44,6 +45,9 @@ class RigSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_on
         Left half length less right one [m].
     h2, h3, sag : float
         Second and third harmonic of the base relative to the first; part of E that the shaker does not reach.
+    E_course, r_course : tuple of (time [s], value)
+        What E is multiplied with and what is added to r at times from the first sample, straight between them and level
+        beyond: ramps, dwells at several levels, wear. Empty for none.
     temperature : tuple of float
         At the start and the end of the record [deg C].
     softening : float
@@ -107,6 +111,8 @@ class RigSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_on
     h2: float = 0.0
     h3: float = 0.0
     sag: float = 0.0
+    E_course: tuple[tuple[float, float], ...] = ()
+    r_course: tuple[tuple[float, float], ...] = ()
     temperature: tuple[float, float] = (20.0, 20.0)
     softening: float = -1.5e-4
     modes: tuple[tuple[float, float, float], ...] = ((1450.0, 0.01, 0.5), (3400.0, 0.008, 0.7), (6700.0, 0.012, 0.4))
@@ -152,6 +158,10 @@ class RigSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_on
             raise ParameterError(f"synthetic rig: r is {self.r:g}, allowed is 0.05 <= r <= 0.98")
         if not 2e-5 <= self.contact_time <= 1e-3:
             raise ParameterError(f"synthetic rig: contact_time is {self.contact_time:g} s, allowed is 2e-5 to 1e-3")
+        for name in ("E_course", "r_course"):
+            times = [when for when, _ in getattr(self, name)]
+            if any(later <= earlier for earlier, later in pairwise(times)):
+                raise ParameterError(f"synthetic rig: times of {name} are {times}, allowed are rising ones")
         known = ("base_disp", "base_acc", "lo_disp", "lo_acc")
         for name in (*self.channels, self.fault_channel):
             if name not in known:

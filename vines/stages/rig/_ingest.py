@@ -54,12 +54,17 @@ def compute(job: WholeJob[IngestOptions]) -> Batch:
 def _keep(kept: Path, path: Path, run: Ingested) -> None:
     """Copy a run folder; one of a campaign is kept with all that it inherits."""
     folder = run.folder
-    inherits = folder is not None and folder.inherits
+    home = path if folder is None else folder.home
+    inherits = folder is not None and (folder.inherits or folder.form.part is not None)
     for name in (*(() if inherits else ("run.json", "channels.tsv")), *run.sums):
         (kept / name).parent.mkdir(parents=True, exist_ok=True)
-        shutil.copyfile(path / name, kept / name)
+        shutil.copyfile(home / name, kept / name)
     if folder is not None and inherits:
-        form = msgspec.json.format(msgspec.json.encode(folder.form), indent=2).decode()
+        whole = folder.form
+        if whole.part is not None:
+            # What is kept has the raw files beside it.
+            whole = msgspec.structs.replace(whole, part=msgspec.structs.replace(whole.part, of="."))
+        form = msgspec.json.format(msgspec.json.encode(whole), indent=2).decode()
         (kept / "run.json").write_text(form + "\n", encoding="utf-8")
         (kept / "channels.tsv").write_text(channels_text(folder.rows), encoding="utf-8")
     text = "".join(f"{value}  {name}\n" for name, value in run.sums.items())
