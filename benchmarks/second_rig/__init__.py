@@ -6,6 +6,6 @@ the catalogue, and no code of physics or instruments with the first rig.
 """
 
 from benchmarks.second_rig._record import record, write
-from benchmarks.second_rig._settings import PHYSICS, SecondRig, draw_rig, rest_of
+from benchmarks.second_rig._settings import HARMLESS, PHYSICS, SecondRig, draw_rig, rest_of
 
-__all__ = ["PHYSICS", "SecondRig", "draw_rig", "record", "rest_of", "write"]
+__all__ = ["HARMLESS", "PHYSICS", "SecondRig", "draw_rig", "record", "rest_of", "write"]

@@ -16,9 +16,7 @@ from benchmarks.second_rig._motion import Motion, move
 from benchmarks.second_rig._settings import SecondRig
 from vines.rig.formats import RawChannel, RawFile
 from vines.rig.ingest import ChannelRow, RunForm, Stated, channels_text
-from vines.rig.synth import RawRun
-from vines.rig.synth._pattern import true_pattern
-from vines.rig.synth._write import write_raw
+from vines.rig.synth import RawRun, true_pattern, write_raw
 
 Floats = npt.NDArray[np.float64]
 
@@ -131,8 +129,9 @@ def _form(rig: SecondRig, run_id: str, ringdowns: tuple[str, ...], rng: np.rando
     return RunForm(
         run_id=run_id, start_utc="2026-01-05T09:00:00Z", protocol="ringdown" if still else "dwell",
         f_cmd=None if still else rig.f, E_cmd=None if still else rig.E, settle=rig.settle,
-        M=stated(rig.M, 5e-4 * rig.M), m=stated(rig.m, 5e-4 * rig.m), b=stated(rig.b, 5e-5), ball=not still, temperature_before=20.0,
-        temperature_after=20.0, ringdown=ringdowns, materials={"rig": "second"}, licence="CC0-1.0", more=more,
+        M=stated(rig.M, 5e-4 * rig.M), m=stated(rig.m, 5e-4 * rig.m), b=stated(rig.b, 5e-5), ball=not still,
+        temperature_before=20.0, temperature_after=20.0, ringdown=ringdowns, materials={"rig": "second"},
+        licence="CC0-1.0", more=more,
     )  # fmt: skip
 
 

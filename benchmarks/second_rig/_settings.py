@@ -103,11 +103,11 @@ CUBIC_AT = 0.009
 
 PHYSICS = {
     "none": (),
-    "rolling": ("roll", "spin", "slip"),
-    "soft": ("contact",),
-    "cubic": ("stiffen", "spring", "cubic"),
-    "shaker": ("shaker", "base gives way"),
-    "table": ("ring-down", "table"),
+    "rolling": ("rolls",),
+    "soft": ("contact is soft",),
+    "cubic": ("spring is not linear",),
+    "shaker": ("base gives way",),
+    "table": ("base moved in the ring-down",),
     "modes": ("mode", "resonan"),
     "hum": ("hum", "mains", "50 Hz"),
     "drift_E": ("drift", "trend", "ramp"),
@@ -115,6 +115,9 @@ PHYSICS = {
     "drift_omega0": ("drift", "trend"),
 }
 """What may be switched on, and words one of which names it."""
+
+HARMLESS = ("none", "table", "hum", "modes")
+"""With these the run itself is the model's, if what they add is recognised: agree is right."""
 
 
 def draw_rig(seed: int, physics: str, *, strength: float = 1.0, duration: float = 40.0) -> SecondRig:
