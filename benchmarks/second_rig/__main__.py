@@ -1,7 +1,8 @@
 """Score `vines.rig` on the second rig, or write its runs.
 
 ``python -m benchmarks.second_rig --seeds 0 5`` makes five runs of each effect; ``--write DIR`` writes them as run
-folders with their ring-downs instead, for the commands of vines; ``--restitution`` looks at r alone, with friction not stated.
+folders with their ring-downs instead, for the commands of vines; ``--restitution`` looks at r alone, with friction not
+stated.
 """
 
 from __future__ import annotations

@@ -121,16 +121,19 @@ def fit_decay(
     (55.0, -0.33, 60.0)
     """
     s, g = _begun(bins, omega)
-    free = _solved(bins, s, g if bends else 0.0, 0.0, more, bends=bends)
-    reach = free.size if sensor else 0.0
-    if sensor:
-        free = _solved(bins, free.s, free.g, reach, more, bends=bends)
-    if not bends or (abs(free.turn) > _BELIEVED * free.u_turn and abs(free.turn) * free.size**2 > _BENDS * free.s.imag):
-        return free
-    linear = _solved(bins, free.s, 0.0, reach, more, bends=False)
-    return Decay(
-        linear.t, linear.s, 0.0, linear.z, linear.u, free.turn, free.u_turn, linear.residual, linear.size, linear.bent
-    )
+
+    def solved(s: complex, g: complex, *, free: bool) -> Decay:
+        found = _solved(bins, s, g, 0.0, more, bends=free)
+        return _solved(bins, found.s, found.g, found.size, more, bends=free) if sensor else found
+
+    try:
+        linear = solved(complex(s.real, omega), 0.0, free=False)
+    except RigError:
+        if not bends:
+            raise
+        return solved(s, g, free=True)
+    turns = abs(linear.turn) > _BELIEVED * linear.u_turn and abs(linear.turn) * linear.size**2 > _BENDS * linear.s.imag
+    return solved(s, g, free=True) if bends and turns else linear
 
 
 def again(bins: Bins, found: Decay) -> complex:
@@ -184,8 +187,8 @@ def _solved(bins: Bins, s: complex, g: complex, reach: float, more: Floats | Non
         if reach:
             terms = reach * np.polynomial.legendre.legvander(wave.real / reach, _DEGREE).T[2:]
         fall, turn = (tau + g * by_fall) * wave, tau * wave
-        slopes = np.vstack([fall.real, -turn.imag, (h * wave).real, -(h * wave).imag])[:n]
-        columns = np.vstack([columns, slopes])
+        slopes = np.vstack([fall.real, -turn.imag, (h * wave).real, -(h * wave).imag])
+        columns = np.vstack([columns, slopes[:n]])
         normal = columns @ columns.T
         left = y - linear @ columns[:known]
         scale = np.maximum(np.sqrt(np.diag(normal)), 1e-150)
@@ -206,7 +209,16 @@ def _solved(bins: Bins, s: complex, g: complex, reach: float, more: Floats | Non
     residual = float(np.sqrt(np.mean(left**2)))
     inverse = np.linalg.inv(normal / np.outer(scale, scale)) / np.outer(scale, scale)
     u = np.sqrt(np.diag(inverse)[known:] * clumping(left)) * residual
+    turned, u_turned = (g.imag, float(u[3])) if bends else _turns(np.vstack([columns, slopes[n:]]), left)
     return Decay(
-        bins.t, s, g, z, (float(u[0]), float(u[1])), g.imag if bends else 0.0, float(u[3]) if bends else 0.0,
-        residual, abs(z), bent,
+        bins.t, s, g, z, (float(u[0]), float(u[1])), turned, u_turned, residual, abs(z), bent,
     )  # fmt: skip
+
+
+def _turns(columns: Floats, left: Floats) -> tuple[float, float]:
+    """Return the last column's size in what a fit left, and its standard uncertainty."""
+    scale = np.maximum(np.sqrt(np.sum(columns**2, axis=1)), 1e-150)
+    inverse = np.linalg.inv(columns @ columns.T / np.outer(scale, scale)) / np.outer(scale, scale)
+    step = inverse @ (columns @ left)
+    rest = left - step @ columns
+    return float(step[-1]), float(np.sqrt(inverse[-1, -1] * np.mean(rest**2) * clumping(rest)))
