@@ -46,6 +46,9 @@ _DIM = 0.2
 
 _OUTLIES = 6.0
 
+_UNUSUAL = 2.5
+"""Standard deviations by which friction must be more than usual for the run alone to tell it."""
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Rebounds:
@@ -154,13 +157,17 @@ def measure_rebounds(
     u_gain = response.channel.u_gain
     b = combined(run.b.value, max(run.b.u, 1e-6), run.b.value * u_gain)
     course = _course(response, side, b.value)
-    alone, joint, free = (
-        fit_momentum(
+
+    def solved(mass: Uncertain | None, rubs: Uncertain) -> MomentumFit:
+        return fit_momentum(
             fit.jumps, fit.draws, side, course,
-            mu=given, b=b, touch=_CENTROID, friction=rubs, tilt=tilt, usable=long, swap=fit.swap,
-        )
-        for given, rubs in ((None, friction), (known, friction), (known, rubbing))
-    )  # fmt: skip
+            mu=mass, b=b, touch=_CENTROID, friction=rubs, tilt=tilt, usable=long, swap=fit.swap,
+        )  # fmt: skip
+
+    free = solved(known, rubbing)
+    if "friction" not in run.more and _contradicted(FRICTION, free.friction):
+        friction = rubbing
+    alone, joint = solved(None, friction), solved(known, friction)
     jumps = fit.jumps.moved(fit.swap, joint.swapped)
     motion = ball_motion(jumps, side, joint.cavity, course)
     noise = ball_motion(fit.draws.moved(fit.swap, joint.swapped), side, joint.cavity, course)
@@ -186,6 +193,11 @@ def measure_rebounds(
         alone, joint, free.friction, course, jumps, motion, u_r, long, contradicts, counted, measured, law, weighed,
         gauge, u_gain,
     )  # fmt: skip
+
+
+def _contradicted(usual: Uncertain, seen: Uncertain) -> bool:
+    """Say whether a run denies what is usual: a ball that rolls, for one, is slowed far more than one that slides."""
+    return seen.value - usual.value > _UNUSUAL * float(np.hypot(usual.u, seen.u))
 
 
 def _course(response: Response, side: Floats, b: float) -> Course:
