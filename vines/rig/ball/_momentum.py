@@ -24,8 +24,9 @@ _SKEW = 2e-3
 """How much the gain of the oscillator's sensor may differ along its motion: slope and curvature, of half the range."""
 
 
-_U_FRICTION = 5e-3
-"""Standard uncertainty of the friction by momentum, which other forces on the ball limit [m/s^2]."""
+_U_VELOCITY = 4e-3
+"""Relative uncertainty of the ball's velocities by the sensor's linearity and the law of the contact; over a flight it
+looks like a deceleration."""
 
 SWAPPED = 4e-3
 """How much of the forced response a sensor's linearity may swap for jumps that repeat, relative to it."""
@@ -118,9 +119,12 @@ def fit_momentum(
     """
     value = {"mu": 0.01, "b": b.value, "friction": friction.value, "tilt": tilt.value, "touch": touch.value}
     value |= {"skew": 0.0, "bow": 0.0, "swap": 0.0, "turn": 0.0}
+    # What momentum sees of friction is that and such a deceleration.
+    seems = _U_VELOCITY * 2 * b.value / float(np.median(np.diff(jumps.t))) ** 2
+    seen = combined(friction.value, friction.u, seems)
     known = {
         "b": b,
-        "friction": friction,
+        "friction": seen,
         "tilt": tilt,
         "touch": touch,
         "skew": Uncertain(0.0, _SKEW),
@@ -172,7 +176,11 @@ def fit_momentum(
             break
     base = residual(jumps, value) / u
     found = {name: Uncertain(value[name], float(np.sqrt(covariance[i, i]))) for i, name in enumerate(_NAMES)}
-    rubs = combined(found["friction"].value, found["friction"].u, min(friction.u, _U_FRICTION))
+    share = (friction.u / seen.u) ** 2
+    rubs = combined(
+        friction.value + share * (value["friction"] - friction.value),
+        friction.u * float(np.sqrt(1 - share)), share * found["friction"].u,
+    )  # fmt: skip
     return MomentumFit(
         found["mu"], found["b"], rubs, found["tilt"], found["touch"], (value["swap"], value["turn"]), covariance,
         misfit=base, u=u, good=good,
