@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from scipy.integrate import solve_ivp
 
 from vines.errors import RigError
 from vines.rig import Recording, RingDown, RunInfo, Sampled, Uncertain, match_ring_downs, ring_down
@@ -42,6 +43,62 @@ def test_stated_uncertainties_are_those_of_the_noise():
 def test_a_sensor_that_is_not_quite_linear_does_not_move_the_damping():
     found = ring_down(recorded(1e-6, bent=2e-3))
     assert found.lam.value == pytest.approx(LAM, rel=2e-4)
+
+
+def two_masses(role, table=60.0, swing=1.5):
+    """Return the free decay of an oscillator on a table that hangs at `swing` Hz, by eigenvectors, as two channels."""
+    M, k, c = 3.807, 3.807 * OMEGA0**2, 3.807 * LAM * OMEGA0
+    kb, cb = table * (2 * np.pi * swing) ** 2, 0.1 * table * 2 * np.pi * swing
+    matrix = np.array([
+        [0, 1, 0, 0], [-k / M, -c / M, k / M, c / M],
+        [0, 0, 0, 1], [k / table, c / table, -(k + kb) / table, -(c + cb) / table],
+    ])  # fmt: skip
+    s, v = np.linalg.eig(matrix)
+    size = np.linalg.solve(v, np.array([0.01, 0, 0, 0], complex))
+    t = (np.arange(round(SECONDS * RATE)) + 0.5) / RATE
+    order = 2 if role == "acc" else 0
+    rng = np.random.default_rng(3)
+    waves = np.exp(np.outer(t, s)) * (size * s**order)
+    both = {
+        name: Sampled(name, f"{name}_{role}", RATE, t[0], (waves @ v[place]).real + noise * rng.normal(size=len(t)),
+                      np.ones(len(t), bool), 1e-3, 1e-6)
+        for name, place, noise in (("lo", 0, 1e-6), ("base", 2, 1e-7))
+    }  # fmt: skip
+    return Recording(info(), both, "none")
+
+
+@pytest.mark.parametrize("role", ["disp", "acc"])
+def test_a_table_that_moves_is_allowed_for(role):
+    found = ring_down(two_masses(role))
+    assert found.base == pytest.approx(3.807 / 60, rel=0.1)
+    assert abs(found.omega0.value / OMEGA0 - 1) < 1e-5
+    assert found.lam.value == pytest.approx(LAM, rel=1e-3)
+    # Without its channel the frequency is that of both masses.
+    blind = ring_down(Recording(info(), {"lo": two_masses(role).channels["lo"]}, "none"))
+    assert blind.omega0.value / OMEGA0 - 1 == pytest.approx(0.5 * 3.807 / 60, rel=0.1)
+
+
+@pytest.mark.parametrize("share", [0.07, -0.05, 0.004])
+def test_a_spring_that_is_not_linear_is_seen(share):
+    k3 = share / 0.009**2
+
+    def rates(_, y):
+        return y[1], -(OMEGA0**2) * y[0] * (1 + k3 * y[0] ** 2) - LAM * OMEGA0 * y[1]
+
+    t = (np.arange(round(SECONDS * RATE)) + 0.5) / RATE
+    x = solve_ivp(rates, (0, t[-1]), (0.012, 0), "DOP853", t_eval=t, rtol=1e-8, atol=1e-11).y[0]
+    x += 1e-6 * np.random.default_rng(1).normal(size=len(t))
+    found = ring_down(
+        Recording(info(), {"one": Sampled("one", "lo_disp", RATE, t[0], x, np.ones(len(t), bool))}, "none")
+    )
+    assert found.stiffening.value == pytest.approx(3 / 8 * k3, rel=0.02)
+    assert abs(found.omega0.value - OMEGA0) < 3 * max(found.omega0.u, 1e-5 * OMEGA0)
+
+
+def test_a_linear_spring_is_none_of_these():
+    found = ring_down(recorded(2e-6))
+    assert abs(found.stiffening.value) < 4 * found.stiffening.u
+    assert found.stiffening.u * 0.009**2 < 1e-4
 
 
 @pytest.mark.parametrize(

@@ -11,18 +11,22 @@ import numpy.typing as npt
 from vines.rig.ball._ball import Cavity, Course, ball_motion
 from vines.rig.fit import Jumps
 from vines.rig.recording import Uncertain
-from vines.rig.uncertainty import robust_deviation
+from vines.rig.uncertainty import combined, robust_deviation
 
 __all__ = ["SWAPPED", "MomentumFit", "fit_momentum"]
 
 Floats = npt.NDArray[np.float64]
 
-_NAMES = ("mu", "b", "tilt", "touch", "skew", "bow", "swap", "turn")
+_NAMES = ("mu", "b", "friction", "tilt", "touch", "skew", "bow", "swap", "turn")
 _FAR = 5.0
 
 _SKEW = 2e-3
 """How much the gain of the oscillator's sensor may differ along its motion: slope and curvature, of half the range."""
 
+
+_U_VELOCITY = 4e-3
+"""Relative uncertainty of the ball's velocities by the sensor's linearity and the law of the contact; over a flight it
+looks like a deceleration."""
 
 SWAPPED = 4e-3
 """How much of the forced response a sensor's linearity may swap for jumps that repeat, relative to it."""
@@ -38,8 +42,8 @@ class MomentumFit:
         [1], [m], [m/s^2], [m/s^2], [s].
     swapped : tuple of float
         Share of the forced response that was swapped for jumps, real and imaginary part.
-    covariance : ndarray, shape (8, 8)
-        Of mu, b, tilt, touch, the sensor's slope and curvature, and `swapped`.
+    covariance : ndarray, shape (9, 9)
+        Of mu, b, friction, tilt, touch, the sensor's slope and curvature, and `swapped`.
     misfit, u : ndarray, shape (K - 2,)
         (dv1 + mu dv2)/u at each impact that has two flights, and u [m/s]; large where an impact near it is missed or
         false.
@@ -98,8 +102,8 @@ def fit_momentum(
     touch : Uncertain
         Centroid of the force of a contact after the touch [s].
     friction, tilt : Uncertain
-        Of the ball [m/s^2]. Momentum hardly sees friction, which slows the ball before one impact as after the one
-        before, so that it is taken as given.
+        Of the ball [m/s^2]. Momentum hardly sees friction where flights are equally long: it slows the ball before one
+        impact as after the one before.
     usable : ndarray of bool, shape (K - 2,), optional
         Impacts to use at most.
     swap : Jumps, optional
@@ -115,7 +119,17 @@ def fit_momentum(
     """
     value = {"mu": 0.01, "b": b.value, "friction": friction.value, "tilt": tilt.value, "touch": touch.value}
     value |= {"skew": 0.0, "bow": 0.0, "swap": 0.0, "turn": 0.0}
-    known = {"b": b, "tilt": tilt, "touch": touch, "skew": Uncertain(0.0, _SKEW), "bow": Uncertain(0.0, _SKEW)}
+    # What momentum sees of friction is that and such a deceleration.
+    seems = _U_VELOCITY * 2 * b.value / float(np.median(np.diff(jumps.t))) ** 2
+    seen = combined(friction.value, friction.u, seems)
+    known = {
+        "b": b,
+        "friction": seen,
+        "tilt": tilt,
+        "touch": touch,
+        "skew": Uncertain(0.0, _SKEW),
+        "bow": Uncertain(0.0, _SKEW),
+    }
     known |= {name: Uncertain(0.0, SWAPPED) for name in ("swap", "turn")}
 
     def residual(of: Jumps, at: dict[str, float]) -> Floats:
@@ -132,7 +146,7 @@ def fit_momentum(
         value["mu"] = guess if np.isfinite(guess) and guess != 0 else 0.01
     else:
         value["mu"] = mu.value
-    step = {"mu": 1e-4 * value["mu"], "b": 1e-4 * b.value, "tilt": 1e-3, "touch": 1e-6}
+    step = {"mu": 1e-4 * value["mu"], "b": 1e-4 * b.value, "friction": 1e-2, "tilt": 1e-3, "touch": 1e-6}
     step |= dict.fromkeys(("skew", "bow", "swap", "turn"), 1e-4)
     good = usable.copy()
     covariance = np.eye(len(_NAMES))
@@ -162,8 +176,13 @@ def fit_momentum(
             break
     base = residual(jumps, value) / u
     found = {name: Uncertain(value[name], float(np.sqrt(covariance[i, i]))) for i, name in enumerate(_NAMES)}
+    share = (friction.u / seen.u) ** 2
+    rubs = combined(
+        friction.value + share * (value["friction"] - friction.value),
+        friction.u * float(np.sqrt(1 - share)), share * found["friction"].u,
+    )  # fmt: skip
     return MomentumFit(
-        found["mu"], found["b"], friction, found["tilt"], found["touch"], (value["swap"], value["turn"]), covariance,
+        found["mu"], found["b"], rubs, found["tilt"], found["touch"], (value["swap"], value["turn"]), covariance,
         misfit=base, u=u, good=good,
     )  # fmt: skip
 

@@ -21,8 +21,9 @@ __all__ = ["LINEARITY", "Rebounds", "mean_restitution", "measure_rebounds", "sta
 
 Floats = npt.NDArray[np.float64]
 
-FRICTION = Uncertain(0.06, 0.055)
-"""Deceleration of the ball where the laboratory did not measure it [m/s^2]: .001 to .02 g, evenly in the logarithm."""
+FRICTION = Uncertain(0.046, 0.06)
+"""Deceleration of the ball where the laboratory did not measure it [m/s^2]: .0003 to .02 g, evenly in the logarithm;
+u is more than the standard deviation of that, .05, since it is skew."""
 
 TILT = Uncertain(0.0, 0.02)
 """Acceleration along the cavity: a tenth of a degree [m/s^2]."""
@@ -45,6 +46,9 @@ _DIM = 0.2
 
 _OUTLIES = 6.0
 
+_UNUSUAL = 2.5
+"""Standard deviations by which friction must be more than usual for the run alone to tell it."""
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Rebounds:
@@ -54,6 +58,8 @@ class Rebounds:
     ----------
     alone, joint : MomentumFit
         With mu by momentum only, and with mu as weighed.
+    rubbing : Uncertain
+        Friction by momentum and the forced response, whatever was known of it [m/s^2].
     course : Course
         How the ball slides and how deep it goes into the walls.
     jumps : Jumps
@@ -80,6 +86,7 @@ class Rebounds:
 
     alone: MomentumFit
     joint: MomentumFit
+    rubbing: Uncertain
     course: Course
     jumps: Jumps
     motion: BallMotion
@@ -117,7 +124,9 @@ class Rebounds:
         return combined(b, b * share * u_seen, b * left), combined(gain, (1 - share) * u_seen, left)
 
 
-def measure_rebounds(recording: Recording, response: Response, side: Floats) -> Rebounds:
+def measure_rebounds(
+    recording: Recording, response: Response, side: Floats, friction: Uncertain, rubbing: Uncertain
+) -> Rebounds:
     """Find the ball's motion.
 
     Parameters
@@ -128,6 +137,8 @@ def measure_rebounds(recording: Recording, response: Response, side: Floats) -> 
         The oscillator's motion.
     side : ndarray, shape (K,)
         +1 L, -1 R.
+    friction, rubbing : Uncertain
+        Of the ball, by what was known of it and the forced response, and by that alone [m/s^2].
 
     Raises
     ------
@@ -135,7 +146,7 @@ def measure_rebounds(recording: Recording, response: Response, side: Floats) -> 
         If fewer than four impacts give a restitution.
     """
     run, fit = recording.run, response.fit
-    friction, tilt = stated(run.more.get("friction"), FRICTION), stated(run.more.get("tilt"), TILT)
+    tilt = stated(run.more.get("tilt"), TILT)
     time = np.diff(fit.jumps.t)
     long = (time[:-1] > _SHORT) & (time[1:] > _SHORT)
     mu = run.m.value / run.M.value
@@ -146,13 +157,17 @@ def measure_rebounds(recording: Recording, response: Response, side: Floats) -> 
     u_gain = response.channel.u_gain
     b = combined(run.b.value, max(run.b.u, 1e-6), run.b.value * u_gain)
     course = _course(response, side, b.value)
-    alone, joint = (
-        fit_momentum(
+
+    def solved(mass: Uncertain | None, rubs: Uncertain) -> MomentumFit:
+        return fit_momentum(
             fit.jumps, fit.draws, side, course,
-            mu=given, b=b, touch=_CENTROID, friction=friction, tilt=tilt, usable=long, swap=fit.swap,
-        )
-        for given in (None, known)
-    )  # fmt: skip
+            mu=mass, b=b, touch=_CENTROID, friction=rubs, tilt=tilt, usable=long, swap=fit.swap,
+        )  # fmt: skip
+
+    free = solved(known, rubbing)
+    if "friction" not in run.more and _contradicted(FRICTION, free.friction):
+        friction = rubbing
+    alone, joint = solved(None, friction), solved(known, friction)
     jumps = fit.jumps.moved(fit.swap, joint.swapped)
     motion = ball_motion(jumps, side, joint.cavity, course)
     noise = ball_motion(fit.draws.moved(fit.swap, joint.swapped), side, joint.cavity, course)
@@ -175,8 +190,14 @@ def measure_rebounds(recording: Recording, response: Response, side: Floats) -> 
     counted = counted | measured
     gauge = combined(b.value + speed * _CENTROID.value, max(run.b.u, 1e-6), speed * _CENTROID.u)
     return Rebounds(
-        alone, joint, course, jumps, motion, u_r, long, contradicts, counted, measured, law, weighed, gauge, u_gain
+        alone, joint, free.friction, course, jumps, motion, u_r, long, contradicts, counted, measured, law, weighed,
+        gauge, u_gain,
     )  # fmt: skip
+
+
+def _contradicted(usual: Uncertain, seen: Uncertain) -> bool:
+    """Say whether a run denies what is usual: a ball that rolls, for one, is slowed far more than one that slides."""
+    return seen.value - usual.value > _UNUSUAL * float(np.hypot(usual.u, seen.u))
 
 
 def _course(response: Response, side: Floats, b: float) -> Course:

@@ -9,7 +9,7 @@ from vines.rig.fit._motion import Motion, forced_response, free_part, root
 from vines.rig.fit._normal_equations import TAIL
 from vines.rig.fit._signal import Forced
 from vines.rig.fit._sine_fit import SineFit, clumping, sine_fit
-from vines.rig.fit._slide import Push, slide
+from vines.rig.fit._slide import Push, push, slide
 from vines.rig.fit._train import U_PULSE, Train
 
 __all__ = [
@@ -32,6 +32,7 @@ __all__ = [
     "forced_response",
     "free_part",
     "noise_of",
+    "push",
     "root",
     "sine_fit",
     "sinhc",

@@ -11,7 +11,7 @@ from vines.errors import RigError
 from vines.rig.fit import SineFit, bins_of, sine_fit
 from vines.rig.recording import Recording, Sampled, Uncertain
 
-__all__ = ["Base", "Tuning", "measure_base", "tune"]
+__all__ = ["Base", "Rubbed", "Tuning", "measure_base", "tune"]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -61,6 +61,12 @@ class Tuning:
         Distance of `ratio` from 1 in standard deviations (root of chi^2 of two degrees of freedom).
     by_omega0 : complex
         Change of `ratio` by a relative change of the omega0 that it is computed with.
+    friction : Uncertain
+        Of the ball [m/s^2], by what was known of it and the response.
+    rubbing : Uncertain
+        The same by the response alone.
+    unexplained : float
+        `misfit` where friction may be whatever it likes.
     """
 
     omega0: Uncertain
@@ -70,6 +76,9 @@ class Tuning:
     ratio: complex
     misfit: float
     by_omega0: complex
+    friction: Uncertain
+    rubbing: Uncertain
+    unexplained: float
 
 
 def measure_base(recording: Recording, *, harmonics: int = 3) -> Base:
@@ -117,18 +126,42 @@ def _displacement(channel: Sampled, fit: SineFit) -> npt.NDArray[np.complex128]:
     return fit.harmonics / scale
 
 
+@dataclass(frozen=True, slots=True)
+class Rubbed:
+    """What is known of the ball's friction, and what it does to the base motion that the response asks for.
+
+    Attributes
+    ----------
+    known : Uncertain
+        Before [m/s^2].
+    assumed : float
+        With which the response was fitted [m/s^2].
+    slope : complex
+        Derivative of the base motion by the friction [m/(m/s^2)].
+    """
+
+    known: Uncertain
+    assumed: float
+    slope: complex
+
+
+_ANY = 3.0
+"""Friction where nothing is known of it [m/s^2]."""
+
+
 def tune(
     base: Base,
     omega0: Uncertain,
     lam: Uncertain,
     response: npt.NDArray[np.complex128],
     slopes: tuple[complex, complex],
+    rubbed: Rubbed,
     *,
     u_gain: float,
     u_time: float,
     u_noise: float,
 ) -> Tuning:
-    """Correct omega0, lam, E and the alignment by the base motion that the response in flight asks for.
+    """Correct omega0, lam, E, the alignment and the ball's friction by the base motion that the response asks for.
 
     Parameters
     ----------
@@ -139,6 +172,8 @@ def tune(
         Base motion e_1 that the forced response in flight asks for [m]: its value first, then draws of it.
     slopes : tuple of complex
         Its derivatives by omega0/omega0 and lam/lam [m].
+    rubbed : Rubbed
+        The ball's friction drives the oscillator with mu times its deceleration, nearly a square wave.
     u_gain, u_time, u_noise : float
         Of the oscillator's channel: relative calibration, alignment [s]; and whatever else acts on the oscillator, as a
         fraction of E.
@@ -146,7 +181,7 @@ def tune(
     Notes
     -----
     In flight omega0^2 (x1 - e) = -x1'' - …, so a wrong omega0 asks for a wrong base motion, and near resonance, where
-    |x1| is forty times E, very much so. Two equations (real and imaginary part) for four numbers, each known before
+    |x1| is forty times E, very much so. Two equations (real and imaginary part) for five numbers, each known before
     with an uncertainty: a Kalman step.
     """
     measured = base.e[0]
@@ -154,29 +189,37 @@ def tune(
     noise = response[1:] / measured
     covariance = np.cov(np.stack([noise.real, noise.imag])) if len(noise) > 2 else np.zeros((2, 2))
     covariance = covariance + np.eye(2) * u_noise**2
-    by_omega0, by_lam = slopes[0] / measured, slopes[1] / measured
-    # ratio + by_omega0 d_omega0 + by_lam d_lam = (1 + d_gain)(1 + i d_phase)
-    rows = np.array([[-by_omega0.real, -by_lam.real, 1.0, 0.0], [-by_omega0.imag, -by_lam.imag, 0.0, 1.0]])
+    by = [slopes[0] / measured, slopes[1] / measured, rubbed.slope / measured]
+    # ratio + by_omega0 d_omega0 + by_lam d_lam + by_friction d_friction = (1 + d_gain)(1 + i d_phase)
+    rows = np.array([[-each.real for each in by] + [1.0, 0.0], [-each.imag for each in by] + [0.0, 1.0]])
     relative_gain = float(np.hypot(base.E.u / base.E.value, u_gain))
     u_phase = float(np.hypot(base.phase.u, base.fit.omega * u_time))
-    prior = np.diag(np.square([omega0.u / omega0.value, lam.u / lam.value, relative_gain, u_phase]))
-    seen = np.array([ratio.real - 1, ratio.imag])
-    spread = rows @ prior @ rows.T + covariance
-    gain = prior @ rows.T @ np.linalg.inv(spread)
-    step = gain @ seen
-    after = (np.eye(4) - gain @ rows) @ prior
-    misfit = float(np.sqrt(seen @ np.linalg.solve(spread, seen)))
-    u = np.sqrt(np.maximum(np.diag(after), 0.0))
+
+    def solved(friction: Uncertain) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64], float]:
+        mean = np.array([0.0, 0.0, friction.value - rubbed.assumed, 0.0, 0.0])
+        prior = np.diag(np.square([omega0.u / omega0.value, lam.u / lam.value, friction.u, relative_gain, u_phase]))
+        seen = np.array([ratio.real - 1, ratio.imag]) - rows @ mean
+        spread = rows @ prior @ rows.T + covariance
+        gain = prior @ rows.T @ np.linalg.inv(spread)
+        u = np.sqrt(np.maximum(np.diag((np.eye(5) - gain @ rows) @ prior), 0.0))
+        moved: npt.NDArray[np.float64] = np.asarray(mean + gain @ seen, np.float64)
+        return moved, np.asarray(u, np.float64), float(np.sqrt(seen @ np.linalg.solve(spread, seen)))
+
+    step, u, misfit = solved(rubbed.known)
+    free, u_free, unexplained = solved(Uncertain(0.0, _ANY))
     # Of the correction of the gain, the base's share; the oscillator's own calibration keeps the rest.
     share = (base.E.u / base.E.value) ** 2 / relative_gain**2 if relative_gain > 0 else 1.0
-    E = base.E.value * (1 + share * float(step[2]))
-    u_E = base.E.value * float(np.sqrt(share**2 * u[2] ** 2 + share * (1 - share) * relative_gain**2))
+    E = base.E.value * (1 + share * float(step[3]))
+    u_E = base.E.value * float(np.sqrt(share**2 * u[3] ** 2 + share * (1 - share) * relative_gain**2))
     return Tuning(
         Uncertain(omega0.value * (1 + float(step[0])), omega0.value * float(u[0])),
         Uncertain(lam.value * (1 + float(step[1])), lam.value * float(u[1])),
         Uncertain(E, u_E),
-        float(step[3]),
+        float(step[4]),
         ratio,
         misfit,
         by_omega0,
+        Uncertain(rubbed.assumed + float(step[2]), float(u[2])),
+        Uncertain(rubbed.assumed + float(free[2]), float(u_free[2])),
+        unexplained,
     )

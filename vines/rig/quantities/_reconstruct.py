@@ -22,12 +22,13 @@ from vines.rig.ball import (
     stated,
     uncalibrated,
 )
-from vines.rig.fit import Forced, JumpModel, Train, forced_response, root
+from vines.rig.fit import Forced, JumpModel, Push, Train, forced_response, push, root, slide
 from vines.rig.impacts import Mode, Response, measure_response, undisturbed
 from vines.rig.quantities._cycle import Track, slots
 from vines.rig.quantities._findings import judge
-from vines.rig.quantities._forcing import Base, Tuning, measure_base, tune
+from vines.rig.quantities._forcing import Base, Rubbed, Tuning, measure_base, tune
 from vines.rig.quantities._hum import Hum, without_hum
+from vines.rig.quantities._limits import limits, stiffened
 from vines.rig.quantities._pattern import Pattern, Periods, cut_into_periods, find_pattern
 from vines.rig.quantities._reconstruction import IMPACT, Finding, Reconstruction
 from vines.rig.quantities._ring_down import RingDown, natural
@@ -121,13 +122,15 @@ def _reconstructed(
             f"run {run.run_id!r} shows {len(response.fit.jumps.t)} impacts, allowed are 6 and more: did the ball move?"
         )
     side = -np.sign(response.fit.jumps.dv)
-    tuning = _tuned(base, omega0, lam, response, forced, mu, friction)
+    bend = stiffened(ringdowns, response)
+    omega0 = combined(omega0.value, omega0.u, omega0.value * bend.value, omega0.value * bend.u)
+    tuning = _tuned(base, omega0, lam, response, forced, mu, run.b.value, friction)
     span = (response.bins.t[0] - response.late, response.bins.t[-1] - response.late)
     phase = omega * (response.fit.jumps.t - response.late) + base.phase.value + tuning.phase
     bounds = tuple(omega * t + base.phase.value + tuning.phase for t in span)
     periods = cut_into_periods(phase, side, (bounds[0], bounds[1]))
     pattern = find_pattern(periods, phase)
-    ball = measure_rebounds(recording, response, side)
+    ball = measure_rebounds(recording, response, side, tuning.friction, tuning.rubbing)
     made = _assembled(recording, base, response, side, tuning, phase, periods, pattern, ball)
     model = JumpModel(response.bins, s, omega, response.order, forced)
     course = base_course(base)
@@ -135,6 +138,7 @@ def _reconstructed(
     findings = (
         *_taken_off(recording, hum, modes, int(np.count_nonzero(made.impacts["bridged"]))),
         *trend_findings(recording, course, trends),
+        *limits(recording, base, response, tuning, ball, ringdowns),
         *judge(recording, base, response, tuning, ball),
     )
     return replace(made, quantities={**made.quantities, **trends}, findings=_named(findings))
@@ -201,19 +205,20 @@ def _tuned(
     response: Response,
     forced: Forced,
     mu: float,
+    b: float,
     friction: Uncertain,
 ) -> Tuning:
-    """Lay the forced response beside the base; its slopes by omega0 and lam are differences of two more fits."""
+    """Lay the forced response beside the base; its slopes by omega0, lam and friction are differences of more fits."""
     omega, fit = base.fit.omega, response.fit
     s = root(omega0.value, lam.value)
     turn = np.exp(1j * omega * response.late)
 
     train = Train.alike(fit.motion.starts[1:], fit.jumps.dv, 2e-5)
 
-    def again(omega0_: float, lam_: float) -> complex:
+    def again(omega0_: float, lam_: float, pushed: Push | None = response.pushed) -> complex:
         moved = root(omega0_, lam_)
         model = JumpModel(response.bins, moved, omega, response.order, forced)
-        other = model.fit(train, pushed=response.pushed, fair=fit.fair, draws=0)
+        other = model.fit(train, pushed=pushed, fair=fit.fair, draws=0)
         return complex(_asked(other.motion.c[:1], moved, omega)[0] * turn)
 
     first = np.concatenate([fit.motion.c[:1], fit.first])
@@ -222,11 +227,14 @@ def _tuned(
     here = again(omega0.value, lam.value)
     by_omega0 = (again(omega0.value * (1 + step), lam.value) - here) / step
     by_lam = (again(omega0.value, lam.value * 1.02) - here) / 0.02
-    # The ball's friction drives the oscillator with mu times its deceleration, a square wave; the unknown part.
-    unknown = 4 / np.pi * mu * friction.u / abs(s) ** 2 / base.E.value
+    assumed = 0.0 if response.pushed is None else friction.value
+    sliding = slide(fit.motion, fit.jumps.x + np.sign(fit.jumps.dv) * b)
+    size = mu * (assumed + 1.0) / abs(s) ** 2
+    more = push(sliding, fit.motion.starts[1:], response.bins.t, s, size, response.order)
+    by_friction = again(omega0.value, lam.value, more) - here
     return tune(
-        base, omega0, lam, asked, (by_omega0, by_lam),
-        u_gain=response.channel.u_gain, u_time=response.u_late, u_noise=float(np.hypot(unknown, SWAPPED)),
+        base, omega0, lam, asked, (by_omega0, by_lam), Rubbed(friction, assumed, by_friction),
+        u_gain=response.channel.u_gain, u_time=response.u_late, u_noise=SWAPPED,
     )  # fmt: skip
 
 

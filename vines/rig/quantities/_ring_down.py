@@ -7,8 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from vines.errors import RigError
-from vines.rig.fit import bins_of, clumping, sinhc
-from vines.rig.recording import Recording, Uncertain
+from vines.rig.fit import Bins, bins_of
+from vines.rig.quantities._decay import Decay, again, fit_decay
+from vines.rig.recording import Recording, Sampled, Uncertain
 
 __all__ = ["STIFFNESS_DRIFT", "U_STIFFNESS_DRIFT", "RingDown", "natural", "ring_down"]
 
@@ -24,8 +25,19 @@ _U_TEMPERATURE = 0.1
 _U_DAMPING = 1e-4
 """Relative standard uncertainty of lam at least: no damper is linear beyond that."""
 
-_ROUNDS = 60
-_DEGREE = 7
+_STILL = 1e-5
+"""Motion of the base relative to that of the oscillator that changes nothing."""
+
+_FAR = 4.0
+"""Standard deviations at which the base is believed to move."""
+
+_SWINGS = 0.7
+"""Most that a decaying sine leaves of the rest of the base's motion, where it is one."""
+
+_FEW = 100
+
+
+_LINEAR = Uncertain(0.0, 0.0)
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,6 +56,11 @@ class RingDown:
         Mean of that before and after [deg C]; nan if it was not read.
     residual : float
         Root mean square of what the decaying sine leaves, relative to its first amplitude.
+    stiffening : Uncertain
+        Relative change of the frequency by the square of the amplitude [1/m^2]: 3/8 k3/k of a cubic spring.
+    base : float
+        Motion of the base relative to that of the oscillator, where it was measured; omega0 and lam are those on a base
+        that it does not move.
     """
 
     run_id: str
@@ -51,6 +68,8 @@ class RingDown:
     lam: Uncertain
     temperature: float
     residual: float
+    stiffening: Uncertain = _LINEAR
+    base: float = 0.0
 
 
 def ring_down(recording: Recording) -> RingDown:
@@ -59,7 +78,7 @@ def ring_down(recording: Recording) -> RingDown:
     Parameters
     ----------
     recording : Recording
-        Of protocol ``ringdown``, ball out, base at rest.
+        Of protocol ``ringdown``, ball out.
 
     Returns
     -------
@@ -75,8 +94,14 @@ def ring_down(recording: Recording) -> RingDown:
     Least squares of Re[z exp(s t)] and an offset, with z and the offset eliminated; s = -lam omega0/2 + i gamma. A
     displacement may also hold polynomials of degree 2 to 7 of the motion: a sensor that is not quite linear shows a
     large motion with another gain than a small one, hence a wrong decay, but it shows harmonics, too. omega0 found from
-    the early half and the late half must agree: their difference (a stiffness that depends on the amplitude) is added
-    to the uncertainty.
+    the early half and the late half must agree: their difference is added to the uncertainty.
+
+    A frequency that depends on the amplitude, as a + b |z|^2, is a spring's that is not linear: omega0 and lam are then
+    those of small amplitudes, and `RingDown.stiffening` says the rest.
+
+    A table that is free, or held by a shaker, moves with the oscillator. Where that is measured, e = eta x1 of the free
+    oscillation gives s^2 + (1 - eta) (lam omega0 s + omega0^2) = 0, from which follow omega0 and lam of an oscillator
+    on a base that moves as it is told; what else the base does (a table on its suspension) may be in x1, too.
     """
     run = recording.run
     if run.ball:
@@ -97,18 +122,96 @@ def ring_down(recording: Recording) -> RingDown:
     if last - first < 10:
         raise RigError(f"run {run.run_id!r} shows no free decay of at least ten periods")
     t, y = t[span], y[span]
-    s, covariance, residual, size, bent = _decay(t, y, bins.width, complex(-0.3, 2 * np.pi * f))
-    if channel.role == "lo_disp":
-        s, covariance, residual, size, bent = _decay(t, y, bins.width, s, size)
+    span = Bins(t, y, bins.width)
+    found = fit_decay(span, 2 * np.pi * f, sensor=channel.role == "lo_disp")
+    order = _ORDERS[channel.role]
+    carried = _carried(recording, found, order, channel)
+    if carried.moves:
+        found = fit_decay(span, found.s.imag, sensor=channel.role == "lo_disp", more=carried.swing(t))
+        carried = _carried(recording, found, order, channel, carried.other)
+    eta, u_eta = (carried.eta if carried.moves else 0.0), carried.u
     half = len(t) // 2
-    early = _decay(t[:half], y[:half] - bent[:half], bins.width, s)[0]
-    late = _decay(t[half:], y[half:] - bent[half:], bins.width, s)[0]
-    omega0, lam = _natural(s)
+    early, late = (
+        again(Bins(t[part], y[part] - found.bent[part], bins.width), found)
+        for part in (slice(None, half), slice(half, None))
+    )
+    omega0, lam = _natural(found.s, eta)
     # d omega0 = (alpha d alpha + gamma d gamma)/omega0, lam = -2 alpha/omega0
-    u_omega0 = float(np.hypot(np.sqrt(covariance[1, 1]), 0.5 * abs(_natural(early)[0] - _natural(late)[0])))
-    u_lam = float(np.hypot(2 * np.sqrt(covariance[0, 0]) / omega0, 0.25 * abs(_natural(early)[1] - _natural(late)[1])))
+    u_omega0 = float(np.hypot(found.u[1], 0.5 * abs(_natural(early)[0] - _natural(late)[0])))
+    u_lam = float(np.hypot(2 * found.u[0] / omega0, 0.25 * abs(_natural(early)[1] - _natural(late)[1])))
+    # A share of the base's motion moves omega0 by half of it, lam by as much of it as is a quarter of a turn late.
+    u_omega0, u_lam = float(np.hypot(u_omega0, 0.5 * u_eta[0] * omega0)), float(np.hypot(u_lam, u_eta[1]))
     temperature = float(np.mean(run.temperature))
-    return RingDown(run.run_id, Uncertain(omega0, u_omega0), Uncertain(lam, u_lam), temperature, residual / size)
+    metres = abs(found.s) ** order
+    stiffening = Uncertain(found.turn / omega0 * metres**2, found.u_turn / omega0 * metres**2)
+    return RingDown(
+        run.run_id, Uncertain(omega0, u_omega0), Uncertain(lam, u_lam), temperature, found.residual / found.size,
+        stiffening, abs(eta),
+    )  # fmt: skip
+
+
+_ORDERS = {
+    "lo_disp": 0, "lo_vel": 1, "lo_acc": 2, "base_disp": 0, "base_vel": 1, "base_acc": 2,
+}  # fmt: skip
+"""Which derivative of the motion a channel shows."""
+
+
+@dataclass(frozen=True, slots=True)
+class _Carried:
+    """How the base goes with the oscillator, and what exponent its own swing has."""
+
+    eta: complex = 0.0
+    u: tuple[float, float] = (0.0, 0.0)
+    other: complex | None = None
+
+    @property
+    def moves(self) -> bool:
+        return abs(self.eta) > max(_STILL, _FAR * max(self.u))
+
+    def swing(self, t: np.ndarray) -> np.ndarray | None:
+        if self.other is None:
+            return None
+        wave = np.exp(self.other * (t - t[0]))
+        return np.stack([wave.real, wave.imag])
+
+
+def _carried(recording: Recording, found: Decay, order: int, own: Sampled, other: complex | None = None) -> _Carried:
+    """Return the base's part of the free oscillation, and the exponent of what else it swings by."""
+    channel = recording.role("base_disp", "base_vel", "base_acc")
+    if channel is None:
+        return _Carried()
+    bins = bins_of(channel)
+    inside = (bins.t >= found.t[0]) & (bins.t <= found.t[-1])
+    if np.count_nonzero(inside) < _FEW:
+        return _Carried()
+    part = Bins(bins.t[inside], bins.mean[inside] - bins.mean[inside].mean(), bins.width)
+    to_x1 = found.s ** (order - _ORDERS[channel.role]) / found.z
+    seen, u, left = found.part_of(part, _Carried(other=other).swing(part.t))
+    if other is None and abs(seen * to_x1) > _STILL:
+        other = _swing(Bins(part.t, left, part.width))
+        seen, u, _ = found.part_of(part, _Carried(other=other).swing(part.t))
+    u *= abs(to_x1)
+    eta = complex(seen * to_x1)
+    high_pass = np.hypot(channel.u_high_pass, own.u_high_pass) * 2 * np.pi / found.s.imag
+    turned = float(np.hypot.reduce([found.s.imag * channel.u_time, found.s.imag * own.u_time, high_pass]))
+    along, across = float(np.hypot(channel.u_gain, own.u_gain)), turned
+    return _Carried(
+        eta,
+        (
+            float(np.hypot.reduce([u, eta.real * along, eta.imag * across])),
+            float(np.hypot.reduce([u, eta.imag * along, eta.real * across])),
+        ),
+        other,
+    )
+
+
+def _swing(rest: Bins) -> complex | None:
+    """Return the exponent of a decaying sine in the rest of the base's motion, where there is one."""
+    try:
+        swing = fit_decay(rest, 2 * np.pi * _line(rest.t, rest.mean), bends=False)
+    except (RigError, np.linalg.LinAlgError):
+        return None
+    return swing.s if swing.residual < _SWINGS * float(np.std(rest.mean)) else None
 
 
 def natural(ringdowns: tuple[RingDown, ...], temperature: float) -> tuple[Uncertain, Uncertain]:
@@ -169,50 +272,14 @@ def natural(ringdowns: tuple[RingDown, ...], temperature: float) -> tuple[Uncert
     return Uncertain(mean, u_mean), Uncertain(lam_mean, u_lam_mean)
 
 
-def _natural(s: complex) -> tuple[float, float]:
-    omega0 = abs(s)
-    return omega0, -2 * s.real / omega0
+def _natural(s: complex, eta: complex = 0.0) -> tuple[float, float]:
+    """Return omega0 and lam of an oscillator whose free oscillation s the base follows by eta."""
+    pull = -s * s / (1 - eta)
+    damp = pull.imag / s.imag
+    omega0 = float(np.sqrt(pull.real - damp * s.real))
+    return omega0, damp / omega0
 
 
 def _line(t: np.ndarray, y: np.ndarray) -> float:
     spectrum = np.abs(np.fft.rfft(y * np.hanning(len(y))))
     return (int(np.argmax(spectrum[2:])) + 2) * (len(t) - 1) / ((t[-1] - t[0]) * len(t))
-
-
-def _decay(
-    t: np.ndarray, y: np.ndarray, width: float, s: complex, reach: float = 0.0
-) -> tuple[complex, np.ndarray, float, float, np.ndarray]:
-    """Return s, the covariance of (Re s, Im s), the residual, the amplitude at the start, and what the sensor added.
-
-    With a `reach` [m] the signal may hold polynomials of the motion over it.
-    """
-    tau = t - t[0]
-    bent = np.zeros_like(y)
-    terms = np.zeros((0, len(y)))
-    for _ in range(_ROUNDS):
-        e = sinhc(0.5 * s * width) * np.exp(s * tau)
-        columns = np.vstack([e.real, -e.imag, np.ones_like(tau), terms])
-        linear = np.linalg.solve(columns @ columns.T, columns @ y)
-        z = complex(linear[0], linear[1])
-        slope = tau * z * e
-        known = len(columns)
-        bent = linear[3:] @ terms
-        if reach:
-            terms = reach * np.polynomial.legendre.legvander((z * e).real / reach, _DEGREE).T[2:]
-        columns = np.vstack([columns, slope.real, -slope.imag])
-        normal = columns @ columns.T
-        left = y - linear @ columns[:known]
-        step = np.linalg.solve(normal, columns @ left)
-        # The first steps are held back: over a thousand radians the phase may turn once.
-        change = complex(step[-2], step[-1])
-        limit = 1.0 / tau[-1]
-        s += change if abs(change) < limit else change * limit / abs(change)
-        if abs(change) < 1e-11 * abs(s) and (known > 3 or not reach):
-            break
-    else:
-        raise RigError("the ring-down is no decaying sine: its fit does not come to rest")
-    if not s.real < 0:
-        raise RigError(f"the ring-down grows, by exp({s.real:.3g} t); record the free decay with the base at rest")
-    residual = float(np.sqrt(np.mean(left**2)))
-    covariance = np.linalg.inv(normal)[-2:, -2:] * residual**2 * clumping(left)
-    return s, covariance, residual, abs(z), bent

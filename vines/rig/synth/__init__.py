@@ -4,7 +4,9 @@ from vines.rig.synth._campaign import make_campaign
 from vines.rig.synth._contact import LEAST, MOST
 from vines.rig.synth._disturb import Burst, Disturbances, Hum, Ringing, disturbed
 from vines.rig.synth._make import RawRun, make_run, raw_run, read_raw, simulate_rig
+from vines.rig.synth._pattern import true_pattern
 from vines.rig.synth._settings import RigSettings, draw_settings
+from vines.rig.synth._write import write_raw
 
 __all__ = [
     "LEAST",
@@ -22,4 +24,6 @@ __all__ = [
     "raw_run",
     "read_raw",
     "simulate_rig",
+    "true_pattern",
+    "write_raw",
 ]
