@@ -218,7 +218,7 @@ def tune(
         float(step[4]),
         ratio,
         misfit,
-        by_omega0,
+        by[0],
         Uncertain(rubbed.assumed + float(step[2]), float(u[2])),
         Uncertain(rubbed.assumed + float(free[2]), float(u_free[2])),
         unexplained,
