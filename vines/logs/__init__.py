@@ -6,7 +6,7 @@ from vines.logs._read import Log, bytes_of_file, read
 from vines.logs._recover import Recovery, read_damaged, recover
 from vines.logs._rig import Sensor, write_rig
 from vines.logs._tail import Tail
-from vines.logs._thin import extremes
+from vines.logs._thin import Thinner, extremes
 from vines.logs._unpack import CHUNK_LIMIT
 from vines.logs._write import write_run
 
@@ -18,6 +18,7 @@ __all__ = [
     "Recovery",
     "Sensor",
     "Tail",
+    "Thinner",
     "bytes_of_file",
     "extremes",
     "read",

@@ -14,7 +14,7 @@ from vines.viewer._impacts import DIAL_BOUNDS, LANES
 from vines.viewer._scene import PHASE_BOUNDS, cavity_bounds
 from vines.viewer._style import CAVITY, PARAMETERS, PLANE
 
-__all__ = ["Shown", "blueprint", "cavity_view"]
+__all__ = ["Shown", "blueprint", "cavity_view", "following"]
 
 _WINDOW = 20
 """Forcing cycles up to which curves show a whole run; longer runs scroll with the time cursor."""
@@ -94,6 +94,21 @@ def blueprint(runs: Sequence[Shown], *, still: bool = False) -> rrb.Blueprint:
         body = rrb.Horizontal(*(_measured(run, still) if run.kind == "rig" else _column(run, still) for run in runs))
     parts = (body, panel, rrb.TopPanel(state="hidden")) if still else (body, panel)
     return rrb.Blueprint(*parts, collapse_panels=True)
+
+
+def following(run: Shown) -> rrb.Blueprint:
+    """Return the layout for a run that goes on: what does not need the whole of it, at the latest time."""
+    views = rrb.Vertical(
+        cavity_view(run),
+        _ends(run, False),
+        _gap(run, False),
+        _rate(run, False),
+        _lanes(run, False),
+        row_shares=[2.7, 2.3, 1.8, 1.8, 1.3],
+    )
+    said = rrb.Vertical(_energy(run, False), _about(run), _impacts(run), row_shares=[2.0, 1.6, 2.0])
+    panel = rrb.TimePanel(state="collapsed", timeline=SIM_TIME, play_state="following")
+    return rrb.Blueprint(rrb.Horizontal(views, said, column_shares=[4.6, 2.6]), panel, collapse_panels=True)
 
 
 def _alone(run: Shown, still: bool) -> rrb.Horizontal:

@@ -2,12 +2,14 @@
 
 from vines.rig.synth._campaign import make_campaign
 from vines.rig.synth._contact import LEAST, MOST
+from vines.rig.synth._live import LiveRig
 from vines.rig.synth._make import RawRun, make_run, raw_run, read_raw, simulate_rig
 from vines.rig.synth._settings import RigSettings, draw_settings
 
 __all__ = [
     "LEAST",
     "MOST",
+    "LiveRig",
     "RawRun",
     "RigSettings",
     "draw_settings",
