@@ -156,7 +156,7 @@ class _Run:
     def _begin(self, states: np.ndarray) -> None:
         Omega = self._tail.parameters.get("Omega")
         period = 2 * math.pi / (Omega or 1.0)
-        shown = Shown("/run", self._tail.name, 0.0, math.inf, period, _REACH)
+        shown = Shown("/run", self._tail.name, 0.0, math.inf, period, _REACH, following=True)
         self._rec = rec = self._show.recording(self._tail.name, following(shown))
         self._clock = Clock(float(states["t"][0]), float(states["phase"][0]), Omega)
         rows = "\n".join(f"| {key} | {value:.10g} |" for key, value in self._tail.parameters.items())

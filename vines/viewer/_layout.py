@@ -18,6 +18,8 @@ __all__ = ["Shown", "blueprint", "cavity_view", "following"]
 
 _WINDOW = 20
 """Forcing cycles up to which curves show a whole run; longer runs scroll with the time cursor."""
+_LATEST = 10
+"""Forcing cycles that curves of a run show that goes on."""
 _TRAIL = 0.25
 """Length of the trail in the phase plane, in forcing cycles."""
 _LEGEND = 0.4
@@ -51,6 +53,8 @@ class Shown:
         Of a rig, the curves that there are; of a run with several balls, what the track of each is called.
     longest : float
         Half the length of the longest cavity, b.
+    following : bool
+        Whether the run goes on: curves show the last cycles.
     """
 
     root: str
@@ -62,6 +66,7 @@ class Shown:
     kind: str = "run"
     parts: tuple[str, ...] = ()
     longest: float = 1.0
+    following: bool = False
 
     @property
     def several(self) -> bool:
@@ -214,7 +219,9 @@ def _series(
 ) -> rrb.TimeSeriesView:
     length = run.end - run.start
     boundary = rrb.TimeRangeBoundary
-    if run.kind != "rig" and length > _WINDOW * run.period:
+    if run.following:
+        start, end = boundary.cursor_relative(seconds=-_LATEST * run.period), boundary.cursor_relative()
+    elif run.kind != "rig" and length > _WINDOW * run.period:
         reach = _WINDOW * run.period
         start = boundary.cursor_relative(seconds=-0.6 * reach)
         end = boundary.cursor_relative(seconds=0.4 * reach)

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import rerun as rr
 import rerun.blueprint as rrb
+from rerun.blueprint.encodings import TimelineColumn
 
 from vines.errors import FileMissingError, ViewerError
 from vines.viewer._program import listening
@@ -27,8 +28,6 @@ RUN_TIME = "run_time"
 """Timeline of the seconds since the run began."""
 _WINDOW = 1.5
 """Seconds of a curve that are shown."""
-_HISTORY = 120.0
-"""Seconds of what is found that are shown."""
 _APPLICATION = "vines live"
 _PAUSE, _SETTLES = 0.4, 20.0
 _SERIES = {
@@ -69,10 +68,10 @@ class Live:
         sensors : mapping of str to str
             Of each channel, what its values are; the order is that of the views.
         about : str
-            What is known of the run, as Markdown.
+            What is known of a run of which nothing but samples is shown, as Markdown.
         """
         self._paths = {sensor: f"/sensors/{place}" for place, sensor in enumerate(sensors)}
-        rec = self.recording(name, _layout(sensors, self._paths))
+        rec = self.recording(name, _layout(sensors, self._paths, alone=bool(about)))
         for sensor, label in sensors.items():
             colour = BASE if sensor.startswith("base") else LINE
             # A mean over the samples of a pixel would hide shocks.
@@ -84,7 +83,8 @@ class Live:
         for key, (label, colour) in _SERIES.items():
             style = rr.SeriesLines(colors=colour, widths=2.0, names=label)
             rec.log(f"/found/{key}", style, static=True)
-        rec.log("/status", rr.TextDocument(about or "waiting", media_type=rr.MediaType.MARKDOWN), static=not about)
+        if about:
+            rec.log("/status", rr.TextDocument(about, media_type=rr.MediaType.MARKDOWN), static=True)
 
     def recording(self, name: str, layout: rrb.Blueprint) -> rr.RecordingStream:
         """Begin a recording that is called so, and return it; the one before ends."""
@@ -221,49 +221,59 @@ def live(
             shown.end()
 
 
-def _layout(sensors: Mapping[str, str], paths: Mapping[str, str]) -> rrb.Blueprint:
-    """Return the views: curves, what is found over the last minutes, and what is said."""
-    curves = [_series(paths[sensor], sensor.replace("_", " "), _WINDOW) for sensor in sensors]
+def _layout(sensors: Mapping[str, str], paths: Mapping[str, str], *, alone: bool) -> rrb.Blueprint:
+    """Return the views: curves, what is found since the run began, and what is said; or curves alone."""
+    curves = [_series(paths[sensor], f"{sensor}: {label}", _WINDOW) for sensor, label in sensors.items()]
+    panel = rrb.TimePanel(state="collapsed", timeline=RUN_TIME, play_state="following")
+    if alone:
+        about = rrb.TextDocumentView(origin="/status", name=PARAMETERS)
+        body = rrb.Horizontal(rrb.Vertical(*curves), about, column_shares=[4.0, 1.4])
+        return rrb.Blueprint(body, panel, collapse_panels=True)
     found = [
-        _series("/phase", "Phase of the base at impacts [°]: L red, R blue", _HISTORY, (0.0, 360.0), legend=False),
-        _series("/found/response", "Largest |x1| [mm]", _HISTORY, legend=False),
+        _series("/phase", "Phase of the base at impacts [°]: L red, R blue", None, (0.0, 360.0)),
+        _series("/found/response", "Largest |x1| [mm]", None),
         rrb.TimeSeriesView(
             origin="/found",
             contents=["/found/share", "/found/r"],
             name="Share of periods with the pattern, and r",
-            axis_x=_window(_HISTORY),
+            axis_x=_window(None),
             axis_y=rrb.ScalarAxis(range=(0.0, 1.05)),
             plot_legend=rrb.PlotLegend(corner=rrb.Corner2D.LeftBottom),
         ),
     ]
     said: Sequence[rrb.View] = [
-        rrb.TextDocumentView(origin="/status", name=f"{PARAMETERS} now"),
-        rrb.TextLogView(origin="/lines", name="Once a second"),
+        rrb.TextDocumentView(origin="/status", name=f"{PARAMETERS} and state"),
+        rrb.TextLogView(
+            origin="/lines",
+            name="Once a second",
+            columns=rrb.TextLogColumns(
+                timeline_columns=[TimelineColumn(RUN_TIME, visible=False)], text_log_columns=["Body"]
+            ),
+        ),
     ]
     body = rrb.Horizontal(
-        rrb.Vertical(*curves) if curves else rrb.Vertical(),
+        rrb.Vertical(*curves),
         rrb.Vertical(*found),
         rrb.Vertical(*said, row_shares=[2.0, 1.0]),
         column_shares=[3.4, 3.4, 2.6],
     )
-    panel = rrb.TimePanel(state="collapsed", timeline=RUN_TIME, play_state="following")
     return rrb.Blueprint(body, panel, collapse_panels=True)
 
 
-def _window(seconds: float) -> rrb.TimeAxis:
+def _window(seconds: float | None) -> rrb.TimeAxis:
+    """Return the last seconds, or all that there is."""
     boundary = rrb.TimeRangeBoundary
-    return rrb.TimeAxis(
-        view_range=rrb.TimeRange(start=boundary.cursor_relative(seconds=-seconds), end=boundary.cursor_relative())
-    )
+    start = boundary.infinite() if seconds is None else boundary.cursor_relative(seconds=-seconds)
+    return rrb.TimeAxis(view_range=rrb.TimeRange(start=start, end=boundary.cursor_relative()))
 
 
 def _series(
-    origin: str, name: str, seconds: float, span: tuple[float, float] | None = None, *, legend: bool = False
+    origin: str, name: str, seconds: float | None, span: tuple[float, float] | None = None
 ) -> rrb.TimeSeriesView:
     return rrb.TimeSeriesView(
         origin=origin,
         name=name,
         axis_x=_window(seconds),
         axis_y=None if span is None else rrb.ScalarAxis(range=span),
-        plot_legend=rrb.PlotLegend(corner=rrb.Corner2D.RightTop, visible=legend),
+        plot_legend=rrb.PlotLegend(visible=False),
     )

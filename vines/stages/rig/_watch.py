@@ -30,6 +30,8 @@ EVERY = 1.0
 """Seconds between two reports."""
 _SHOWN_RATE = 512.0
 """Samples a second of a channel that are shown while a run goes on."""
+_SHOWN = {"m": (1e3, "mm")}
+"""Units in which values are shown whose axis would have long numbers otherwise."""
 _FULL = 0.9999
 """Part of the range from which on a sample is clipped."""
 _SILENT = 5.0
@@ -168,7 +170,7 @@ class _Session:
                     self.live.add(channel.name, rows)
             t = shown[0] / self.stream.rate - channel.delay
             if self.show is not None:
-                self.show.samples(channel.name, t, shown[1])
+                self.show.samples(channel.name, t, shown[1] * _SHOWN.get(channel.si, (1.0, ""))[0])
             if self.foxglove is not None:
                 self.foxglove.samples(channel.name, t, shown[1])
 
@@ -277,10 +279,11 @@ def watch_rig(
 def _watch(session: _Session, seconds: float | None, *, live: bool) -> None:
     """Go through the blocks of a stream."""
     stream, monitor = session.stream, session.monitor
-    labels = {each.name: f"{each.quantity} [{each.si}]" for each in stream.channels}
-    for shown in (session.show, session.foxglove):
-        if shown is not None:
-            shown.begin(stream.name, labels)
+    if session.show is not None:
+        units = {each.name: _SHOWN.get(each.si, (1.0, each.si))[1] for each in stream.channels}
+        session.show.begin(stream.name, {c.name: f"{c.quantity} [{units[c.name]}]" for c in stream.channels})
+    if session.foxglove is not None:
+        session.foxglove.begin(stream.name, {c.name: f"{c.quantity} [{c.si}]" for c in stream.channels})
     if not session.settled_first:
         session.begin(0)
     session.told.began(stream, session.log)
