@@ -23,8 +23,8 @@ _LOOK = 0.5
 """Seconds between two looks into the folder."""
 _BLOCK = 0.5
 """Seconds of a block."""
-_NOT = ("derived", "sealed", "watched")
-"""Folders whose files are no recordings."""
+_NOT = ("derived", "sealed", "watched", "channels.tsv")
+"""Folders whose files are no recordings, and what lies beside recordings."""
 
 
 class FolderSource:

@@ -16,6 +16,8 @@ _SHOWN = 15
 _TOLERANCE = 0.01
 """Relative distance from the end at which a motion counts as settled."""
 _SIGMAS = 3.0
+_SURE = 5.0
+"""Standard uncertainties of a trend that are none by chance: it is looked for again and again."""
 _MEMORIES = 3.0
 """Memories of the oscillator that have to pass at least after the forcing has changed: e^-3 of a transient is left."""
 _ROUGH = 0.04
@@ -66,7 +68,8 @@ def settling(
     -----
     z = z_end + C exp(-t/memory) is fitted to the last steps. What is left at the end is compared with the tolerance and
     with its uncertainty by the scatter, which second differences give: a slow transient is none of it. Where no decay
-    is left, a trend of modulus or phase by Kendall's test still counts as one.
+    is left, a trend of modulus or phase beside it still counts as one, if it is faster than the tolerance in three
+    memories: what is slower is a drift.
 
     Examples
     --------
@@ -93,6 +96,7 @@ def settling(
     best = min(range(len(fits)), key=lambda place: fits[place][2])
     found, u, tau = fits[best][0], fits[best][1], tried[best]
     u *= max(sigma, 1e-12)
+    size = abs(complex(fits[best][3].mean()))
     allowed = max(tolerance * size, _SIGMAS * u)
     rough = sigma > _ROUGH * size
     if found > allowed and not rough:
@@ -102,29 +106,30 @@ def settling(
         return Settling(False, least, "the forcing changed a short while ago")
     # Slower than that it is a drift, which has no end to be waited for.
     within = _MEMORIES * (memory if memory is not None else tau)
-    if not rough and (trend := _trend(t, z, tolerance * size / within)):
+    if not rough and (trend := _trend(t, fits[best][3], tolerance * size / within, sigma)):
         return Settling(False, None, trend)
     return Settling(True, 0.0, "no period is like the next, but nothing goes one way" if rough else "")
 
 
-def _decay(t: npt.NDArray[np.float64], z: npt.NDArray[np.complex128], tau: float) -> tuple[float, float, float]:
-    """Return what is left of a decay at the end, its uncertainty for unit scatter, and the rms of the residual."""
+def _decay(
+    t: npt.NDArray[np.float64], z: npt.NDArray[np.complex128], tau: float
+) -> tuple[float, float, float, npt.NDArray[np.complex128]]:
+    """Return of a decay what is left at the end, its uncertainty for unit scatter, the rms beside it, z without it."""
     falling = np.exp(-(t - t[-1]) / tau)
     columns = np.stack([np.ones(len(t)), falling], axis=1)
     weights, *_ = np.linalg.lstsq(columns, z, rcond=None)
-    residual = float(np.sqrt(np.mean(np.abs(z - columns @ weights) ** 2)))
+    rest = z - columns @ weights
     u = float(np.sqrt(np.linalg.pinv(columns.T @ columns)[1, 1]))
-    return float(abs(weights[1])), u, residual
+    return float(abs(weights[1])), u, float(np.sqrt(np.mean(np.abs(rest) ** 2))), rest + weights[0]
 
 
-def _trend(t: npt.NDArray[np.float64], z: npt.NDArray[np.complex128], least: float) -> str:
-    """Return what goes one way over the steps, faster than `least` a second, in words; empty if nothing does."""
-    from scipy.stats import kendalltau
-
-    mean = z.mean()
-    for name, values in (("amplitude", np.abs(z)), ("phase", np.angle(z / mean) * abs(mean))):
-        rate, _ = slope(t, values)
-        if abs(rate) > least and float(kendalltau(t, values)[1]) < 1e-4:  # type: ignore[arg-type]
+def _trend(t: npt.NDArray[np.float64], z: npt.NDArray[np.complex128], least: float, sigma: float) -> str:
+    """Return what goes one way in the last steps, faster than `least` a second, in words; empty if nothing does."""
+    tau, mean = t[-_LEAST:] - t[-_LEAST:].mean(), z[-_LEAST:].mean()
+    u = sigma / float(np.sqrt(tau @ tau))
+    along = complex(tau @ z[-_LEAST:] / (tau @ tau) * np.conj(mean) / abs(mean))
+    for name, rate in (("amplitude", along.real), ("phase", along.imag)):
+        if abs(rate) > max(least, _SURE * u):
             return f"its {name} {'rises' if rate > 0 else 'falls'} still"
     return ""
 

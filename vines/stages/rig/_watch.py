@@ -266,7 +266,7 @@ def watch_rig(
                 _places(stream, out, name),
             )
             with _ending(session, told, done):
-                _watch(session, seconds if source.live else None, live=source.live)
+                _watch(session, seconds if source.live else None)
             if source.live:
                 break
     except KeyboardInterrupt:
@@ -276,7 +276,7 @@ def watch_rig(
     return done
 
 
-def _watch(session: _Session, seconds: float | None, *, live: bool) -> None:
+def _watch(session: _Session, seconds: float | None) -> None:
     """Go through the blocks of a stream."""
     stream, monitor = session.stream, session.monitor
     if session.show is not None:
@@ -289,8 +289,7 @@ def _watch(session: _Session, seconds: float | None, *, live: bool) -> None:
     session.told.began(stream, session.log)
     for remark in stream.remarks:
         session.told.remark(remark)
-    due = heard = time.monotonic() + EVERY
-    until, silent = EVERY, False
+    heard, silent, due = time.monotonic(), False, EVERY
     for block in stream.blocks:
         now = time.monotonic()
         if block is not None:
@@ -299,10 +298,9 @@ def _watch(session: _Session, seconds: float | None, *, live: bool) -> None:
         elif now - heard > _SILENT and not silent:
             silent = True
             session.told.remark(f"no samples for {_SILENT:.0f} s")
-        # What comes from a file has no pace of its own: a second is one of its samples'.
-        if monitor.time >= until and (not live or now >= due or monitor.time >= until + EVERY):
-            until = max(until + EVERY, monitor.time) if live else until + EVERY
-            due = now + EVERY * 0.9
+        # By the clock of the samples: a file has no pace of its own, and a gap is no time to catch up.
+        if monitor.time >= due:
+            due = max(due + EVERY, float(np.ceil(monitor.time)))
             session.report()
         if seconds is not None and session.live is not None:
             logged = monitor.time - session.origin / stream.rate
@@ -330,7 +328,7 @@ def _ending(session: _Session, told: Told, done: list[Watched]) -> Iterator[None
         session.monitor.time,
         session.last,
         tuple(session.run.missing) if session.run else (),
-        session.transient,
+        None if session.settled_first else session.transient,
     )
     done.append(watched)
     told.ended(watched)
