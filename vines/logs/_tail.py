@@ -81,6 +81,7 @@ class Tail:
             raise FileMissingError(f"there is no log {given}, and none of that name is being written ({partial.name})")
         self._stream = self.path.open("rb")
         if self._stream.read(len(MCAP0_MAGIC)) != MCAP0_MAGIC:
+            self.close()
             raise LogError(f"{self.path} is not an MCAP file; a log ends in .mcap, or .part while it is written")
         self._max_chunk = max_chunk
         self._schemas: dict[int, records.Schema] = {}
@@ -122,8 +123,14 @@ class Tail:
                     every = np.concatenate([decode(block, channel) for block in messages[number].blocks])
                     found[channel.key] = every[messages[number].order()]
         except BROKEN as broken:
+            self.close()
             raise LogError(f"{self.path} is damaged ({line_of(broken)}); try `vines recover`") from None
         return found
+
+    def close(self) -> None:
+        """Let go of the file; nothing more is taken from it."""
+        self._stream.close()
+        self.ended = True
 
     def _next(self) -> tuple[int, bytes] | None:
         """Return the next record if it is there as a whole."""
@@ -155,8 +162,7 @@ class Tail:
             elif entry.name == PROVENANCE:
                 self.provenance = entry.metadata
         elif opcode in (Opcode.DATA_END, Opcode.FOOTER):
-            self.ended = True
-            self._stream.close()
+            self.close()
 
     def _learn(self, topic: records.Channel) -> None:
         schema = self._schemas.get(topic.schema_id)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import math
 import os
 import time
@@ -67,9 +68,8 @@ def follow(
     ViewerError
         If a run of several balls is followed, or the viewer cannot start.
     """
-    tail = Tail(path)
     until = math.inf if seconds is None else time.monotonic() + seconds
-    with live(how, file=file, tell=tell) as show:
+    with contextlib.closing(Tail(path)) as tail, live(how, file=file, tell=tell) as show:
         shown: _Rig | _Run | None = None
         try:
             for added in _added(tail, tell, until):

@@ -75,7 +75,8 @@ def status_text(report: Report, stream: Stream) -> str:
     lines += ["", "| channel | rms | peak | range used | clipped |", "|---|---|---|---|---|"]
     for name, level in report.levels.items():
         used = "" if level.full is None else f"{level.full:.0%}"
-        sizes = " | ".join(f"{size:.3g} {level.unit}" for size in (level.rms, level.peak))
+        scale, unit = (1e3, "mm") if level.unit == "m" else (1.0, level.unit)
+        sizes = " | ".join(f"{scale * size:.3g} {unit}" for size in (level.rms, level.peak))
         lines.append(f"| {name} | {sizes} | {used} | {level.clipped_since} |")
     lines += ["", *(f"**{remark}**  " for remark in report.remarks)]
     return "\n".join(lines)
