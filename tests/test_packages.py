@@ -9,6 +9,7 @@ import re
 import subprocess
 import sys
 from importlib.metadata import packages_distributions
+from importlib.util import find_spec
 from pathlib import Path
 
 import pytest
@@ -161,7 +162,8 @@ def test_a_node_computes_and_each_command_says_what_it_misses(node, tmp_path):
 
 @pytest.mark.parametrize("module", OPTIONAL)
 def test_the_message_names_need_package_and_remedy(module, monkeypatch):
-    need(module)
+    if find_spec(module) is not None:  # drivers of devices and servers of other viewers are not among what is tested
+        need(module)
     monkeypatch.setitem(sys.modules, module, None)
     with pytest.raises(PackageMissingError, match=r"needs .*, which is not installed; .*pip install ") as caught:
         need(module)

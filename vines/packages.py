@@ -14,7 +14,7 @@ from vines.errors import PackageMissingError
 __all__ = ["OPTIONAL", "need"]
 
 _RUN = "pip install --require-hashes -r requirements.lock"
-_RIG, _DASK, _DEV = (f"pip install '.[{extra}]'" for extra in ("rig", "dask", "dev"))
+_RIG, _DASK, _NI, _FOXGLOVE, _DEV = (f"pip install '.[{extra}]'" for extra in ("rig", "dask", "ni", "foxglove", "dev"))
 
 OPTIONAL = {
     "duckdb": ("SQL over tables", "duckdb", _RUN),
@@ -27,6 +27,8 @@ OPTIONAL = {
     "pymatreader": ("MATLAB", "pymatreader", _RIG),
     "pyuff": ("UFF dataset 58", "pyuff", _RIG),
     "soundfile": ("WAV", "soundfile", _RIG),
+    "nidaqmx": ("a device of National Instruments", "nidaqmx", _NI),
+    "foxglove": ("serving Foxglove", "foxglove-sdk", _FOXGLOVE),
     "grpc_tools": ("compiling the schemas", "grpcio-tools", _DEV),
 }
 """By the name that is imported: what needs it, the package that brings it, and the command for the folder of vines."""

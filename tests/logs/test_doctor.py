@@ -44,7 +44,10 @@ def write(kind, run, folder):
 
 @pytest.mark.parametrize("kind", ["plain", "bare", "empty", "orbit", "rig", "live", "recovered"])
 def test_nothing_is_found(kind, run, tmp_path):
-    assert findings(write(kind, run, tmp_path)) == []
+    found = findings(write(kind, run, tmp_path))
+    if kind == "live":  # a chunk may close between states and impacts of the same times, of which it warns
+        found = [line for line in found if not line.startswith("warning: ")]
+    assert found == []
 
 
 @pytest.mark.parametrize(

@@ -14,6 +14,7 @@ COMMANDS = {
     "split": ("vines.cli._rig_split", "Make a run of each dwell of a recording; raw files stay where they are."),
     "reconstruct": ("vines.cli._rig_reconstruct", "Bring a run to the quantities of the model, with uncertainties."),
     "compare": ("vines.cli._rig_compare", "Lay a run beside the branches of the model that coexist: the verdict."),
+    "watch": ("vines.cli._rig_watch", "Watch a run while it goes on: log it, show it, say how it goes."),
     "synth": ("vines.cli._rig_synth", "Make a run folder of a synthetic rig, its truth sealed."),
     "campaign": ("vines.cli._rig_campaign", "Make a synthetic sweep up and down with ring-downs."),
 }
@@ -30,5 +31,6 @@ def command() -> None:
     vines rig ingest my_run            into the catalogue; 'vines view' shows it
     vines rig split staircase          a run of each dwell of a recording
     vines rig reconstruct my_run       omega0, A, mu, r, impacts, pattern, with uncertainties
+    vines rig watch listen://5555      a run while it goes on
     vines rig compare my_run           agree, pattern_only, disagree or undecidable, with the reason
     """  # noqa: D301

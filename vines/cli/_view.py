@@ -20,6 +20,7 @@ _FILE = click.Path(dir_okay=False, path_type=Path)
 @click.option("--png", type=_FILE, help="Draw a picture without any screen.")
 @click.option("--save", type=_FILE, help="Write a recording (.rrd) with its blueprint.")
 @click.option("--overlay", is_flag=True, help="Curves of all runs in the same views, as of a rig and of the model.")
+@click.option("--follow", is_flag=True, help="One that is still being written, as it grows.")
 @click.option(
     "--at",
     type=float,
@@ -33,6 +34,7 @@ def command(
     png: Path | None,
     save: Path | None,
     overlay: bool,
+    follow: bool,
     at: float | None,
     max_chunk: int,
 ) -> None:
@@ -45,6 +47,7 @@ def command(
     vines view quickstart.asymmetric_run
     vines view quickstart.doubled_run --png doubled.png
     vines view rehearsal.compare/01_up --overlay        measured and modelled
+    vines view --follow watched/up_7/raw/up_7.mcap      while it is written
     """  # noqa: D301
     from vines import viewer
     from vines.logs import read_damaged
@@ -57,6 +60,9 @@ def command(
             raise click.UsageError(f"{option} {file}: {what} ends in {suffix}, such as {file.with_suffix(suffix)}")
     if at is not None and png is None:
         raise click.UsageError("--at is the time of a picture; give --png FILE too")
+    if follow:
+        _follow(logs, web=web, png=png, save=save, alone=overlay or at is not None)
+        return
     study = the_study()
     limit = max_chunk * 2**20
     runs = [read_damaged(path, max_chunk=limit) for name in logs for path in find_logs(name, study=study)]
@@ -73,3 +79,16 @@ def command(
         viewer.web(runs, cache=recordings_folder(study=study), tell=click.echo, overlay=overlay)
     elif png is None and save is None:
         viewer.view(runs, cache=recordings_folder(study=study), overlay=overlay)
+
+
+def _follow(logs: tuple[str, ...], *, web: bool, png: Path | None, save: Path | None, alone: bool) -> None:
+    """Show a log that is being written."""
+    from vines import viewer
+
+    if len(logs) != 1 or alone or (png is not None and save is not None):
+        raise click.UsageError("--follow takes the path of one log, and one of --web, --png and --save at most")
+    how = "web" if web else "headless" if png is not None else "save" if save is not None else "window"
+    viewer.follow(logs[0], how, file=save, picture=png, tell=click.echo)
+    for file in (png, save):
+        if file is not None:
+            click.echo(f"wrote {file}")

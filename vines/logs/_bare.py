@@ -20,7 +20,7 @@ from vines.logs._form import Form, stamps
 from vines.model import VI_NES
 from vines.schema import WireFormat, foxglove_schema
 
-__all__ = ["Profile", "bare_rows"]
+__all__ = ["BARE", "Profile", "bare_rows", "more_rows"]
 
 _STRIDE = 3
 """Of the states in smooth motion, one in so many."""
@@ -28,6 +28,9 @@ _LATEST = 2.0**31
 """Times of ROS are seconds in 32 bits; a log that goes on for longer has no such profile."""
 _VIEW = "tf#/"
 """The frame in which Rerun's 3-D view looks when nobody has told it another."""
+
+_WORDS = 96
+"""Bytes of a line about an impact in a log that is being written, where the longest is not known."""
 
 _JOINT_STATE = b"""std_msgs/Header header
 
@@ -108,6 +111,49 @@ class Profile:
     series: Mapping[str, tuple[str, str, str]]
 
 
+def _foxglove(number: int, topic: str, message: str) -> Channel:
+    return Channel(number, topic, f"foxglove.{message}", "", topic, schema=("protobuf", foxglove_schema()))
+
+
+def _ros(number: int, topic: str, message: str, definition: bytes) -> Channel:
+    return Channel(number, topic, message, "", topic, schema=("ros2msg", definition), encoding="cdr")
+
+
+_MODEL = _ros(20, "/robot_description", "std_msgs/msg/String", b"string data")
+_PLACED = _foxglove(21, "/tf_static", "FrameTransforms")
+_MOVED = _foxglove(22, "/tf", "FrameTransforms")
+_CURVES = _ros(23, "/curves", "sensor_msgs/msg/JointState", _JOINT_STATE)
+_TOLD = _foxglove(24, "/impact_log", "Log")
+BARE = (_MODEL, _PLACED, _MOVED, _CURVES, _TOLD)
+"""The channels of the profile."""
+
+
+def more_rows(
+    states: np.ndarray,
+    impacts: np.ndarray,
+    sticks: np.ndarray,
+    about: tuple[str, Mapping[str, float]] | None = None,
+) -> list[Rows]:
+    """Return the rows of those channels for a part of a log of one ball that is being written.
+
+    Parameters
+    ----------
+    states, impacts, sticks : numpy.ndarray, structured
+        What is added to it.
+    about : tuple of (str, mapping), optional
+        Name and parameters of the run, with the first states.
+    """
+    found: list[Rows] = []
+    if len(states) and states["t"][-1] < _LATEST:
+        kept = states[_kept(states["t"])]
+        if about is not None:
+            start = log_times(kept["t"][:1])
+            found += [_model(_ONE, *about, start), _placed(start)]
+        found += [_moved(_ONE, kept), _curves(_ONE, kept)]
+    events = [each[name][-1] for each, name in ((impacts, "t"), (sticks, "t_start")) if len(each)]
+    return found + (_words(impacts, sticks, _WORDS) if events and max(events) < _LATEST else [])
+
+
 def bare_rows(
     states: np.ndarray,
     impacts: np.ndarray,
@@ -178,10 +224,8 @@ def _model(shown: Profile, name: str, parameters: Mapping[str, float], start: np
     listed = "   ".join(f"{key} = {parameters[key]:.10g}" for key in sorted(parameters))
     about = escape(shown.about.format(name=name, parameters=listed)).replace("--", "- -")
     text = f"<!--\n{about}-->\n{shown.geometry}".encode() + b"\0"
-    schema = ("ros2msg", b"string data")
-    channel = Channel(20, "/robot_description", "std_msgs/msg/String", "", "", schema=schema, encoding="cdr")
     layout = Form().put(b"\0\1\0\0" + struct.pack("<I", len(text)) + text).layout()
-    return Rows(channel, layout, start, np.empty(1, layout.dtype))
+    return Rows(_MODEL, layout, start, np.empty(1, layout.dtype))
 
 
 def _transform(form: Form, parent: str, child: str, x: str | None) -> Form:
@@ -195,14 +239,10 @@ def _transform(form: Form, parent: str, child: str, x: str | None) -> Form:
     return form.nest(1, inner)
 
 
-def _foxglove(number: int, topic: str, message: str) -> Channel:
-    return Channel(number, topic, f"foxglove.{message}", "", "", schema=("protobuf", foxglove_schema()))
-
-
 def _placed(start: np.ndarray) -> Rows:
     """Return the one transform that does not change: where the whole rig is."""
     layout = _transform(Form(), _VIEW, "rig", None).layout()
-    return _filled(_foxglove(21, "/tf_static", "FrameTransforms"), layout, start, {})
+    return _filled(_PLACED, layout, start, {})
 
 
 def _moved(shown: Profile, states: np.ndarray) -> Rows:
@@ -210,8 +250,8 @@ def _moved(shown: Profile, states: np.ndarray) -> Rows:
     for child, x in shown.bodies.items():
         _transform(form, "rig", child, x)
     values = {x: states[x] + (shown.mount if x == "base" else 0.0) for x in shown.bodies.values()}
-    channel = _foxglove(22, "/tf", "FrameTransforms")
-    return _filled(channel, form.layout(), log_times(states["t"]), {key: _single(v) for key, v in values.items()})
+    single = {key: _single(each) for key, each in values.items()}
+    return _filled(_MOVED, form.layout(), log_times(states["t"]), single)
 
 
 def _curves(shown: Profile, states: np.ndarray) -> Rows:
@@ -222,19 +262,16 @@ def _curves(shown: Profile, states: np.ndarray) -> Rows:
     groups = [list(columns) for columns in zip(*shown.series.values(), strict=True)]
     for names in groups:
         form.cdr_doubles([name or f"none_{k}" for k, name in enumerate(names)])
-    channel = Channel(
-        *(23, "/curves", "sensor_msgs/msg/JointState", "", ""), schema=("ros2msg", _JOINT_STATE), encoding="cdr"
-    )
     values = {
         name or f"none_{k}": _single(states[name]) if name else np.zeros(len(states))
         for names in groups
         for k, name in enumerate(names)
     }
-    return _filled(channel, form.layout(), log_times(states["t"]), values)
+    return _filled(_CURVES, form.layout(), log_times(states["t"]), values)
 
 
-def _words(impacts: np.ndarray, sticks: np.ndarray) -> list[Rows]:
-    """Return a line an impact and a line a stick."""
+def _words(impacts: np.ndarray, sticks: np.ndarray, least: int = 0) -> list[Rows]:
+    """Return a line an impact and a line a stick, all of one length, that of the longest or `least`."""
     with np.errstate(invalid="ignore"):  # infinite velocities are kept, and shown as nan here
         after = impacts["v1_after"] - impacts["v2_after"]
     told = (impacts[name].tolist() for name in ("t", "index", "w_dot"))
@@ -252,11 +289,11 @@ def _words(impacts: np.ndarray, sticks: np.ndarray) -> list[Rows]:
         return []
     lines.sort(key=lambda line: line[0])
     texts = np.array([text.encode() for _, text in lines])
-    size = texts.dtype.itemsize
+    size = max(texts.dtype.itemsize, least)
     form = Form().stamp(1).tag(2, 0).put(b"\2").nest(3, Form().slot("text", f"S{size}")).text(4, "vines")
     times = log_times(np.array([time for time, _ in lines]))
     padded = np.char.ljust(texts, size)
-    return [_filled(_foxglove(24, "/impact_log", "Log"), form.layout(), times, {"text": padded})]
+    return [_filled(_TOLD, form.layout(), times, {"text": padded})]
 
 
 def _numbers(events: np.ndarray) -> list[str]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import threading
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 from types import TracebackType
 from typing import Self
@@ -13,12 +14,16 @@ import numpy as np
 
 from vines.errors import FileMissingError, LogError, SchemaError
 from vines.logs._balls import rows_of_ball
-from vines.logs._channels import BALLS, BASE, CHANNELS, OF_BALLS, Rows, as_rows
+from vines.logs._bare import BARE, more_rows
+from vines.logs._channels import BALLS, BASE, CHANNELS, OF_BALLS, Channel, Rows, as_rows
 from vines.logs._chunk import packed
+from vines.logs._curves import curve_channel, curve_rows
 from vines.logs._file import LogFile
 from vines.logs._pack import CHUNK_BYTES, cut
-from vines.logs._rig import sensor_channels
+from vines.logs._raw import block_of, raw_channels, raw_rows
+from vines.logs._rig import rate_of, sensor_channels
 from vines.logs._write import begin
+from vines.schema import numpy_dtype
 
 __all__ = ["LiveWriter"]
 
@@ -44,10 +49,15 @@ class LiveWriter:
     sensors : mapping of str to mapping of str to str, optional
         What each sensor of a rig measures (see :class:`vines.logs.Sensor`). The log is then one of a rig, with
         ``base`` and the sensors; else it is one of the simulator, with ``states``, ``impacts`` and ``sticks``.
+    raw : mapping of str to mapping of str to str, optional
+        Channels of a recorder that are kept as it gives them, at their full rate, with what is known of each: ``unit``,
+        ``rate`` and ``dtype`` (``<f4``, ``<f8`` or ``<i4``) are needed.
     balls : int, optional
         Of a run with several balls, how many; rows are then as :func:`vines.logs.write_run` takes them.
     system : str, optional
         The system of the run; the VI-NES if left out.
+    bare : bool
+        Whether the log also carries what viewers draw without vines; one of several balls never does.
 
     Raises
     ------
@@ -80,8 +90,10 @@ class LiveWriter:
         parameters: Mapping[str, float],
         declaration: str | None = None,
         sensors: Mapping[str, Mapping[str, str]] | None = None,
+        raw: Mapping[str, Mapping[str, str]] | None = None,
         balls: int = 0,
         system: str | None = None,
+        bare: bool = True,
     ):
         self._path = Path(path)
         self._partial = self._path.with_name(f"{self._path.name}.part")
@@ -98,6 +110,19 @@ class LiveWriter:
             self._channels = {channel.key: channel for channel in CHANNELS}
         else:
             self._channels = {BASE.key: BASE, **sensor_channels(sensors)}
+        self._taken = [key for key in self._channels if self._channels[key] not in self._balls]
+        self._raw = raw_channels(raw or {})
+        self._rest = {key: (0, np.empty(0, each.metadata["dtype"])) for key, each in self._raw.items()}
+        self._channels |= {each.key: each for each in self._raw.values()}
+        self._curves: dict[str, Channel] = {}
+        self._about = (name, dict(parameters)) if bare and sensors is None and not balls else None
+        if self._about is not None:
+            self._channels |= {each.key: each for each in BARE}
+        elif bare and sensors is not None:
+            sensed = [key for key in self._taken if key != BASE.key]
+            self._curves = {key: curve_channel(place, self._channels[key]) for place, key in enumerate(sensed)}
+            self._channels |= {each.key: each for each in self._curves.values()}
+        self._bare = self._about is not None
         self._waiting: dict[str, list[Rows]] = {key: [] for key in self._channels}
         self._counts = dict.fromkeys(self._channels, 0)
         self._latest = dict.fromkeys(self._channels, 0)
@@ -143,16 +168,75 @@ class LiveWriter:
         OSError
             If the file could not be written.
         """
-        known = [name for name in self._channels if self._channels[name] not in self._balls]
-        if key not in known:
-            raise SchemaError(f"this log has no channel {key!r}; it has {', '.join(known)}")
+        if key not in self._taken:
+            raise SchemaError(f"this log has no channel {key!r}; it has {', '.join(self._taken)}")
         # A copy: what the caller does to the array afterwards must not change what is written.
         own = np.array(rows, ndmin=1)
         added = {key: as_rows(own, self._channels[key], self._counts[key])}
         if key == OF_BALLS[0].key:
             added |= {each.key: as_rows(rows_of_ball(own, each), each, self._counts[each.key]) for each in self._balls}
-        if len(own):
-            self._take(added)
+        if not len(own):
+            return
+        if self._bare:
+            parts = {each.key: np.empty(0, numpy_dtype(each.message)) for each in CHANNELS} | {key: added[key].values}
+            about = self._about if key == "states" else None
+            added |= self._numbered(more_rows(**parts, about=about))
+        elif key in self._curves:
+            values = added[key].values
+            added |= self._numbered([curve_rows(self._curves[key], values, rate_of(values["t"]))])
+        self._take(added)
+        if key == "states":
+            self._about = None
+
+    def _numbered(self, every: list[Rows]) -> dict[str, Rows]:
+        """Return rows that are not empty by their channels, behind those added before in number and time."""
+        return {
+            key: replace(each, first=self._counts[key], times=np.maximum(each.times, np.uint64(self._latest[key])))
+            for each in every
+            if len(each) and (key := each.channel.key)
+        }
+
+    def add_raw(self, key: str, first: int, values: np.ndarray) -> None:
+        """Add samples of a recorder as it gave them; they are on disk within a second.
+
+        Parameters
+        ----------
+        key : str
+            The name of a channel in `raw`.
+        first : int
+            Number of the first sample since the run began; where it is not the one behind the last, samples were lost.
+        values : numpy.ndarray, shape (n,)
+            Samples in the unit and of the type of the channel.
+
+        Raises
+        ------
+        SchemaError
+            If there is no such channel, the samples are of another type, or they were added already.
+        OSError
+            If the file could not be written.
+        """
+        if key not in self._raw:
+            raise SchemaError(f"this log has no raw channel {key!r}; it has {', '.join(self._raw) or 'none'}")
+        channel = self._raw[key]
+        dtype, count = channel.metadata["dtype"], block_of(channel)
+        if values.ndim != 1 or values.dtype != np.dtype(dtype):
+            raise SchemaError(f"samples of {key!r} are {values.dtype} {values.shape}; the log has {dtype}, shape (n,)")
+        begin, rest = self._rest[key]
+        expected = begin + len(rest)
+        if first < expected:
+            raise SchemaError(f"samples of {key!r} begin at number {first}, before the last one at {expected - 1}")
+        if first > expected:
+            self._take_raw(key, begin, rest, len(rest))
+            begin, rest = first, rest[:0]
+        joined = np.concatenate([rest, values])
+        whole = len(joined) // count * count
+        self._take_raw(key, begin, joined[:whole], count)
+        self._rest[key] = (begin + whole, joined[whole:].copy())
+
+    def _take_raw(self, key: str, first: int, values: np.ndarray, count: int) -> None:
+        if len(values):
+            channel = self._raw[key]
+            self._take({channel.key: raw_rows(channel, first, values, count, self._counts[channel.key])})
 
     def _take(self, added: dict[str, Rows]) -> None:
         """Keep rows of one instant after another in channels that are all as far until they are written."""
@@ -192,14 +276,17 @@ class LiveWriter:
     def _flush(self) -> bool:
         """Hand what is waiting to the system, in chunks of the usual size; return whether there was anything."""
         with self._lock:
-            taken = [_joined(parts) for parts in self._waiting.values() if parts]
+            taken = [_alike(parts) for parts in self._waiting.values() if parts]
             self._waiting = {key: [] for key in self._channels}
             self._size = 0
             if not taken:
                 return False
-            # In the lock: a chunk is whole in the file before the next one begins.
-            for parts in cut(taken):
-                self._log.chunk(packed(parts))
+            # In the lock: a chunk is whole in the file before the next one begins. Messages of one channel in a chunk
+            # are of one length: those of the next length go into the next chunk.
+            while taken:
+                for parts in cut([_joined(groups[0]) for groups in taken]):
+                    self._log.chunk(packed(parts))
+                taken = [groups[1:] for groups in taken if len(groups) > 1]
             self._stream.flush()
             return True
 
@@ -215,6 +302,8 @@ class LiveWriter:
         self._thread.join()
         try:
             if self._failed is None:
+                for key, (first, rest) in self._rest.items():
+                    self._take_raw(key, first, rest, len(rest))
                 self._flush()
             if self._failed is None and kind is None:
                 counts = {channel.topic: str(self._counts[key]) for key, channel in self._channels.items()}
@@ -228,6 +317,17 @@ class LiveWriter:
             raise self._failed
         if kind is None:
             self._partial.replace(self._path)
+
+
+def _alike(parts: list[Rows]) -> list[list[Rows]]:
+    """Return rows in groups that follow each other, those of one group laid out alike."""
+    groups: list[list[Rows]] = []
+    for part in parts:
+        if groups and groups[-1][0].layout.blank == part.layout.blank:
+            groups[-1].append(part)
+        else:
+            groups.append([part])
+    return groups
 
 
 def _joined(parts: list[Rows]) -> Rows:

@@ -38,6 +38,7 @@ from vines.logs._checked import rewritten, written_counts
 from vines.logs._contents import Messages
 from vines.logs._decode import differing_fields, table
 from vines.logs._foreign import foreign_tables, is_readable, why_unfit
+from vines.logs._raw import RAW, RAW_SAMPLES, Raw, raw_of
 from vines.logs._unpack import CHUNK_LIMIT, Unpacker
 from vines.logs._walk import AGAIN, BROKEN, Found, line_of, walk
 from vines.model import VI_NES
@@ -71,6 +72,8 @@ class Log:
         The same of ``vines.v1.Orbit`` and, in SI units, ``BaseMotion``; without rows in most logs.
     sensors : dict of str to pyarrow.Table
         Samples of each sensor of a rig (``vines.v1.SensorSample``), SI; the table's metadata say what was measured.
+    raw : dict of str to Raw
+        Channels of the recorder as it gave them, at their full rate, where a run was watched.
     others : dict of str to pyarrow.Table
         Channels that are not of vines, by topic, the log time in nanoseconds first.
     encodings : dict of str to str
@@ -110,6 +113,7 @@ class Log:
     orbits: pa.Table
     base: pa.Table
     sensors: dict[str, pa.Table]
+    raw: dict[str, Raw]
     others: dict[str, pa.Table]
     encodings: dict[str, str]
     provenance: dict[str, str]
@@ -328,6 +332,7 @@ def _log(file: Path, found: Found, verdict: _Verdict, tables: dict[int, pa.Table
         recovered=salvaged,
         remarks=tuple(printable(line) for line in remarks),
         sensors={channel.key: tables[number] for number, channel in known.items() if channel.message == SAMPLE},
+        raw=_raw(found),
         others=others,
         encodings={topic.topic: topic.message_encoding for topic in verdict.others.values()},
         sha256=found.sha256,
@@ -340,3 +345,13 @@ def _log(file: Path, found: Found, verdict: _Verdict, tables: dict[int, pa.Table
             if channel not in OF_BALLS or message in of_message
         },
     )
+
+
+def _raw(found: Found) -> dict[str, Raw]:
+    """Return the raw samples that a file holds, by the names of their channels."""
+    return {
+        topic.topic.removeprefix(RAW): raw_of(found.messages.get(number, Messages()), topic.metadata)
+        for number, topic in sorted(found.topics.items())
+        if (schema := found.schema(number)) is not None
+        and (schema.name, topic.message_encoding) == (RAW_SAMPLES, "protobuf")
+    }

@@ -11,9 +11,10 @@ import numpy as np
 
 from vines.errors import SchemaError
 from vines.logs._channels import BASE, FIRST_SENSOR, SAMPLE, SENSOR, Channel, as_rows
+from vines.logs._curves import curve_channel, curve_rows
 from vines.logs._write import write_rows
 
-__all__ = ["Sensor", "sensor_channels", "write_rig"]
+__all__ = ["Sensor", "rate_of", "sensor_channels", "write_rig"]
 
 _NEEDED = ("quantity", "unit", "sign", "rate")
 
@@ -69,6 +70,7 @@ def write_rig(
     parameters: Mapping[str, float],
     name: str,
     declaration: str | None = None,
+    bare: bool = True,
 ) -> Path:
     """Write a run of a rig as an MCAP log, whole or not at all; the same input gives the same bytes.
 
@@ -88,6 +90,8 @@ def write_rig(
         What the run is called.
     declaration : str, optional
         The text that describes the run, kept as an attachment.
+    bare : bool
+        Whether the log also carries the curves that viewers draw without vines.
 
     Returns
     -------
@@ -119,4 +123,14 @@ def write_rig(
     rows = [as_rows(base, BASE)]
     channels = sensor_channels({key: sensor.about for key, sensor in sensors.items()})
     rows += [as_rows(sensors[key].samples, channel) for key, channel in channels.items()]
+    if bare:
+        rows += [
+            curve_rows(curve_channel(place, each.channel), each.values, rate_of(each.values["t"]))
+            for place, each in enumerate(rows[1:])
+        ]
     return write_rows(path, rows, {"name": name, "kind": "rig"}, provenance, parameters, declaration)
+
+
+def rate_of(t: np.ndarray) -> float:
+    """Return how many samples there are in a second."""
+    return (len(t) - 1) / float(t[-1] - t[0]) if len(t) > 1 and t[-1] > t[0] else 0.0

@@ -7,6 +7,7 @@ from ._messages import foxglove_schema as foxglove_schema
 from ._messages import message_class as message_class
 from ._messages import message_names as message_names
 from ._messages import numpy_dtype as numpy_dtype
+from ._messages import raw_schema as raw_schema
 from ._messages import schema_bytes as schema_bytes
 from ._messages import wire_format as wire_format
 from ._reference import reference as reference

@@ -18,7 +18,7 @@ from vines.places import shipped
 
 __all__ = ["DESCRIPTOR_SETS", "compile_descriptor_set", "main"]
 
-DESCRIPTOR_SETS = {"vines.v1.binpb": "vines/v1", "foxglove.binpb": "foxglove"}
+DESCRIPTOR_SETS = {"vines.v1.binpb": "vines/v1", "vines.raw.binpb": "vines/raw", "foxglove.binpb": "foxglove"}
 """The compiled sets in the folder ``schemas``, and the folder of the sources of each."""
 
 

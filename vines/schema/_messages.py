@@ -29,6 +29,7 @@ __all__ = [
     "message_class",
     "message_names",
     "numpy_dtype",
+    "raw_schema",
     "schema_bytes",
     "wire_format",
 ]
@@ -228,6 +229,20 @@ def foxglove_schema() -> bytes:
     for file in found.file:
         file.ClearField("source_code_info")
     return found.SerializeToString(deterministic=True)
+
+
+@cache
+def raw_schema() -> bytes:
+    """Return the FileDescriptorSet of ``vines.v1.RawSamples``, comments included, as a channel carries it.
+
+    It lies apart from the other messages of vines: it holds lists, whose length is that of a channel.
+
+    Examples
+    --------
+    >>> b"RawSamples" in raw_schema()
+    True
+    """
+    return _compiled("vines.raw.binpb").SerializeToString(deterministic=True)
 
 
 @cache

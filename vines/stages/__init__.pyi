@@ -49,4 +49,8 @@ from .rig._by_hand import compare_run as compare_run
 from .rig._by_hand import each_of as each_of
 from .rig._by_hand import is_campaign as is_campaign
 from .rig._by_hand import reconstruct_run as reconstruct_run
+from .rig._foxglove import foxglove_server as foxglove_server
 from .rig._running import ingest_folder as ingest_folder
+from .rig._telling import report_line as report_line
+from .rig._watch import Watched as Watched
+from .rig._watch import watch_rig as watch_rig

@@ -1,8 +1,11 @@
 from ._browse import browse as browse
 from ._browse import catalogue_of as catalogue_of
 from ._cache import cached_rrd as cached_rrd
+from ._follow import follow as follow
 from ._layout import Shown as Shown
 from ._layout import blueprint as blueprint
+from ._live import Live as Live
+from ._live import live as live
 from ._remarks import remarks as remarks
 from ._save import save_rrd as save_rrd
 from ._show import screenshot as screenshot

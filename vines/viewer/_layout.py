@@ -14,10 +14,12 @@ from vines.viewer._impacts import DIAL_BOUNDS, LANES
 from vines.viewer._scene import PHASE_BOUNDS, cavity_bounds
 from vines.viewer._style import CAVITY, PARAMETERS, PLANE
 
-__all__ = ["Shown", "blueprint", "cavity_views"]
+__all__ = ["Shown", "blueprint", "cavity_views", "following"]
 
 _WINDOW = 20
 """Forcing cycles up to which curves show a whole run; longer runs scroll with the time cursor."""
+_LATEST = 10
+"""Forcing cycles that curves of a run show that goes on."""
 _TRAIL = 0.25
 """Length of the trail in the phase plane, in forcing cycles."""
 _LEGEND = 0.4
@@ -51,6 +53,8 @@ class Shown:
         Of a rig, the curves that there are; of a run with several balls, what the track of each is called.
     longest : float
         Half the length of the longest cavity, b.
+    following : bool
+        Whether the run goes on: curves show the last cycles.
     """
 
     root: str
@@ -62,6 +66,7 @@ class Shown:
     kind: str = "run"
     parts: tuple[str, ...] = ()
     longest: float = 1.0
+    following: bool = False
 
     @property
     def several(self) -> bool:
@@ -94,6 +99,21 @@ def blueprint(runs: Sequence[Shown], *, still: bool = False) -> rrb.Blueprint:
         body = rrb.Horizontal(*(_measured(run, still) if run.kind == "rig" else _column(run, still) for run in runs))
     parts = (body, panel, rrb.TopPanel(state="hidden")) if still else (body, panel)
     return rrb.Blueprint(*parts, collapse_panels=True)
+
+
+def following(run: Shown) -> rrb.Blueprint:
+    """Return the layout for a run that goes on: what does not need the whole of it, at the latest time."""
+    views = rrb.Vertical(
+        *cavity_views(run),
+        _ends(run, False),
+        _gap(run, False),
+        _rate(run, False),
+        _lanes(run, False),
+        row_shares=[2.7, 2.3, 1.8, 1.8, 1.3],
+    )
+    said = rrb.Vertical(_energy(run, False), _about(run), _impacts(run), row_shares=[2.0, 1.6, 2.0])
+    panel = rrb.TimePanel(state="collapsed", timeline=SIM_TIME, play_state="following")
+    return rrb.Blueprint(rrb.Horizontal(views, said, column_shares=[4.6, 2.6]), panel, collapse_panels=True)
 
 
 def _alone(run: Shown, still: bool) -> rrb.Horizontal:
@@ -194,7 +214,9 @@ def _series(
 ) -> rrb.TimeSeriesView:
     length = run.end - run.start
     boundary = rrb.TimeRangeBoundary
-    if run.kind != "rig" and length > _WINDOW * run.period:
+    if run.following:
+        start, end = boundary.cursor_relative(seconds=-_LATEST * run.period), boundary.cursor_relative()
+    elif run.kind != "rig" and length > _WINDOW * run.period:
         reach = _WINDOW * run.period
         start = boundary.cursor_relative(seconds=-0.6 * reach)
         end = boundary.cursor_relative(seconds=0.4 * reach)

@@ -11,11 +11,11 @@ import sys
 import tempfile
 import threading
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from functools import partial
 from importlib.util import find_spec
 from pathlib import Path
-from types import FrameType
+from types import FrameType, MappingProxyType
 from typing import IO, TYPE_CHECKING
 from urllib.parse import quote
 
@@ -26,13 +26,15 @@ from vines.viewer._style import OURS
 if TYPE_CHECKING:
     from rerun.experimental import ViewerClient
 
-__all__ = ["catalogue", "headless", "native", "native_url", "served"]
+__all__ = ["catalogue", "headless", "listening", "native", "native_url", "served"]
 
 _START_SECONDS = 60.0
 _END_SECONDS = 0.3
 """For which a program is waited for that was told to end."""
 _LOOK_SECONDS = 0.05
 """Between two looks whether one has ended."""
+_MEMORY = "2GB"
+"""Of a viewer that shows a run while it goes on: what is older than fits is let go."""
 _NO_VULKAN = ("Failed to get render context", "No graphics adapter", "No suitable graphics adapter")
 """What the viewer says on its way out where there is no Vulkan."""
 _VULKAN = "on Debian: apt-get install mesa-vulkan-drivers libvulkan1"
@@ -48,9 +50,10 @@ def _program() -> str:
     return str(folder / name)
 
 
-def _command(what: Path | str, port: int) -> list[str]:
+def _command(what: Path | str | None, port: int) -> list[str]:
     """Return the command line that all ways of showing share: it listens on this machine only."""
-    return [_program(), str(what), "--bind", "127.0.0.1", "--port", str(port), "--hide-welcome-screen"]
+    given = [] if what is None else [str(what)]
+    return [_program(), *given, "--bind", "127.0.0.1", "--port", str(port), "--hide-welcome-screen"]
 
 
 def _environment(**more: str) -> dict[str, str]:
@@ -84,12 +87,16 @@ def native_url(address: str) -> None:
     _shown(address)
 
 
-def _shown(what: Path | str) -> None:
+def _need_display() -> None:
     if sys.platform.startswith("linux") and not (os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")):
         raise ViewerError(
             "the viewer needs a display and none is set (DISPLAY, WAYLAND_DISPLAY); "
             "serve a page with --web, write a picture with --png FILE or a recording with --save FILE.rrd"
         )
+
+
+def _shown(what: Path | str) -> None:
+    _need_display()
     with _sigterm_as_interrupt(), tempfile.TemporaryFile() as said:
         command = _command(what, _free_port())
         status = subprocess.run(command, env=_environment(), stdout=said, stderr=said, check=False).returncode
@@ -124,6 +131,50 @@ def served(what: Path | str) -> Iterator[tuple[str, Callable[[], object]]]:
         # From here on Ctrl-C and SIGTERM are how it is meant to end, also before somebody waits.
         with contextlib.suppress(KeyboardInterrupt):
             yield f"http://127.0.0.1:{port}/?url={quote(str(source), safe='')}&theme=dark", partial(_wait, process)
+
+
+@contextlib.contextmanager
+def listening(how: str, size: tuple[int, int]) -> Iterator[tuple[str, str, Callable[[], ViewerClient]]]:
+    """Run a viewer that shows what is sent to it; it ends with the context.
+
+    Parameters
+    ----------
+    how : {"window", "web", "headless"}
+        With a window, as a page on 127.0.0.1, or without either.
+    size : tuple of int
+        Width and height of what is drawn without a window, in points.
+
+    Yields
+    ------
+    tuple of (str, str, callable)
+        Where to send, the page to open (empty if there is none), and a function that connects a client to it.
+
+    Raises
+    ------
+    ViewerError
+        If there is no display, or the viewer cannot start.
+    """
+    if how == "window":
+        _need_display()
+    data, page = _free_port(), _free_port()
+    command = [*_command(None, data), "--memory-limit", _MEMORY]
+    command += {
+        "web": ["--serve-web", "--web-viewer-port", str(page), "--server-memory-limit", _MEMORY],
+        "headless": ["--headless", "--window-size", f"{size[0]}x{size[1]}"],
+    }.get(how, [])
+    url = f"rerun+http://127.0.0.1:{data}/proxy"
+
+    def client() -> ViewerClient:
+        from rerun.experimental import ViewerClient
+
+        return ViewerClient.connect(url)
+
+    with contextlib.ExitStack() as stack:
+        memory = stack.enter_context(tempfile.TemporaryDirectory())
+        more = {"XDG_DATA_HOME": memory, "XDG_CONFIG_HOME": memory, "RUST_LOG": "error"} if how == "headless" else {}
+        stack.enter_context(_running(command, [data, page] if how == "web" else [data], more))
+        port = stack.enter_context(guarded(page)) if how == "web" else 0
+        yield url, f"http://127.0.0.1:{port}/?url={quote(url, safe='')}&theme=dark" if port else "", client
 
 
 @contextlib.contextmanager
@@ -171,10 +222,12 @@ def _sigterm_as_interrupt() -> Iterator[None]:
 
 
 @contextlib.contextmanager
-def _running(command: list[str], ports: list[int]) -> Iterator[subprocess.Popen[bytes]]:
+def _running(
+    command: list[str], ports: list[int], more: Mapping[str, str] = MappingProxyType({})
+) -> Iterator[subprocess.Popen[bytes]]:
     """Start a server, wait until it answers on all ports, and end it with the context."""
     with _sigterm_as_interrupt(), tempfile.TemporaryFile() as said:
-        process = subprocess.Popen(command, env=_environment(), stdout=said, stderr=said)
+        process = subprocess.Popen(command, env=_environment(**more), stdout=said, stderr=said)
         try:
             deadline = time.monotonic() + _START_SECONDS
             while not all(_answers(port) for port in ports):

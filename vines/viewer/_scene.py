@@ -61,6 +61,7 @@ def cavity(
     half: float = 1.0,
     longest: float = 1.0,
     colour: tuple[int, int, int] = BALL,
+    reach: float | None = None,
 ) -> None:
     """Draw the shaken base, the spring, the mass with its cavity, and the ball.
 
@@ -78,9 +79,11 @@ def cavity(
         Half the length of this cavity and of the longest one, in b.
     colour : tuple of int
         Of the ball.
+    reach : float, optional
+        Largest displacement of the mass; that of these states if left out.
     """
     x1, x2, base = states["x1"], states["x2"], states["base"]
-    mount = -_mount(float(np.abs(x1).max()) + (longest - 1.0))
+    mount = -_mount((float(np.abs(x1).max()) if reach is None else reach) + (longest - 1.0))
     indexes = clock.columns(states["t"])
     inner = half + _RADIUS
     outer = inner + 2 * _WALL

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from vines.logs import Sensor, write_rig
+from vines.logs import Sensor, extremes, write_rig
 from vines.rig.ingest import find_tone
 from vines.rig.recording import Recording, Sampled
 from vines.schema import numpy_dtype
@@ -60,12 +60,7 @@ def write_log(path: Path, recording: Recording, provenance: Mapping[str, object]
 def _kept(channel: Sampled, log_rate: float) -> np.ndarray:
     """Return the places of the samples that a log keeps."""
     group = 1 if log_rate <= 0 else max(1, int(np.ceil(channel.rate / log_rate)))
-    count = len(channel.values) // group
-    if group == 1 or count < 1:
-        return np.arange(len(channel.values))
-    cut = channel.values[: count * group].reshape(count, group)
-    away = np.abs(cut - cut.mean(axis=1, keepdims=True))
-    return np.arange(count) * group + away.argmax(axis=1)
+    return extremes(channel.values, group) if len(channel.values) >= group else np.arange(len(channel.values))
 
 
 def _base(recording: Recording) -> np.ndarray:

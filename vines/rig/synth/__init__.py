@@ -3,6 +3,7 @@
 from vines.rig.synth._campaign import make_campaign
 from vines.rig.synth._contact import LEAST, MOST
 from vines.rig.synth._disturb import Burst, Disturbances, Hum, Ringing, disturbed
+from vines.rig.synth._live import LiveRig
 from vines.rig.synth._make import RawRun, make_run, raw_run, read_raw, simulate_rig
 from vines.rig.synth._pattern import true_pattern
 from vines.rig.synth._settings import RigSettings, draw_settings
@@ -14,6 +15,7 @@ __all__ = [
     "Burst",
     "Disturbances",
     "Hum",
+    "LiveRig",
     "RawRun",
     "RigSettings",
     "Ringing",

@@ -12,17 +12,30 @@ from scipy.signal import lfilter
 from vines.rig.synth._motion import LEAD, Motion
 from vines.rig.synth._settings import RigSettings
 
-__all__ = ["LEAD", "SPARE", "Recorder", "Signal", "recorders", "signals"]
+__all__ = [
+    "BITS",
+    "FULL_SCALE",
+    "LEAD",
+    "SPARE",
+    "STEP",
+    "G",
+    "Recorder",
+    "Signal",
+    "base_acceleration",
+    "position",
+    "recorders",
+    "signals",
+]
 
 SPARE = 0.1
 """[s] Motion after the last sample."""
 GAP = 0.012
 """[s] What the first recorder loses where its clock is planted to be faulty."""
-_FULL_SCALE = 10.0
-_BITS = 24
-STEP = 2 * _FULL_SCALE / 2**_BITS
+FULL_SCALE = 10.0
+BITS = 24
+STEP = 2 * FULL_SCALE / 2**BITS
 """[V] One step of the converter."""
-_G = 9.80665
+G = 9.80665
 _DROPOUT = 2e-3
 _HEADROOM = 0.9
 
@@ -139,35 +152,35 @@ def _signal(
     if name.endswith("disp"):
         base = name.startswith("base")
         delayed = t - s.laser_delay
-        true = motion.base(delayed) if base else _position(motion, delayed)
+        true = motion.base(delayed) if base else position(motion, delayed)
         span = _span(float(np.abs(true).max()))
         noise = s.laser_noise * (span / 0.02)
         seen = true + s.laser_linearity * span * np.sin(2 * np.pi * true / span) / 2
         seen += rng.normal(0.0, noise, count)
-        volts = seen * (_FULL_SCALE / span)
+        volts = seen * (FULL_SCALE / span)
         if not base:
             _drop(volts, s, rng)
-        stated = _FULL_SCALE / (span * 1e3)
+        stated = FULL_SCALE / (span * 1e3)
         about = ("displacement", "V/mm", 0.002, s.laser_delay + drawn.delay_error, 2e-6, 0.0)
         sensor = f"laser triangulation, +-{1e3 * span:g} mm"
     else:
         base = name.startswith("base")
         gain = 1 + (drawn.base_gain if base else drawn.lo_gain)
-        true = _base_acceleration(s, motion, t) if base else _lo_acceleration(s, motion, t, rng)
+        true = base_acceleration(s, motion, t) if base else _lo_acceleration(s, motion, t, rng)
         seen = gain * true + rng.normal(0.0, s.acc_noise, count)
         per_g = _volts_per_g(float(np.abs(seen).max()), base)
-        volts = seen * (per_g / _G)
+        volts = seen * (per_g / G)
         stated = 1e3 * per_g
         # The converter integrates over its sample time.
         delay = 0.0 if base else 0.5 / s.rate
         about = ("acceleration", "mV/g", 0.01, delay, 1e-6, s.acc_high_pass * (1 + drawn.corner_error))
         sensor = f"IEPE accelerometer, {stated:g} mV/g"
     if s.fault == "unit" and s.fault_channel == name:
-        stated *= 25.4 if name.endswith("disp") else _G
+        stated *= 25.4 if name.endswith("disp") else G
     if s.fault == "sign" and s.fault_channel == name:
         volts = -volts
-    volts += rng.normal(0.0, 2 * _FULL_SCALE / 2**s.enob / np.sqrt(12), count)
-    codes = np.clip(np.rint(volts / STEP), -(2 ** (_BITS - 1)), 2 ** (_BITS - 1) - 1).astype(np.int32)
+    volts += rng.normal(0.0, 2 * FULL_SCALE / 2**s.enob / np.sqrt(12), count)
+    codes = np.clip(np.rint(volts / STEP), -(2 ** (BITS - 1)), 2 ** (BITS - 1) - 1).astype(np.int32)
     role: Any = "base_acc" if name == "base_sync" else name
     return Signal(
         name=name, role=role, quantity=about[0], dof="e" if base else "x1", sensor=sensor, recorder=box.name,
@@ -176,7 +189,7 @@ def _signal(
     )  # fmt: skip
 
 
-def _position(motion: Motion, t: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+def position(motion: Motion, t: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
     """Return x1 at any times, by cubic Hermite interpolation."""
     place = t / motion.step
     i = np.clip(place.astype(np.intp), 0, len(motion.x1) - 2)
@@ -186,7 +199,7 @@ def _position(motion: Motion, t: npt.NDArray[np.float64]) -> npt.NDArray[np.floa
     return a + u * (da + u * (3 * (b - a) - 2 * da - db + u * (da + db - 2 * (b - a))))
 
 
-def _base_acceleration(s: RigSettings, motion: Motion, t: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+def base_acceleration(s: RigSettings, motion: Motion, t: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
     """Return the acceleration of the base after the high-pass, which a sine passes with a gain and an advance."""
     if not s.acc_high_pass:
         return motion.base(t, 2)
@@ -237,7 +250,7 @@ def _drop(volts: npt.NDArray[np.float64], s: RigSettings, rng: np.random.Generat
     """Let the laser lose its target now and then: its output goes to the end of its range."""
     for begin in rng.uniform(0.0, s.duration, rng.poisson(s.dropouts * s.duration / 60)):
         i = int(begin * s.rate)
-        volts[i : i + max(1, round(_DROPOUT * s.rate))] = 1.05 * _FULL_SCALE
+        volts[i : i + max(1, round(_DROPOUT * s.rate))] = 1.05 * FULL_SCALE
 
 
 def _span(largest: float) -> float:
@@ -248,4 +261,4 @@ def _span(largest: float) -> float:
 def _volts_per_g(largest: float, base: bool) -> float:
     """Return the sensitivity of the accelerometer that a laboratory would choose [V/g]."""
     choices = (1.0, 0.1, 0.01, 0.001) if base else (0.1, 0.01, 0.001)
-    return next((each for each in choices if largest * each / _G < _HEADROOM * _FULL_SCALE), 0.001)
+    return next((each for each in choices if largest * each / G < _HEADROOM * FULL_SCALE), 0.001)

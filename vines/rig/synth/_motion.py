@@ -11,7 +11,7 @@ from vines.rig.synth._contact import damping_table, stiffness
 from vines.rig.synth._kernel import IMPACT, NAMES, NUMBER, PHASE, ROW, advance
 from vines.rig.synth._settings import RigSettings
 
-__all__ = ["LEAD", "Motion", "move"]
+__all__ = ["LEAD", "Motion", "kernel_parameters", "move", "parameter_array"]
 
 LEAD = 3.0
 """[s] Motion before the first sample, in which couplings settle and delays and offsets lie."""
@@ -100,6 +100,11 @@ def kernel_parameters(s: RigSettings, rng: np.random.Generator) -> dict[str, flo
     }  # fmt: skip
 
 
+def parameter_array(p: dict[str, float]) -> npt.NDArray[np.float64]:
+    """Return parameters in the order of the kernel."""
+    return np.array([p[name] for name in NAMES])
+
+
 def move(s: RigSettings, rng: np.random.Generator, step: float, extra: int, state: np.ndarray | None = None) -> Motion:
     """Let the rig settle and record it.
 
@@ -120,7 +125,7 @@ def move(s: RigSettings, rng: np.random.Generator, step: float, extra: int, stat
     if state is not None:
         # The generator runs on from the run before.
         p["phi"] = float(state[PHASE])
-    values = np.array([p[name] for name in NAMES])
+    values = parameter_array(p)
     modes = np.array([complex(-z, np.sqrt(1 - z * z)) * 2 * np.pi * f for f, z, _ in s.modes], np.complex128)
     gains = np.zeros((2, len(modes)), np.complex128)
     gains[0] = [gain for *_, gain in s.modes]
