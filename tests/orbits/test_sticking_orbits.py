@@ -20,7 +20,7 @@ from vines.orbits import (
 )
 from vines.orbits._floquet import monodromy
 from vines.orbits._sticking_ends import chatter_exponent
-from vines.systems import ImpactPair
+from vines.systems import Parallel
 
 # The case of the issue: settle gives a stable 1:1 that sticks, the orbit LR is inadmissible.
 P = Params(mu=0.0256654, A=0.965717, Omega=1.02946, r=0.347164, lam=0.0959532)
@@ -135,8 +135,8 @@ def test_a_guess_is_an_orbit_or_a_release(symmetric):
 def test_what_is_not_there_is_said():
     with pytest.raises(OrbitNotFound, match="there may be more"):
         find_orbit("L*RR", P)
-    with pytest.raises(OrbitNotFound, match="for the VI-NES only"):
-        find_orbit("L*R", ImpactPair(B=1.0, G=0.0, r=0.3))
+    with pytest.raises(OrbitNotFound, match="for the VI-NES and the impact pair, not for 'parallel'"):
+        find_orbit("L*R", Parallel(mu=(0.01,), A=0.5, G=0.01))
     assert all_orbits("L*L*", P).complete
     with pytest.raises(ParameterError, match="sticks, for which this is not made"):
         optimise("L*R*", "max_abs_x1", P, {"A": (0.5, 1.0)})

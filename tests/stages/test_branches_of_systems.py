@@ -1,9 +1,12 @@
 """The kind `branch` of other systems: all families, what comes out of them, and rows that hold."""
 
+import re
+
 import pytest
 
 import vines
-from vines.stages import run, verify
+from vines.errors import VinesError
+from vines.stages import load_pipeline, run, verify
 
 FAMILIES = """
 title = "families of other systems"
@@ -56,3 +59,33 @@ def test_all_families_of_a_pair_and_of_two_balls(project, monkeypatch):
     assert len(vines.table("parallel_branches").to_pylist()) >= 1
     found = verify("families", recompute=20)
     assert found.good, [line.first for line in found.lines if line.first]
+
+
+@pytest.mark.parametrize(
+    ("change", "text"),
+    [
+        (
+            ("L1L2R1R2", "L1*L2R1R2"),
+            "those of systems whose ball has no number, not of 'parallel'",
+        ),
+        (('families = "all"\nseeds = 3', 'families = "few"\nseeds = 3'), "families is 'few'"),
+        (('kind = "branch"\nword = "L*R*"', 'kind = "optimum"\nword = "LR"'), "no displacement can be kept small"),
+        (('kind = "branch"\nword = "L*R*"', 'kind = "reduced"'), "known in closed form"),
+        (
+            (
+                'kind = "branch"\nword = "L*R*"\nparams = { r = 0.3 }\nvary.B = { from = 3.0, to = 2.5 }\npoints = 4',
+                'kind = "curve"\ntype = "fold"\nword = "L*R*"\n'
+                "vary.B = { from = 2, to = 3 }\nvary.r = { from = 0, to = 1 }",
+            ),
+            "'L*R*' sticks, for which this is not made",
+        ),
+    ],
+)
+def test_what_a_system_cannot_do_is_refused_in_one_line_that_says_why(project, monkeypatch, change, text):
+    monkeypatch.setenv("VINES_ROOT", str(project.root))
+    assert change[0] in FAMILIES
+    declared = FAMILIES.replace(*change)
+    (project.root / "pipelines" / "families.toml").write_text(declared, encoding="utf-8")
+    with pytest.raises(VinesError, match=re.escape(text)) as caught:
+        load_pipeline("families")
+    assert "\n" not in str(caught.value)

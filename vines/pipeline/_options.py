@@ -37,7 +37,7 @@ def known(table: Iterable[str], allowed: Iterable[str], where: str) -> None:
     DeclarationError
         With the first of them, and the nearest that is allowed.
     """
-    names = list(allowed)
+    names = list(dict.fromkeys(allowed))
     for key in table:
         if key not in names:
             raise DeclarationError(f"{where}: unknown key {key!r}: {nearest(key, names)}")
