@@ -19,7 +19,7 @@ from vines.rig.quantities._forcing import Base, Tuning
 from vines.rig.quantities._reconstruction import Finding
 from vines.rig.quantities._ring_down import STIFFNESS_DRIFT
 from vines.rig.recording import Recording, Uncertain
-from vines.rig.uncertainty import standard_error
+from vines.rig.uncertainty import block_length
 
 __all__ = ["FALSE_ALARM", "MATTERS", "BaseCourse", "base_course", "run_trends", "trend", "trend_findings"]
 
@@ -86,7 +86,15 @@ def trend(t: Floats, values: Floats) -> Uncertain:
     slope = float(np.sum(away * values) / spread)
     left = values - values.mean() - slope * away
     span = float(t[-1] - t[0])
-    return Uncertain(slope * span, standard_error(len(t) * away * left / spread) * span)
+    # What neighbours share is read from the residuals, too; Student's factor is that of the chance that is stated.
+    parts = len(t) * away * left / spread
+    length = max(block_length(left), block_length(parts))
+    freedom = max(1.5 * len(t) / length - 1.5, 2.0)
+    total = np.concatenate([[0.0], np.cumsum(np.concatenate([parts, parts[:length]]))])
+    blocks = total[length : length + len(t)] - total[: len(t)]
+    variance = float(np.mean(blocks**2)) / (length * len(t) * max(1 - length / len(t), 0.1))
+    wider = float(stdtrit(freedom, 1 - FALSE_ALARM / 2)) / float(stdtrit(1e9, 1 - FALSE_ALARM / 2))
+    return Uncertain(slope * span, float(np.sqrt(variance)) * span * wider)
 
 
 def base_course(base: Base) -> BaseCourse:
