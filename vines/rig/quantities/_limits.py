@@ -86,14 +86,14 @@ def limits(
     found = [
         Finding(
             "linear_spring", _within(bend, STIFFENS),
-            f"by the ring-down the frequency shifts by {100 * abs(bend.value):.2g} % at the amplitude of the run, allowed "
-            f"is {100 * STIFFENS:.2g} %: the spring is not linear, it {'stiffens' if bend.value > 0 else 'softens'}",
+            f"by the ring-down the frequency shifts by {100 * abs(bend.value):.2g} % at the amplitude of the run, "
+            f"allowed is {100 * STIFFENS:.2g} %: the spring is not linear, it {'stiffens' if bend.value > 0 else 'softens'}",
         ),
         Finding(
             "short_contact", lasts is None or _within(lasts, longest),
             "too few impacts are alone to tell how long a contact lasts" if lasts is None else
-            f"a contact lasts {1e3 * lasts.value:.2g} ms, allowed are {1e3 * longest:.2g} ms: the contact is soft, and the "
-            "model's impacts take no time",
+            f"a contact lasts {1e3 * lasts.value:.2g} ms, allowed are {1e3 * longest:.2g} ms: the contact is soft, and "
+            "the model's impacts take no time",
         ),
         Finding(
             "base_reacts", gives is None or not gives.value < _TURNS_ROUND or _within(gives, _GIVES),
