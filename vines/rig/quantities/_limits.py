@@ -87,7 +87,8 @@ def limits(
         Finding(
             "linear_spring", _within(bend, STIFFENS),
             f"by the ring-down the frequency shifts by {100 * abs(bend.value):.2g} % at the amplitude of the run, "
-            f"allowed is {100 * STIFFENS:.2g} %: the spring is not linear, it {'stiffens' if bend.value > 0 else 'softens'}",
+            f"allowed is {100 * STIFFENS:.2g} %: the spring is not linear, it "
+            + ("stiffens" if bend.value > 0 else "softens"),
         ),
         Finding(
             "short_contact", lasts is None or _within(lasts, longest),
