@@ -86,23 +86,21 @@ def limits(
     found = [
         Finding(
             "linear_spring", _within(bend, STIFFENS),
-            f"the spring is not linear: by the ring-down it {'stiffens' if bend.value > 0 else 'softens'}, which "
-            f"shifts the frequency by {100 * abs(bend.value):.2g} % at the amplitude of the run, allowed is "
-            f"{100 * STIFFENS:.2g} %; omega0 and lam are not those of one oscillator",
+            f"by the ring-down the frequency shifts by {100 * abs(bend.value):.2g} % at the amplitude of the run, "
+            f"allowed is {100 * STIFFENS:.2g} %: the spring is not linear, it "
+            + ("stiffens" if bend.value > 0 else "softens"),
         ),
         Finding(
             "short_contact", lasts is None or _within(lasts, longest),
-            "the contact is soft: " + (
-                "how long it lasts can't be seen" if lasts is None else
-                f"it lasts {1e3 * lasts.value:.2g} ms, allowed are {1e3 * longest:.2g} ms"
-            ) + "; the model's impacts take no time",
+            "too few impacts are alone to tell how long a contact lasts" if lasts is None else
+            f"a contact lasts {1e3 * lasts.value:.2g} ms, allowed are {1e3 * longest:.2g} ms: the contact is soft, and "
+            "the model's impacts take no time",
         ),
         Finding(
             "base_reacts", gives is None or not gives.value < _TURNS_ROUND or _within(gives, _GIVES),
-            "the base gives way to the oscillator (shaker or frame): " + (
-                "that can't be seen" if gives is None else
-                f"it follows by {100 * gives.value:.2g} % between the harmonics, allowed is {100 * _GIVES:.2g} %"
-            ) + "; the model's base moves as it is told",
+            "no pair of channels tells whether the base follows the oscillator" if gives is None else
+            f"the base follows the oscillator by {100 * gives.value:.2g} % between the harmonics, allowed is "
+            f"{100 * _GIVES:.2g} %: the base gives way (shaker or frame), and the model's moves as it is told",
         ),
     ]  # fmt: skip
     moved = max((one.base for one in ringdowns), default=0.0)
