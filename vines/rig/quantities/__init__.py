@@ -1,5 +1,6 @@
 """From a recording to the quantities of the model, with uncertainties, pattern and gates."""
 
+from vines.rig.quantities._budget import SOURCES
 from vines.rig.quantities._cycle import Slots, Track, matching, mean_cycle, slots
 from vines.rig.quantities._match_ring_downs import match_ring_downs
 from vines.rig.quantities._pattern import HOLDS, Pattern, Periods, cut_into_periods, find_pattern
@@ -11,6 +12,7 @@ __all__ = [
     "HOLDS",
     "IMPACT",
     "QUANTITIES",
+    "SOURCES",
     "Finding",
     "Pattern",
     "Periods",

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 
 import numpy as np
 import numpy.typing as npt
@@ -59,6 +60,8 @@ class Tuning:
         Base motion that the response asks for, relative to the measured one, before the correction.
     misfit : float
         Distance of `ratio` from 1 in standard deviations (root of chi^2 of two degrees of freedom).
+    parts : mapping of str to mapping of str to float
+        What each source adds to the relative uncertainty of ``omega0`` and ``E``.
     """
 
     omega0: Uncertain
@@ -67,6 +70,7 @@ class Tuning:
     phase: float
     ratio: complex
     misfit: float
+    parts: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
 
 
 def measure_base(recording: Recording, *, harmonics: int = 3) -> Base:
@@ -165,6 +169,7 @@ def tune(
     misfit = float(np.sqrt(seen @ np.linalg.solve(spread, seen)))
     u = np.sqrt(np.maximum(np.diag(after), 0.0))
     # Of the correction of the gain, the base's share; the oscillator's own calibration keeps the rest.
+    gains = (base.E.u / base.E.value, u_gain)
     share = (base.E.u / base.E.value) ** 2 / relative_gain**2 if relative_gain > 0 else 1.0
     E = base.E.value * (1 + share * float(step[2]))
     u_E = base.E.value * float(np.sqrt(share**2 * u[2] ** 2 + share * (1 - share) * relative_gain**2))
@@ -175,4 +180,48 @@ def tune(
         float(step[3]),
         ratio,
         misfit,
+        _parts(np.sqrt(np.diag(prior)), np.asarray(gain @ rows), np.asarray(gain @ covariance @ gain.T), gains, share),
     )
+
+
+def _parts(
+    prior: npt.NDArray[np.floating],
+    taken: npt.NDArray[np.floating],
+    noise: npt.NDArray[np.floating],
+    gains: tuple[float, float],
+    share: float,
+) -> dict[str, dict[str, float]]:
+    """Return what each source adds to the relative uncertainties of omega0 and E.
+
+    Parameters
+    ----------
+    prior : ndarray, shape (4,)
+        Standard uncertainties of omega0, lam, gain and phase before.
+    taken : ndarray, shape (4, 4)
+        Gain of the Kalman step times its rows: what it takes off an error of each.
+    noise : ndarray, shape (4, 4)
+        Covariance that the noise of the response brings.
+    gains : tuple of float
+        Relative uncertainties of the sensors of base and oscillator, which are the third one.
+    share : float
+        Part of the correction of the gain that is the base's.
+    """
+    left = np.abs(np.eye(4) - taken)
+    one = {
+        "ring_down": left[0, 0] * prior[0],
+        "damping": left[0, 1] * prior[1],
+        "base_sensor": left[0, 2] * gains[0],
+        "lo_sensor": left[0, 2] * gains[1],
+        "delay": left[0, 3] * prior[3],
+        "noise": np.sqrt(noise[0, 0]),
+    }
+    moved = share * np.abs(taken[2])
+    other = {
+        "ring_down": moved[0] * prior[0],
+        "damping": moved[1] * prior[1],
+        "base_sensor": abs(1 - share * taken[2, 2]) * gains[0],
+        "lo_sensor": moved[2] * gains[1],
+        "delay": moved[3] * prior[3],
+        "noise": share * np.sqrt(noise[2, 2]),
+    }
+    return {name: {key: float(u) for key, u in parts.items()} for name, parts in (("omega0", one), ("E", other))}
