@@ -23,19 +23,20 @@ _BROWSERS = ("chromium", "chromium-browser", "google-chrome")
 
 _STYLE = """
 @page { size: A4; margin: 14mm 13mm; }
-body { font: 10pt/1.4 system-ui, "DejaVu Sans", sans-serif; color: #1c1c1c; margin: 0 auto; max-width: 62rem;
+body { font: 10pt/1.4 system-ui, "DejaVu Sans", sans-serif; color: #1c1c1c; margin: 0 auto; max-width: 76rem;
   padding: 1rem; }
 h1 { font-size: 1.5rem; margin: 0 0 .2rem; } h2 { font-size: 1.05rem; margin: 1.3rem 0 .35rem;
   border-bottom: 1px solid #c9c9c4; break-after: avoid; } p { margin: .25rem 0 .5rem; }
-table { border-collapse: collapse; font-size: .8rem; font-variant-numeric: tabular-nums; width: 100%; }
+table { border-collapse: collapse; font-size: .76rem; font-variant-numeric: tabular-nums; width: 100%; }
 th, td { text-align: left; padding: .14rem .45rem; border-bottom: 1px solid #deded9; vertical-align: top; }
 th { border-bottom: 1px solid #777; } tr { break-inside: avoid; } td.number, th.number { text-align: right;
-  white-space: nowrap; } td.short { white-space: nowrap; } td.long { min-width: 11rem; }
+  white-space: nowrap; } td.short { white-space: nowrap; } td.long { min-width: 8rem; }
   td.code { font: .75rem ui-monospace, monospace; overflow-wrap: anywhere; }
 .agree, .ok, .yes { color: #17703a; } .disagree, .failed, .no { color: #a8071a; }
 .undecidable, .pattern_only { color: #7a5200; } figure { margin: .4rem 0; break-inside: avoid; }
 figure img { width: 100%; } figcaption { font-size: .8rem; color: #5c5c5c; }
-@media print { body { padding: 0; max-width: none; font-size: 9pt; } }
+@media print { body { padding: 0; max-width: none; font-size: 9pt; } table { font-size: 6.6pt; }
+  th, td { padding: .1rem .25rem; } td.long { min-width: 4rem; } }
 """
 _POLICY = "default-src 'none'; img-src data:; style-src 'unsafe-inline'"
 
@@ -136,7 +137,15 @@ def _part(part: Heading | Table | Picture) -> str:
     for row in part.rows:
         cells = []
         for text, number in zip(row, numeric, strict=True):
-            kind = "number" if number else "short" if len(text) < _SHORT else "long" if " " in text else "code"
+            kind = (
+                "number"
+                if number
+                else "short"
+                if len(text) < _SHORT
+                else "code"
+                if len(text) > _DIGEST and " " not in text
+                else "long"
+            )
             word = text.replace(" ", "_")
             kind += f" {word}" if word in _COLOURED else ""
             cells.append(f'<td class="{kind.strip()}">{escape(text)}</td>' if kind else f"<td>{escape(text)}</td>")
@@ -149,6 +158,9 @@ _COLOURED = ("agree", "disagree", "undecidable", "pattern_only", "ok", "failed",
 
 _SHORT = 14
 """Characters of a cell that is not broken into lines."""
+
+_DIGEST = 60
+"""Characters of a cell without blanks that is a digest."""
 
 
 def _is_number(text: str) -> bool:
