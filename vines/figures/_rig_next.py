@@ -71,7 +71,7 @@ def rig_next_figure(
     Parameters
     ----------
     bands : sequence of StableBand
-        Those that overlap are hatched by their overlap: there branches coexist.
+        Where they overlap branches coexist.
     measured : ndarray, shape (runs, 2)
         A and Omega of the runs.
     marks : sequence of PlaneMark
@@ -102,20 +102,24 @@ def rig_next_figure(
             drawn: Any = {"facecolor": (*to_rgb(colour), 0.55), "edgecolor": colour, "hatch": hatch, "linewidth": 0.8}
             ax.fill_between(omega, low, high, **drawn)
             entries.setdefault(band.name, Patch(**drawn))
-        ax.plot(measured[:, 1], measured[:, 0], "o", color=COLOURS["ink"], markersize=4.5, zorder=4)
-        entries["measured"] = Line2D([], [], marker="o", color=COLOURS["ink"], linestyle="", markersize=4.5)
+        ink = COLOURS["ink"]
+        dots: Any = {"marker": "o", "color": ink, "markeredgecolor": "white", "markersize": 4.5, "linestyle": ""}
+        ax.plot(measured[:, 1], measured[:, 0], zorder=8, **dots)
+        entries["measured"] = Line2D([], [], **dots)
         for mark in marks:
             colour = COLOURS["L"] if mark.jump else COLOURS["ink"]
-            ax.plot(mark.omega, mark.A, "D" if mark.jump else "s", color="white", markeredgecolor=colour, markersize=11,
-                    zorder=5)  # fmt: skip
+            # A mark is small, with its number beside it: a run or a jump may lie in the same place.
+            ax.plot(mark.omega, mark.A, "D" if mark.jump else "s", color=colour if mark.jump else "white",
+                    markeredgecolor=colour, markersize=4.5 if mark.jump else 7, zorder=5 + mark.jump)  # fmt: skip
             ax.annotate(
-                str(mark.number), (mark.omega, mark.A), ha="center", va="center", fontsize=7, color=colour, zorder=6
-            )
+                str(mark.number), (mark.omega, mark.A), (9, -4 if mark.jump else 5), textcoords="offset points",
+                ha="center", va="center", fontsize=7.5, color=colour, zorder=9, weight="bold",
+            )  # fmt: skip
         for name, jump in (("measure next", False), ("a jump is near", True)):
             if any(mark.jump == jump for mark in marks):
                 entries[name] = Line2D(
-                    [], [], marker="D" if jump else "s", color="white", linestyle="", markersize=8,
-                    markeredgecolor=COLOURS["L"] if jump else COLOURS["ink"],
+                    [], [], marker="D" if jump else "s", color=COLOURS["L"] if jump else "white", linestyle="",
+                    markersize=4.5 if jump else 7, markeredgecolor=COLOURS["L"] if jump else COLOURS["ink"],
                 )  # fmt: skip
         ax.set_xlim(*window[0])
         ax.set_ylim(*window[1])

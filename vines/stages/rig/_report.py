@@ -153,7 +153,8 @@ def _verdicts(campaign: _Campaign) -> Iterator[Heading | Table]:
         verdict = row["verdict"].replace("_", " ")
         rows.append([name, accepted, *numbers, row["pattern"] or "", row.get("branch") or "", errors, verdict, reason])
     rows += [[name, "no", *[""] * 7, "failed", why] for name, why in campaign.lost.items() if name not in best]
-    head = ["run", "accepted", "A", "Omega", "mu", "r", "shows", "branch", "E_n", "verdict", "reason"]
+    head = ["run", "accepted", "A", "Omega", "mu", "r", "shows", "branch", "E_n: phase / |x1| / K2:K1", "verdict"]
+    head += ["reason"]
     yield Table(head, sorted(rows))
 
 
