@@ -49,13 +49,13 @@ def test_pdf_without_chromium_and_other_endings_are_refused(tmp_path, monkeypatc
 
 @pytest.mark.full
 def test_a_campaign_is_told_and_asked_what_is_next(project):
-    light = {"rate": 12800.0, "settle": 30.0}
     free = RigSettings(
         run_id="free", protocol="ringdown", ball=False, E=0.0, duration=10.0, start=(0.012, 0.0, 0.0, 0.0),
         rate=12800.0, settle=0.0,
     )  # fmt: skip
     make_run(project.root / "runs" / "free", free, 1)
-    make_run(project.root / "runs" / "good", RigSettings(run_id="good", duration=12.0, ringdown=("free",), **light), 7)
+    good = RigSettings(run_id="good", duration=12.0, settle=30.0, rate=12800.0, ringdown=("free",))
+    make_run(project.root / "runs" / "good", good, 7)
     (project.root / "runs" / "bad").mkdir()
     (project.root / "runs" / "bad" / "run.json").write_text("{")
     project.vines("rig", "report", "runs", "--out", "page.md")
