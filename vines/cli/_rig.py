@@ -15,6 +15,8 @@ COMMANDS = {
     "reconstruct": ("vines.cli._rig_reconstruct", "Bring a run to the quantities of the model, with uncertainties."),
     "compare": ("vines.cli._rig_compare", "Lay a run beside the branches of the model that coexist: the verdict."),
     "watch": ("vines.cli._rig_watch", "Watch a run while it goes on: log it, show it, say how it goes."),
+    "next": ("vines.cli._rig_next", "Say which amplitude and frequency to measure next, and why."),
+    "report": ("vines.cli._rig_report", "Write a page about a campaign: set-up, calibration, verdicts, budgets."),
     "synth": ("vines.cli._rig_synth", "Make a run folder of a synthetic rig, its truth sealed."),
     "campaign": ("vines.cli._rig_campaign", "Make a synthetic sweep up and down with ring-downs."),
 }
@@ -33,4 +35,6 @@ def command() -> None:
     vines rig reconstruct my_run       omega0, A, mu, r, impacts, pattern, with uncertainties
     vines rig watch listen://5555      a run while it goes on
     vines rig compare my_run           agree, pattern_only, disagree or undecidable, with the reason
+    vines rig next my_runs             which amplitude and frequency to measure next, and why
+    vines rig report my_runs           one page about the campaign
     """  # noqa: D301

@@ -44,11 +44,16 @@ from ._regimes import RegimeMap as RegimeMap
 from ._regimes import regimes_figure as regimes_figure
 from ._response import VelocityPanel as VelocityPanel
 from ._response import response_figure as response_figure
+from ._rig_agreement import AgreementRow as AgreementRow
+from ._rig_agreement import rig_agreement_figure as rig_agreement_figure
 from ._rig_branches import RigPoints as RigPoints
 from ._rig_branches import rig_branches_figure as rig_branches_figure
 from ._rig_cycles import RigCycle as RigCycle
 from ._rig_cycles import rig_cycles_figure as rig_cycles_figure
 from ._rig_cycles import rig_waits_figure as rig_waits_figure
+from ._rig_next import PlaneMark as PlaneMark
+from ._rig_next import StableBand as StableBand
+from ._rig_next import rig_next_figure as rig_next_figure
 from ._rig_residual import rig_residual_figure as rig_residual_figure
 from ._runs import EndsPanel as EndsPanel
 from ._runs import GapPanel as GapPanel

@@ -1,3 +1,6 @@
+from .design import Plan as Plan
+from .design import Suggestion as Suggestion
+from .design import plan_runs as plan_runs
 from .ingest import Ingested as Ingested
 from .ingest import channel_facts as channel_facts
 from .ingest import draw_file as draw_file

@@ -50,6 +50,11 @@ from .rig._by_hand import each_of as each_of
 from .rig._by_hand import is_campaign as is_campaign
 from .rig._by_hand import reconstruct_run as reconstruct_run
 from .rig._foxglove import foxglove_server as foxglove_server
+from .rig._next import Next as Next
+from .rig._next import next_runs as next_runs
+from .rig._next import suggestion_rows as suggestion_rows
+from .rig._next import table_of as table_of
+from .rig._report import report_campaign as report_campaign
 from .rig._running import ingest_folder as ingest_folder
 from .rig._telling import report_line as report_line
 from .rig._watch import Watched as Watched

@@ -13,18 +13,27 @@ from vines.rig.formats._raw import RawChannel
 __all__ = ["FORMAT", "read", "write"]
 
 
-def write(path: Path, channels: tuple[RawChannel, ...], *, started: str) -> None:
-    """Write channels of one rate and start with their units in the head and the rate in a note above, see `Format`."""
+def write(path: Path, channels: tuple[RawChannel, ...], *, started: str | None) -> None:
+    """Write channels of one rate and start, see `Format`: units in the head, the rate in a note above or as times.
+
+    A sample that is no number is an empty cell.
+    """
     import pyarrow as pa
     import pyarrow.csv as pc
 
     names = [f"{each.name} [{each.unit}]" if each.unit else each.name for each in channels]
     columns = [np.asarray(each.values, np.float64) * float(each.about.get("slope", "1")) for each in channels]
+    notes = f"# started: {started}\n" if started else ""
+    times = channels[0].times
+    if times is None:
+        notes += f"# sampling_rate: {channels[0].rate!r}\n"
+    else:
+        names, columns = ["t [s]", *names], [times, *columns]
     with path.open("wb") as stream:
-        stream.write(f"# started: {started}\n# sampling_rate: {channels[0].rate!r}\n".encode())
-        stream.write((",".join(names) + "\n").encode())
+        stream.write((notes + ",".join(names) + "\n").encode())
         options = pc.WriteOptions(include_header=False)
-        pc.write_csv(pa.table(columns, names=names), stream, write_options=options)
+        rows = pa.table([pa.array(values, from_pandas=True) for values in columns], names=names)
+        pc.write_csv(rows, stream, write_options=options)
 
 
 FORMAT = Format(

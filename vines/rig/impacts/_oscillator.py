@@ -34,6 +34,13 @@ _DENIED = 0.2
 
 _ROUNDS = 5
 
+_SEEN = 4e-3
+"""Impacts of the ball's own sensor nearer than this to one of the oscillator's are that one [s]."""
+
+_MOVES = 3
+
+_AT_REST = 1e-5
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Response:
@@ -66,6 +73,8 @@ class Response:
         Of the channel before anything was found out about it.
     delay : float
         By how much `channel` is later than the accelerometer [s].
+    lent : ndarray of bool, shape (K,)
+        Impacts that the ball's own sensor showed and those of the oscillator did not.
     """
 
     channel: Sampled
@@ -82,6 +91,7 @@ class Response:
     pruned: int
     begun: Fitter
     delay: float
+    lent: npt.NDArray[np.bool_]
 
 
 def measure_response(
@@ -94,6 +104,7 @@ def measure_response(
     friction: float = 0.0,
     u_natural: tuple[float, float] = (1e-5, 1e-3),
     impacts: tuple[Floats, Floats] | None = None,
+    seen: Train | None = None,
     seed: int = 0,
 ) -> Response:
     """Find the impacts and fit the oscillator's motion.
@@ -115,6 +126,8 @@ def measure_response(
         First harmonic of the forced response that the base asks for [m].
     impacts : tuple of ndarray, optional
         Times [s] on the clock of the oscillator's channel and velocity jumps [m/s], if they are known otherwise.
+    seen : Train, optional
+        Impacts that a sensor of the ball showed: those among them that the oscillator's do not show are taken over.
     seed : int
         Of the draws for uncertainties.
 
@@ -142,12 +155,15 @@ def measure_response(
         found = search_acceleration(fitter, channel)
         fitter = found.fitter
     train, delay = found.train.later(found.delay), found.delay
+    lent = np.zeros(len(train), bool)
+    if seen is not None and impacts is None:
+        train, lent = _with_seen(fitter, train, seen)
     fit, _ = fitter.fit_rubbed(train)
     for _ in range(_ROUNDS if impacts is None else 0):
-        keep = _credible(fit, train, fitter)
+        keep = _credible(fit, train, fitter, lent)
         if keep.all():
             break
-        train = train.only(keep)
+        train, lent = train.only(keep), lent[keep]
         fit, _ = fitter.fit_rubbed(train)
     pushed = fitter.rubbed(fit)
     if pushed is not None and order == 0:
@@ -158,7 +174,7 @@ def measure_response(
     )
     return Response(
         channel, order, fitter.bins, fit, pushed, train.dv, found.gain, late, u_late, found.drift, found.candidates,
-        found.candidates - len(train), begun, delay,
+        found.candidates - len(train) + int(np.count_nonzero(lent)), begun, delay, lent,
     )  # fmt: skip
 
 
@@ -176,13 +192,34 @@ def _quiet(accelerometer: Sampled) -> Bins:
     return Bins(t[fair], pulses.values[::stride][fair], 0.0, pulses.smooth)
 
 
-def _credible(fit: JumpFit, train: Train, fitter: Fitter) -> npt.NDArray[np.bool_]:
+def _with_seen(fitter: Fitter, train: Train, seen: Train) -> tuple[Train, npt.NDArray[np.bool_]]:
+    """Add impacts that only the ball's own sensor shows, moved to where the oscillator bends; say which they are."""
+    more = inside(fitter.bins, seen.only(train.distance(seen.t) > _SEEN))
+    lent = np.zeros(len(train), bool)
+    if not len(more):
+        return train, lent
+    order = np.argsort(np.concatenate([train.t, more.t]), kind="stable")
+    lent = np.concatenate([lent, np.ones(len(more), bool)])[order]
+    train = train.merged(more)
+    for _ in range(_MOVES):
+        shift = np.where(lent, np.clip(fitter.fit(train, 0).shift, -_SEEN / 2, _SEEN / 2), 0.0)
+        moved = train.t + shift
+        if np.any(np.diff(moved) <= 0):
+            break
+        train = Train(moved, train.dv, train.u)
+        if np.abs(shift).max() < _AT_REST:
+            break
+    return train, lent
+
+
+def _credible(fit: JumpFit, train: Train, fitter: Fitter, lent: npt.NDArray[np.bool_]) -> npt.NDArray[np.bool_]:
     """Say which impacts to keep; of several near each other, the least credible one goes first.
 
     An impact whose jump the motion shows stays, but of two in one place, with jumps that cancel, not the one that was
     heard less well. One that was heard only stays if the motion does not deny its pulse, if it is not what a far
     larger one beside it left, and if the ball was at the wall then: it changes the ball's flight hardly. Beside a
-    flight that is not one nothing can be said; and where many are denied, it is the fit that is wrong.
+    flight that is not one nothing can be said; and where many are denied, it is the fit that is wrong. One that the
+    ball's own sensor `lent` is no noise: it stays as long as its jump is that of the ball's turn.
     """
     dv, t, pulse = fit.jumps.dv, train.t, train.dv
     shown = np.abs(dv) > KEEP * fit.u_dv
@@ -191,6 +228,7 @@ def _credible(fit: JumpFit, train: Train, fitter: Fitter) -> npt.NDArray[np.bool
     soft = ~denied & ~_beside(t, dv, pulse) & (_off_the_wall(fit, fitter.b) < _AT_WALL * fitter.b)
     # An acceleration has weighed pulses and flights against each other before.
     keep = shown | (train.heard & (blind | soft | (fitter.model.order == 2)))
+    keep |= lent & (np.abs(dv - pulse) < KEEP * fit.u_dv + 0.2 * np.abs(pulse))
     if not len(keep) or np.mean(~keep) > _DENIED:
         return np.ones(len(t), bool)
     # In a cluster a false impact spoils the jumps of its neighbours.

@@ -10,6 +10,7 @@ import numpy.typing as npt
 from vines.errors import RigError
 from vines.rig.formats import RawChannel
 from vines.rig.ingest._clipping import clipped_samples
+from vines.rig.ingest._frames import frames_lost
 from vines.rig.ingest._lost import lost_signal
 from vines.rig.ingest._overrule import Overruling
 from vines.rig.ingest._run_form import ChannelRow
@@ -91,8 +92,9 @@ def calibrate(
     if raw.values.ndim != 1 or not len(raw.values):
         raise RigError(f"{where}: it holds no samples")
     values = np.asarray(raw.values, np.float64)
+    camera = row.role == "ball_cam"
     bad = ~np.isfinite(values)
-    if bad.any():
+    if bad.any() and not camera:
         first = raw.about.get("no number", f"number {int(bad.argmax())}")
         raise RigError(
             f"{where}: {int(bad.sum())} of {len(bad)} samples are NaN or infinite, the first is {first}; "
@@ -105,10 +107,13 @@ def calibrate(
     rate = found.rate
     # A temperature stays where it is for long, without being clipped.
     still = row.role == "temperature"
-    lost = np.abs(values) >= row.range if still else clipped_samples(values, row.range)
+    if camera:
+        values, lost = frames_lost(values, where, row.range)
+    else:
+        lost = np.abs(values) >= row.range if still else clipped_samples(values, row.range)
     share = lost.mean()
     gone = _no_signal(values) if row.role in _BY_LIGHT else None
-    if share > max_clipped:
+    if share > max_clipped and not camera:
         raise RigError(
             f"{where}: {share:.2%} of the samples are clipped at {row.range:g} {row.unit}, allowed is "
             f"{max_clipped:.2%} (max_clipped in run.json); record again with a larger range"
@@ -126,7 +131,8 @@ def calibrate(
     valid = np.ones(len(values), bool)
     if lost.any():
         places = np.flatnonzero(lost)
-        for shift in range(-_GUARD, _GUARD + 1):
+        guard = 0 if camera else _GUARD
+        for shift in range(-guard, guard + 1):
             valid[np.clip(places + shift, 0, len(valid) - 1)] = False
     values = values * (factor * float(row.sign))
     if row.high_pass:

@@ -17,6 +17,7 @@ _DIFFER = 300e-6
 """Relative difference of two sample clocks beyond which one of them is not what it says: quartz is within 100 ppm."""
 _SLIP = 2e-4
 """[s] Jump of a clock from one block to the next that means lost samples."""
+_BY_IMPACTS = "its own; the ball's impacts bring it onto the clock of the run when that is reconstructed"
 _PAIRS = (
     ("base_acc", "base_acc"),
     ("base_vel", "base_vel"),
@@ -67,7 +68,8 @@ def align_clocks(channels: Sequence[Calibrated], *, max_offset: float, ringdown:
     max_offset : float
         How far apart the recorders may have been started at most [s].
     ringdown : bool
-        Whether the base is at rest; the oscillator is compared then.
+        Whether the base is at rest; the oscillator is compared then. A recorder that saw the ball alone shares no sine
+        with others: its times stay its own, uncertain by `max_offset`.
 
     Raises
     ------
@@ -87,6 +89,9 @@ def align_clocks(channels: Sequence[Calibrated], *, max_offset: float, ringdown:
     first, *others = by_recorder
     clocks = {first: Clock(0.0, 1.0, 0.0, "the clock of the run")}
     for name in others:
+        if all(channel.row.role == "ball_cam" for channel in by_recorder[name]):
+            clocks[name] = Clock(0.0, 1.0, max_offset, _BY_IMPACTS)
+            continue
         clocks[name] = _align(by_recorder[first], by_recorder[name], tones, max_offset, (first, name))
     return clocks
 

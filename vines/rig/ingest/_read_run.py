@@ -13,6 +13,7 @@ from vines.rig.formats import RawChannel, RawFile, read_file
 from vines.rig.ingest._agreement import check_agreement
 from vines.rig.ingest._calibrate import U_CORNER, Calibrated, calibrate
 from vines.rig.ingest._clock import Clock, align_clocks
+from vines.rig.ingest._frames import whole_frames
 from vines.rig.ingest._overrule import Overruling
 from vines.rig.ingest._run_folder import RunFolder, check_sums, raw_sums, read_folder, run_info
 from vines.rig.ingest._run_form import RECORDING, ChannelRow, Part, RunForm
@@ -138,6 +139,7 @@ def _assemble(
 ) -> Ingested:
     info = run_info(form)
     raw = [(row, _field(row, files[row.file]), Overruling(row.overrule)) for row in rows]
+    raw = [(row, whole_frames(each) if row.role == "ball_cam" else each, why) for row, each, why in raw]
     calibrated = [
         calibrate(row, channel, max_clipped=form.max_clipped, overruling=reasons) for row, channel, reasons in raw
     ]

@@ -1,5 +1,6 @@
 """From a recording to the quantities of the model, with uncertainties, pattern and gates."""
 
+from vines.rig.quantities._budget import SOURCES
 from vines.rig.quantities._cycle import Slots, Track, matching, mean_cycle, slots
 from vines.rig.quantities._dwells import Dwell, dwells, envelope
 from vines.rig.quantities._forcing import measure_base
@@ -14,6 +15,7 @@ __all__ = [
     "IMPACT",
     "NOTED",
     "QUANTITIES",
+    "SOURCES",
     "Dwell",
     "Finding",
     "Pattern",

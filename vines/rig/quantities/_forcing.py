@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 
 import numpy as np
 import numpy.typing as npt
@@ -12,6 +13,9 @@ from vines.rig.fit import SineFit, bins_of, sine_fit
 from vines.rig.recording import Recording, Sampled, Uncertain
 
 __all__ = ["Base", "Rubbed", "Tuning", "measure_base", "tune"]
+
+
+_Floats = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -67,6 +71,8 @@ class Tuning:
         The same by the response alone.
     unexplained : float
         `misfit` where friction may be whatever it likes.
+    parts : mapping of str to mapping of str to float
+        What each source adds to the relative uncertainty of ``omega0`` and ``E``.
     """
 
     omega0: Uncertain
@@ -79,6 +85,7 @@ class Tuning:
     friction: Uncertain
     rubbing: Uncertain
     unexplained: float
+    parts: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
 
 
 def measure_base(recording: Recording, *, harmonics: int = 3) -> Base:
@@ -195,19 +202,23 @@ def tune(
     relative_gain = float(np.hypot(base.E.u / base.E.value, u_gain))
     u_phase = float(np.hypot(base.phase.u, base.fit.omega * u_time))
 
-    def solved(friction: Uncertain) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64], float]:
+    def solved(friction: Uncertain) -> tuple[_Floats, _Floats, float, _Floats, _Floats]:
+        """Return step, its uncertainty, the misfit; and the gain and what was not known before."""
         mean = np.array([0.0, 0.0, friction.value - rubbed.assumed, 0.0, 0.0])
-        prior = np.diag(np.square([omega0.u / omega0.value, lam.u / lam.value, friction.u, relative_gain, u_phase]))
+        before = np.array([omega0.u / omega0.value, lam.u / lam.value, friction.u, relative_gain, u_phase])
+        prior = np.diag(np.square(before))
         seen = np.array([ratio.real - 1, ratio.imag]) - rows @ mean
         spread = rows @ prior @ rows.T + covariance
-        gain = prior @ rows.T @ np.linalg.inv(spread)
+        gain = np.asarray(prior @ rows.T @ np.linalg.inv(spread), np.float64)
         u = np.sqrt(np.maximum(np.diag((np.eye(5) - gain @ rows) @ prior), 0.0))
-        moved: npt.NDArray[np.float64] = np.asarray(mean + gain @ seen, np.float64)
-        return moved, np.asarray(u, np.float64), float(np.sqrt(seen @ np.linalg.solve(spread, seen)))
+        moved = np.asarray(mean + gain @ seen, np.float64)
+        misfit = float(np.sqrt(seen @ np.linalg.solve(spread, seen)))
+        return moved, np.asarray(u, np.float64), misfit, gain, before
 
-    step, u, misfit = solved(rubbed.known)
-    free, u_free, unexplained = solved(Uncertain(0.0, _ANY))
+    step, u, misfit, gain, before = solved(rubbed.known)
+    free, u_free, unexplained, _, _ = solved(Uncertain(0.0, _ANY))
     # Of the correction of the gain, the base's share; the oscillator's own calibration keeps the rest.
+    gains = (base.E.u / base.E.value, u_gain)
     share = (base.E.u / base.E.value) ** 2 / relative_gain**2 if relative_gain > 0 else 1.0
     E = base.E.value * (1 + share * float(step[3]))
     u_E = base.E.value * float(np.sqrt(share**2 * u[3] ** 2 + share * (1 - share) * relative_gain**2))
@@ -222,4 +233,50 @@ def tune(
         Uncertain(rubbed.assumed + float(step[2]), float(u[2])),
         Uncertain(rubbed.assumed + float(free[2]), float(u_free[2])),
         unexplained,
+        _parts(before, np.asarray(gain @ rows), np.asarray(gain @ covariance @ gain.T), gains, share),
     )
+
+
+def _parts(
+    prior: npt.NDArray[np.floating],
+    taken: npt.NDArray[np.floating],
+    noise: npt.NDArray[np.floating],
+    gains: tuple[float, float],
+    share: float,
+) -> dict[str, dict[str, float]]:
+    """Return what each source adds to the relative uncertainties of omega0 and E.
+
+    Parameters
+    ----------
+    prior : ndarray, shape (5,)
+        Standard uncertainties of omega0, lam, friction, gain and phase before.
+    taken : ndarray, shape (5, 5)
+        Gain of the Kalman step times its rows: what it takes off an error of each.
+    noise : ndarray, shape (5, 5)
+        Covariance that the noise of the response brings.
+    gains : tuple of float
+        Relative uncertainties of the sensors of base and oscillator, which make the fourth.
+    share : float
+        Part of the correction of the gain that is the base's.
+    """
+    left = np.abs(np.eye(5) - taken)
+    one = {
+        "ring_down": left[0, 0] * prior[0],
+        "damping": left[0, 1] * prior[1],
+        "friction": left[0, 2] * prior[2],
+        "base_sensor": left[0, 3] * gains[0],
+        "lo_sensor": left[0, 3] * gains[1],
+        "delay": left[0, 4] * prior[4],
+        "noise": np.sqrt(noise[0, 0]),
+    }
+    moved = share * np.abs(taken[3])
+    other = {
+        "ring_down": moved[0] * prior[0],
+        "damping": moved[1] * prior[1],
+        "friction": moved[2] * prior[2],
+        "base_sensor": abs(1 - share * taken[3, 3]) * gains[0],
+        "lo_sensor": moved[3] * gains[1],
+        "delay": moved[4] * prior[4],
+        "noise": share * np.sqrt(noise[3, 3]),
+    }
+    return {name: {key: float(u) for key, u in parts.items()} for name, parts in (("omega0", one), ("E", other))}

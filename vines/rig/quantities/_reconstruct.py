@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -22,8 +22,11 @@ from vines.rig.ball import (
     stated,
     uncalibrated,
 )
+from vines.rig.camera import see_ball
 from vines.rig.fit import Forced, JumpModel, Push, Train, forced_response, push, root, slide
 from vines.rig.impacts import Mode, Response, measure_response, undisturbed
+from vines.rig.quantities._budget import length_parts, quotient, source_values, tuned
+from vines.rig.quantities._camera import with_camera
 from vines.rig.quantities._cycle import Track, slots
 from vines.rig.quantities._findings import judge
 from vines.rig.quantities._forcing import Base, Rubbed, Tuning, measure_base, tune
@@ -104,10 +107,11 @@ def _reconstructed(
     forced = _harmonics(base, recording, s)
     friction = stated(run.more.get("friction"), FRICTION)
     mu = run.m.value / run.M.value
+    sight = see_ball(recording, s, omega)
 
     def measure(recording: Recording) -> Response:
         return measure_response(
-            recording, s, omega, forced,
+            recording, s, omega, forced, seen=None if sight is None else sight.train(mu),
             friction=mu * friction.value, u_natural=(omega0.u / omega0.value, lam.u / lam.value),
             driven=complex(forced_response(base.e[0], omega, s)), impacts=impacts, seed=seed,
         )  # fmt: skip
@@ -131,7 +135,7 @@ def _reconstructed(
     periods = cut_into_periods(phase, side, (bounds[0], bounds[1]))
     pattern = find_pattern(periods, phase)
     ball = measure_rebounds(recording, response, side, tuning.friction, tuning.rubbing)
-    made = _assembled(recording, base, response, side, tuning, phase, periods, pattern, ball)
+    made = _assembled(recording, base, response, side, tuning, phase, periods, pattern, ball, (omega0, lam))
     model = JumpModel(response.bins, s, omega, response.order, forced)
     course = base_course(base)
     trends = {**course.trends, **run_trends(base, response, tuning, ball, model)}
@@ -141,7 +145,8 @@ def _reconstructed(
         *limits(recording, base, response, tuning, ball, ringdowns),
         *judge(recording, base, response, tuning, ball),
     )
-    return replace(made, quantities={**made.quantities, **trends}, findings=_named(findings))
+    found = replace(made, quantities={**made.quantities, **trends}, findings=_named(findings))
+    return found if sight is None else with_camera(found, sight, ball.gauge)
 
 
 def _bridged(recording: Recording, t: Floats) -> npt.NDArray[np.bool_]:
@@ -240,7 +245,7 @@ def _tuned(
 
 def _assembled(
     recording: Recording, base: Base, response: Response, side: Floats, tuning: Tuning, phase: Floats,
-    periods: Periods, pattern: Pattern, ball: Rebounds,
+    periods: Periods, pattern: Pattern, ball: Rebounds, natural_: tuple[Uncertain, Uncertain],
 ) -> Reconstruction:  # fmt: skip
     run, fit = recording.run, response.fit
     complete = len(periods.words)
@@ -264,6 +269,7 @@ def _assembled(
     left_open = uncalibrated(ball, response, side, lambda motion: mean_restitution(motion, ball.counted))
     u_mean = mean(ball.motion.r, use, speed).u
     r = combined(mean_restitution(ball.motion, ball.counted), u_mean, *left_open.values())
+    budget: dict[str, Mapping[str, float]] = {"r": _of_r(u_mean, left_open)}
     # Of a soft impact the law says more than its own noisy ratio does.
     soft = law.at(np.where(ball.counted, speed, law.speed))
 
@@ -283,6 +289,7 @@ def _assembled(
     r_effective = combined(
         mean_restitution(frictionless, ball.counted) / bent, u_mean, r.value * u_bent, *left_open.values()
     )
+    budget["r_effective"] = _of_r(u_mean, left_open) | {"correction": r.value * u_bent}
     period = 2 * np.pi / base.fit.omega
     # Momentum sees a tilt by what it adds to the jumps of a period, as little as what a sensor is off from linear.
     u_jumps = LINEARITY * float(np.mean(np.abs(fit.jumps.dv))) / (ball.weighed.value * period)
@@ -319,7 +326,7 @@ def _assembled(
         "w_after": scaled(mean(np.abs(ball.motion.w_after), use)),
     }
     begin = (periods.cut + 2 * np.pi * (periods.first + np.arange(complete + 1)) - phase[0]) / omega + fit.jumps.t[0]
-    quantities |= _energies(response, ball, begin)
+    quantities |= _energies(response, ball, begin, budget)
     found = slots(periods, pattern, phase, side)
     if found is not None:
         first = np.exp(1j * found.phase[:, 0])
@@ -329,6 +336,16 @@ def _assembled(
         quantities["impact_phase"] = combined(
             (angle + periods.cut) % (2 * np.pi), spread, base.phase.u, omega * response.u_late
         )
+        budget["impact_phase"] = {
+            "scatter": spread,
+            "delay": float(np.hypot(base.phase.u, omega * response.u_late)),
+        }
+    mu, M = ball.weighed.value, run.M
+    budget["mu"] = {"mass_ball": mu * run.m.u / run.m.value, "mass_oscillator": mu * M.u / M.value}
+    budget["omega0"], budget["E"], budget["b"] = tuned(tuning, "omega0"), tuned(tuning, "E"), length_parts(ball)
+    A = quantities["A"].value
+    budget["A"] = quotient(A, (tuning.E.value, budget["E"]), (b.value, budget["b"]))
+    u_delay = float(np.hypot(base.phase.u / omega, response.u_late))
     track = Track(fit.motion, fit.jumps.t, side, ball.motion.x2, phase)
     return Reconstruction(
         run=run,
@@ -344,7 +361,15 @@ def _assembled(
         pruned=response.pruned,
         findings=(),
         base_harmonics=base.e,
+        budget=budget,
+        sources=source_values(run, base, ball, natural_, u_delay, LINEARITY),
     )
+
+
+def _of_r(u_mean: float, left_open: Mapping[str, float]) -> dict[str, float]:
+    """Return the budget of a mean restitution."""
+    named = {"gain": "linearity"}
+    return {"scatter": u_mean} | {named.get(cause, cause): abs(u) for cause, u in left_open.items()}
 
 
 def _uneven(ball: Rebounds, response: Response, side: Floats) -> dict[str, float]:
@@ -361,7 +386,9 @@ def _uneven(ball: Rebounds, response: Response, side: Floats) -> dict[str, float
     return uncalibrated(ball, response, side, slope)
 
 
-def _energies(response: Response, ball: Rebounds, begin: Floats) -> dict[str, Uncertain]:
+def _energies(
+    response: Response, ball: Rebounds, begin: Floats, budget: dict[str, Mapping[str, float]]
+) -> dict[str, Uncertain]:
     """Return max|x1| a period and K2/K1; `begin` are the limits of the periods on the channel's clock.
 
     Both are ratios of what one sensor sees, so that its gain falls out.
@@ -387,6 +414,12 @@ def _energies(response: Response, ball: Rebounds, begin: Floats) -> dict[str, Un
     ratio = ball.weighed.value * mean / v1
     # v2 is that of the walls, by b, and that of the oscillator at the impacts.
     by_b = 2 * float(np.sum(v2 * (v2 - np.diff(jumps.x) / time) * time) / np.sum(square * time))
+    u_ratio = ratio * standard_error(away - of_v1 / v1)
+    budget["max_abs_x1"] = {
+        "scatter": largest.u / seen.value, "correction": largest.value * seen.u / seen.value**2
+    }  # fmt: skip
+    u_mu, u_length = ball.weighed.u / ball.weighed.value, abs(by_b) * seen.u / seen.value
+    budget["kinetic_ratio"] = {"scatter": u_ratio, "mass_ball": ratio * u_mu, "correction": ratio * u_length}
     return {
         "max_abs_x1": combined(
             largest.value / seen.value,
@@ -395,9 +428,9 @@ def _energies(response: Response, ball: Rebounds, begin: Floats) -> dict[str, Un
         ),
         "kinetic_ratio": combined(
             ratio,
-            ratio * standard_error(away - of_v1 / v1),
-            ratio * ball.weighed.u / ball.weighed.value,
-            ratio * by_b * seen.u / seen.value,
+            u_ratio,
+            ratio * u_mu,
+            ratio * u_length,
         ),
     }
 
@@ -412,7 +445,7 @@ def _rows(
     rows["t"], rows["side"], rows["x1"] = jumps.t - response.late, side, jumps.x
     rows["v1"], rows["v1_after"], rows["x2"] = jumps.v_before, jumps.v_after, ball.motion.x2
     rows["u_t"] = np.hypot(response.fit.draws.t.std(axis=0), response.u_late)
-    rows["phase"], rows["period"] = np.mod(phase, 2 * np.pi), number
+    rows["phase"], rows["period"], rows["by_camera"] = np.mod(phase, 2 * np.pi), number, response.lent
     inner = slice(1, -1)
     rows["v2"][inner], rows["v2_after"][inner] = ball.motion.v2_before, ball.motion.v2_after
     rows["w_dot"][inner], rows["w_dot_after"][inner] = ball.motion.w_before, ball.motion.w_after

@@ -45,12 +45,25 @@ QUANTITIES = {
     "drift_f": ("1", "Relative change of the forcing frequency over the record"),
     "drift_r": ("1", "Change of the restitution over the record"),
     "drift_omega0": ("1", "Relative change of the natural frequency over the record"),
+    "r_camera": ("1", "Restitution by the velocities of the ball that its own sensor (ball_cam) shows"),
+    "b_camera": ("m", "Half length of the cavity by the ball's own sensor"),
+    "camera_scale": ("1", "A length by the ball's own sensor over what it is by the gauge of the cavity"),
+    "camera_lag": ("s", "What is added to times of the ball's own sensor at the start of the run's clock"),
 }
 """Reconstructed quantities with unit and meaning."""
 
 IMPACT = np.dtype(
     [(n, "f8") for n in ("t", "side", "x1", "v1", "v1_after", "x2", "v2", "v2_after", "w_dot", "w_dot_after")]
-    + [("r", "f8"), ("u_r", "f8"), ("u_t", "f8"), ("phase", "f8"), ("period", "i8"), ("suspect", "?"), ("bridged", "?")]
+    + [
+        ("r", "f8"),
+        ("u_r", "f8"),
+        ("u_t", "f8"),
+        ("phase", "f8"),
+        ("period", "i8"),
+        ("suspect", "?"),
+        ("bridged", "?"),
+        ("by_camera", "?"),
+    ]
 )
 """A reconstructed impact, SI; nan where a flight on one side of it is not in the record."""
 
@@ -105,6 +118,10 @@ class Reconstruction:
         Gates and checks.
     base_harmonics : ndarray of complex, shape (N,)
         e_1 … e_N [m].
+    budget : mapping of str to mapping of str to float
+        What each source (`SOURCES`) adds to the standard uncertainty of a quantity, in its unit.
+    sources : mapping of str to float
+        Standard uncertainty of each source itself, in its unit.
     """
 
     run: RunInfo
@@ -120,6 +137,8 @@ class Reconstruction:
     pruned: int
     findings: tuple[Finding, ...]
     base_harmonics: npt.NDArray[np.complex128] = field(repr=False)
+    budget: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
+    sources: Mapping[str, float] = field(default_factory=dict)
 
     @property
     def accepted(self) -> bool:

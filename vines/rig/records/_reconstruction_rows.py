@@ -8,10 +8,10 @@ from typing import Any
 
 import numpy as np
 
-from vines.rig.quantities import IMPACT, NOTED, QUANTITIES, Reconstruction
+from vines.rig.quantities import IMPACT, NOTED, QUANTITIES, SOURCES, Reconstruction
 from vines.rig.recording import RunInfo
 
-__all__ = ["failed_row", "impact_columns", "reconstruction_row"]
+__all__ = ["budget_rows", "failed_row", "impact_columns", "reconstruction_row"]
 
 
 def reconstruction_row(found: Reconstruction, ring_downs: Sequence[str]) -> dict[str, Any]:
@@ -55,6 +55,25 @@ def reconstruction_row(found: Reconstruction, ring_downs: Sequence[str]) -> dict
         known = one is not None and math.isfinite(one.value) and math.isfinite(one.u)
         row[name], row[f"u_{name}"] = (one.value, one.u) if one is not None and known else (None, None)
     return row
+
+
+def budget_rows(found: Reconstruction) -> list[dict[str, Any]]:
+    """Return the rows of a run in ``rig_budgets``: what each source adds to the uncertainty of each quantity."""
+    run = found.run.run_id
+    return [
+        {
+            "point_id": f"{run}/{quantity}/{source}",
+            "run_id": run,
+            "quantity": quantity,
+            "source": source,
+            "u": abs(u),
+            "u_source": found.sources.get(source),
+            "unit_source": SOURCES[source][0] if source in found.sources else None,
+        }
+        for quantity, parts in found.budget.items()
+        for source, u in parts.items()
+        if math.isfinite(u)
+    ]
 
 
 def failed_row(

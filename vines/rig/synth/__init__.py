@@ -1,5 +1,6 @@
 """A synthetic rig: physics and an integrator of its own, so that it shares no equation with what it tests."""
 
+from vines.rig.synth._ball_camera import BallCamera
 from vines.rig.synth._campaign import make_campaign
 from vines.rig.synth._contact import LEAST, MOST
 from vines.rig.synth._disturb import Burst, Disturbances, Hum, Ringing, disturbed
@@ -12,6 +13,7 @@ from vines.rig.synth._write import write_raw
 __all__ = [
     "LEAST",
     "MOST",
+    "BallCamera",
     "Burst",
     "Disturbances",
     "Hum",

@@ -15,6 +15,7 @@ from vines.errors import StoreError
 from vines.rig.formats import RawChannel, RawFile
 from vines.rig.ingest import ChannelRow, RunForm, Stated, assemble, channels_text
 from vines.rig.recording import Recording
+from vines.rig.synth._film import film
 from vines.rig.synth._instruments import LEAD, SPARE, STEP, recorders, signals
 from vines.rig.synth._motion import Motion, move
 from vines.rig.synth._pattern import true_pattern
@@ -110,6 +111,11 @@ def raw_run(settings: RigSettings, seed: int, state: np.ndarray | None = None) -
             )
         )
     files = {name: RawFile(s.form, tuple(channels), s.start_utc) for name, channels in kept.items()}
+    if s.camera is not None:
+        fault = s.fault if s.fault_channel == "ball_cam" else "none"
+        row, filmed = film(s.camera, motion, LEAD, s.duration, seed, fault)
+        files[row.file] = filmed
+        rows.append(row)
     return RawRun(_form(s, rng), tuple(rows), files, _truth(s, seed, motion, step), motion.end)
 
 
@@ -156,7 +162,7 @@ def read_raw(run: RawRun) -> Recording:
 
 def _in_volts(channel: RawChannel) -> RawChannel:
     values = np.asarray(channel.values, np.float64) * float(channel.about["slope"])
-    return RawChannel(channel.name, values, channel.unit, channel.rate, channel.start)
+    return RawChannel(channel.name, values, channel.unit, channel.rate, channel.start, channel.times)
 
 
 def make_run(
@@ -186,7 +192,7 @@ def make_run(
     (folder / "raw").mkdir(parents=True)
     (folder / "derived").mkdir()
     for name, file in run.files.items():
-        write_raw(folder / "raw" / name, settings.form, file)
+        write_raw(folder / "raw" / name, file.form, file)
     text = msgspec.json.format(msgspec.json.encode(run.form), indent=2).decode()
     (folder / "run.json").write_text(text + "\n", encoding="utf-8")
     (folder / "channels.tsv").write_text(channels_text(run.rows), encoding="utf-8")
@@ -244,7 +250,9 @@ def _truth(s: RigSettings, seed: int, motion: Motion, step: float) -> dict[str, 
     return {
         "run_id": s.run_id,
         "seed": seed,
-        "settings": {name: v for name, v in msgspec.to_builtins(s).items() if v or name not in _COURSES},
+        "settings": {
+            name: v for name, v in msgspec.to_builtins(s).items() if v is not None and (v or name not in _COURSES)
+        },
         "clock": {"pace": pace},
         "parameters": {
             "mu": s.m / s.M, "A": p["E"] / s.b, "Omega": None if still else omega / omega0,

@@ -9,6 +9,7 @@ import msgspec
 import numpy as np
 
 from vines.errors import ParameterError
+from vines.rig.synth._ball_camera import BallCamera
 
 __all__ = ["RigSettings", "draw_settings"]
 
@@ -75,6 +76,8 @@ class RigSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_on
         Dropouts of the laser a minute, of 2 ms each.
     channels : tuple of str
         Which of base_disp, base_acc, lo_disp, lo_acc are recorded.
+    camera : BallCamera, optional
+        One that follows the ball, with a file and a clock of its own.
     form : str
         Format of the raw files.
     fault : str
@@ -136,6 +139,7 @@ class RigSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_on
     false: float = 0.0
     dropouts: float = 0.0
     channels: tuple[str, ...] = ("base_disp", "base_acc", "lo_disp", "lo_acc")
+    camera: BallCamera | None = None
     form: Literal["tdms", "uff", "mat", "mat73", "csv", "hdf5", "wav"] = "tdms"
     fault: Literal["none", "sign", "unit", "clock"] = "none"
     fault_channel: str = "lo_disp"
@@ -163,9 +167,14 @@ class RigSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_on
             if any(later <= earlier for earlier, later in pairwise(times)):
                 raise ParameterError(f"synthetic rig: times of {name} are {times}, allowed are rising ones")
         known = ("base_disp", "base_acc", "lo_disp", "lo_acc")
-        for name in (*self.channels, self.fault_channel):
+        for name in self.channels:
             if name not in known:
                 raise ParameterError(f"synthetic rig: channel {name!r}, allowed are {', '.join(known)}")
+        filmed = known if self.camera is None else (*known, "ball_cam")
+        if self.fault_channel not in filmed:
+            raise ParameterError(f"synthetic rig: channel {self.fault_channel!r}, allowed are {', '.join(filmed)}")
+        if self.camera is not None:
+            self.camera.check()
         if not self.channels:
             raise ParameterError(f"synthetic rig: channels is empty, allowed are {', '.join(known)}")
         if self.recorders == 2 and "base_acc" not in self.channels:

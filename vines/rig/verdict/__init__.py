@@ -2,7 +2,8 @@
 
 from vines.rig.verdict._compare import Calibration, calibrate, compare, compare_all
 from vines.rig.verdict._match import Candidate, word_of
-from vines.rig.verdict._model import Predicted
+from vines.rig.verdict._model import Predicted, measured_params
+from vines.rig.verdict._sensitivity import Numbers, sensitivity
 from vines.rig.verdict._verdict import VERDICTS, Comparison, Likeness
 
 __all__ = [
@@ -11,9 +12,12 @@ __all__ = [
     "Candidate",
     "Comparison",
     "Likeness",
+    "Numbers",
     "Predicted",
     "calibrate",
     "compare",
     "compare_all",
+    "measured_params",
+    "sensitivity",
     "word_of",
 ]

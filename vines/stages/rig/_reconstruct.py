@@ -9,7 +9,7 @@ from vines import schema
 from vines.errors import RigError
 from vines.pipeline import Batch, WholeJob
 from vines.rig import load_reconstruction
-from vines.rig.records import failed_row, impact_columns, reconstruction_row
+from vines.rig.records import budget_rows, failed_row, impact_columns, reconstruction_row
 from vines.stages.rig._runs import free_decay, kept_runs, make, refused_runs, ring_downs_of, wanted
 
 if TYPE_CHECKING:
@@ -58,4 +58,5 @@ def compute(job: WholeJob[ReconstructOptions]) -> Batch:
         found.append(load_reconstruction(work.kept))
         rows.append(reconstruction_row(found[-1], names))
     impacts = schema.cast("rig_impacts", impact_columns(found))
-    return Batch(tables={"reconstructions": rows, "rig_impacts": impacts})
+    budgets = [row for one in found for row in budget_rows(one)]
+    return Batch(tables={"reconstructions": rows, "rig_impacts": impacts, "rig_budgets": budgets})
