@@ -124,7 +124,7 @@ def test_tables_hold_the_check_values_ball_by_ball(project, monkeypatch):
     found = verify("split", recompute=60)
     assert found.good, [line.first for line in found.lines if line.first]
     again = {line.name: line.checked for line in found.lines if line.group == "recomputed"}
-    assert set(again) == {f"parallel_{name}" for name in ("points", "impacts", "orbits")}
+    assert set(again) == {f"parallel_{name}" for name in ("points", "impacts", "orbits", "attractors")}
     assert all(again.values())
     checked = {line.name: line.checked for line in found.lines if line.group == "parallel_orbits"}
     (count,) = vines.query("select count(*) as n from parallel_orbits").to_pylist()

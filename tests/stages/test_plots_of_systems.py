@@ -175,7 +175,6 @@ def test_what_a_plot_cannot_do_is_refused_with_what_it_can_and_what_can_do_it(de
         ("sheet", "impact_pair", "'w_dot'", "'x1'", "the system 'impact_pair' has no x1; a sheet of it shows"),
         ("response", "impact_pair", "'w_dot'", "'energy'", "'impact_pair' has no max_abs_x1"),
         ("measures", "impact_pair", "impact_power", "reduction", "has no column 'reduction' of numbers"),
-        ("measures", "parallel", "two_down", "two_branch", "two_branch is of kind 'branch'; it shows"),
         ("bifurcation", "parallel", "two_branch", "pair_up", "one and the same parameter"),
         ("multipliers", "parallel", "branch", "up", "name a stage of kind 'branch' in needs"),
         ("regimes", "parallel", "two_map", "two_up", "draws one sweep over two parameters"),

@@ -47,6 +47,11 @@ def symmetric():
     return [abs(orbit.impacts["w_dot"][0]), first.real, abs(first.imag)]
 
 
+def not_quite_settled():
+    m = vines.simulate(Parallel(mu=(0.01,), A=0.015), v2=[0.1], periods=400).measures(last=100)
+    return [m.balls[0].kinetic_ratio, m.max_abs_x1]
+
+
 def tilted():
     p = Parallel(mu=(0.01,), A=0.02, G=0.01)
     m = vines.simulate(p, v2=0.0, periods=1500).measures(last=100)
@@ -65,6 +70,7 @@ OURS = {
     "a3": lambda: balls((0.01, 0.01), (1.0, 1.4), 0.03, [0.1, -0.3]),
     "a5": lambda: balls((0.01, 0.01), (1.0, 1.0), 0.02, [0.1, -0.3]),
     "a7": lambda: balls((0.01, 0.006, 0.004), (1.0, 1.2, 1.4), 0.03, [0.1, -0.3, 0.2]),
+    "alim": not_quite_settled,
     "aSB": lambda: bifurcation(Parallel(mu=(0.01,), A=0.016), "A", 0.02, "symmetry_breaking"),
     "aTET": transient,
     "d1": symmetric,

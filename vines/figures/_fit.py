@@ -191,8 +191,10 @@ def _long(label: Text, line: str) -> float:
 
 def _thin(ax: Axes, figure: Figure) -> bool:
     """Take numbers from a linear axis along x until none touches the next; say whether any was taken."""
+    from matplotlib.ticker import MaxNLocator
+
     locator: Any = ax.xaxis.get_major_locator()
-    if ax.get_xscale() != "linear" or not hasattr(locator, "set_params") or not ax.xaxis.get_visible():
+    if ax.get_xscale() != "linear" or not isinstance(locator, MaxNLocator) or not ax.xaxis.get_visible():
         return False
     for most in range(7, 1, -1):
         low, high = sorted(ax.get_xlim())

@@ -81,5 +81,11 @@ def body_digest(body: Body) -> str:
         if f"{kind.__module__}.{kind.__qualname__}" == body.kind:
             if getattr(kernel, "by_symbol", False):
                 return f"by symbol {kernel.symbol_base}"
-            return digest_of(kernel.py_func, kernel.targetoptions)
+            if kernel not in _DIGESTS:
+                _DIGESTS[kernel] = digest_of(kernel.py_func, kernel.targetoptions)
+            return _DIGESTS[kernel]
     return ""
+
+
+_DIGESTS: dict[Any, str] = {}
+"""Digests of the bodies of this process, which are asked for again by each kernel that they went into."""

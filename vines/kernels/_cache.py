@@ -179,8 +179,11 @@ class LazyCache:
 
     def load_overload(self, sig: Any, target_context: Any) -> Any:
         """Return the compiled kernel for a signature, or None where none is kept that can be read."""
+        cache = self._cache()
         with contextlib.suppress(*_UNREADABLE):
-            return self._cache().load_overload(sig, target_context)
+            # numba would first work out the key under which to look.
+            if Path(cache._cache_file._index_path).exists():
+                return cache.load_overload(sig, target_context)
         return None
 
     def compiled(self, sig: Any, target_context: Any, compile_it: Callable[[], Any]) -> Any:

@@ -12,12 +12,14 @@ from numba.core.registry import CPUDispatcher
 
 from vines.kernels._bodies import inherit
 from vines.kernels._cache import LazyCache
+from vines.kernels._declarations import leave_declarations
 from vines.kernels._linked import Linked
 from vines.kernels._operators import remember_operators
 from vines.kernels._references import count_only_what_counts
 from vines.kernels._settings import numba
 from vines.kernels._subroutines import keep_subroutines_apart
-from vines.kernels._timers import time_outermost
+from vines.kernels._timers import time_no_locks
+from vines.kernels._variables import find_variables_quickly
 
 __all__ = ["cold_njit", "entry_njit", "fused_njit", "linked_njit", "loop_njit", "njit"]
 
@@ -25,7 +27,9 @@ _Function = TypeVar("_Function", bound=Callable[..., Any])
 
 remember_operators()
 count_only_what_counts()
-time_outermost()
+time_no_locks()
+find_variables_quickly()
+leave_declarations()
 keep_subroutines_apart()
 
 _FUSED = {"contract", "nsz"}

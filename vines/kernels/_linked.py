@@ -12,7 +12,6 @@ import functools
 import hashlib
 import importlib
 import inspect
-import re
 from collections.abc import Callable
 from typing import Any
 
@@ -25,7 +24,6 @@ from numba.extending import lower_builtin, type_callable
 __all__ = ["Linked", "kernel_of", "load_symbols", "symbols_in"]
 
 _PREFIX = "vines_kernel_"
-_NAME = re.compile(rf"{_PREFIX}[A-Za-z0-9_]+")
 _KNOWN: dict[str, tuple[str, str, tuple[Any, ...], str]] = {}
 """Module, name, types of arguments and of the result for each symbol of this process."""
 
@@ -114,7 +112,7 @@ class Linked:
 
 def symbols_in(library: Any) -> list[tuple[str, str, str, tuple[Any, ...]]]:
     """Return the linked kernels that a compiled one calls: symbol, module, name, types of arguments."""
-    found = sorted(set(_NAME.findall(library.get_llvm_str())))
+    found = sorted(each.name for each in library._final_module.functions if each.name.startswith(_PREFIX))
     return [(symbol, *_KNOWN[symbol][:3]) for symbol in found]
 
 

@@ -28,7 +28,15 @@ def _is_plain(of: Any) -> bool:
 def _flags() -> str:
     """Return the flags of the compilation under way as text, because some of them cannot be hashed."""
     top: Any = targetconfig.ConfigStack.top_or_none()
-    return "" if top is None else str(top._values)
+    if top is None:
+        return ""
+    if _LAST[0] is not top or _LAST[1] != top._values:
+        _LAST[:] = top, dict(top._values), str(top._values)
+    return _LAST[2]
+
+
+_LAST: list[Any] = [None, {}, ""]
+"""The flags that were asked for last, their values then, and these as text."""
 
 
 def remember_operators() -> None:

@@ -18,11 +18,13 @@ def count_only_what_counts() -> None:
     if getattr(NRTContext.get_meminfos, "looks_first", False):
         return
     take_apart = NRTContext.get_meminfos
+    counts: dict[Any, bool] = {}
 
     def get_meminfos(self: Any, builder: Any, ty: Any, val: Any) -> Any:
-        if not self._context.data_model_manager[ty].contains_nrt_meminfo():
-            return []
-        return take_apart(self, builder, ty, val)
+        model = self._context.data_model_manager[ty]
+        if model not in counts:
+            counts[model] = model.contains_nrt_meminfo()
+        return take_apart(self, builder, ty, val) if counts[model] else []
 
     get_meminfos.looks_first = True  # pyright: ignore[reportFunctionMemberAccess]
     NRTContext.get_meminfos = get_meminfos

@@ -1,6 +1,6 @@
-"""numba times each compilation, also those inside another one, and hears of each call of LLVM once for each of them.
+"""numba times what it holds its locks for, and hears of each call of LLVM twice for that; nobody asks for the times.
 
-Kernels call kernels forty deep: a million notices for the kernels of a system, a twentieth of the time of compiling.
+Kernels call kernels forty deep: a million notices for the kernels of a system.
 """
 
 from __future__ import annotations
@@ -8,21 +8,25 @@ from __future__ import annotations
 from contextlib import AbstractContextManager, nullcontext
 from typing import Any
 
+from llvmlite.binding import ffi
 from numba.core import event
 
-__all__ = ["time_outermost"]
+__all__ = ["time_no_locks"]
 
 _LOCKS = ("numba:compiler_lock", "numba:llvm_lock")
 
 
-def time_outermost() -> None:
-    """Let numba time only the outermost of compilations that are inside each other, from now on, in this process."""
-    if getattr(event.install_timer, "outermost", False):
+def time_no_locks() -> None:
+    """Let numba not time its locks, from now on, in this process."""
+    if getattr(event.install_timer, "leaves_locks", False):
         return
     install = event.install_timer
 
     def install_timer(kind: str, callback: Any) -> AbstractContextManager[Any]:
-        return nullcontext() if kind in _LOCKS and event._registered[kind] else install(kind, callback)
+        return nullcontext() if kind in _LOCKS else install(kind, callback)
 
-    install_timer.outermost = True  # pyright: ignore[reportFunctionMemberAccess]
+    install_timer.leaves_locks = True  # pyright: ignore[reportFunctionMemberAccess]
     event.install_timer = install_timer
+    for enter, leave in list(ffi.lib._lock._cblist):
+        if enter.__module__.partition(".")[0] == "numba":
+            ffi.unregister_lock_callback(enter, leave)

@@ -287,6 +287,8 @@ class StickingCurve(CurveEquations):
 def bound_beside(kind: str, orbit: Orbit, parameter: str, width: float) -> float | None:
     """Return the value of a parameter at the bound beside an orbit, None if its equations are not solved from there.
 
+    They are those of the VI-NES: an orbit of another system has none.
+
     Parameters
     ----------
     kind : str
@@ -296,6 +298,8 @@ def bound_beside(kind: str, orbit: Orbit, parameter: str, width: float) -> float
     width : float
         Of the range of the parameter.
     """
+    if not isinstance(orbit.params, Params):
+        return None
     other = next(name for name in PARAMETER_NAMES if name != parameter)
     fixed = orbit.params.as_dict()[other]
     try:
