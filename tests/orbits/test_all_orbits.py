@@ -210,3 +210,13 @@ def test_no_orbit_crosses_the_cavity_faster_than_the_balance_of_energy_allows():
             met += 1
     assert met > 10
     assert shortest_crossing(Params(mu=0.01, A=0.02, Omega=1.1, lam=0.0), 2, 6.0) == 0.0
+
+
+@pytest.mark.parametrize("text", ["LR", "LLR"])
+def test_a_search_by_bounds_finds_the_same(text):
+    p = Params(mu=0.01, A=0.022)
+    estimated, proved = all_orbits(text, p), all_orbits(text, p, proof=True)
+    assert proved.complete
+    assert "bounds" in proved.remark
+    assert "bounds" not in estimated.remark
+    assert [orbit.t.tolist() for orbit in proved] == [pytest.approx(orbit.t.tolist(), abs=1e-10) for orbit in estimated]

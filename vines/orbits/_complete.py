@@ -51,7 +51,7 @@ def can_search(word: Word, halves: bool) -> bool:
     return len(word) in (4, 6) and word.symmetric if halves else len(word) in (2, 3)
 
 
-def search_flights(word: Word, p: Params, c: Constants, halves: bool) -> Starts:
+def search_flights(word: Word, p: Params, c: Constants, halves: bool, *, proof: bool = False) -> Starts:
     """Search all flight times for orbits of a word with impacts on both walls.
 
     Parameters
@@ -74,9 +74,11 @@ def search_flights(word: Word, p: Params, c: Constants, halves: bool) -> Starts:
         sample_kernel(c, span, flip, side, symmetric_zero, low, width, NODES, out)
         return out
 
-    crossing = shortest_crossing(p, len(word), word.p * p.period)
+    crossing = shortest_crossing(p, len(word), word.p * p.period) if proof else 0.0
 
     def tail(low: Floats, width: float) -> Floats:
+        if not proof:
+            return np.zeros((len(low), 1))
         found = tails(c, span, flip, side, symmetric_zero, low, width, len(NODES))
         found[_too_short(span, flip, side, low, width, crossing)] = -np.inf
         return found
