@@ -17,6 +17,7 @@ from vines.errors import ViewerError
 from vines.logs import Log
 from vines.viewer._balls import half_of
 from vines.viewer._clock import SIM_TIME, Clock
+from vines.viewer._drawn import Drawn
 from vines.viewer._layout import Shown, cavity_views
 from vines.viewer._style import GRID, OVERLAID, PLANE
 
@@ -56,18 +57,19 @@ def check_overlay(logs: Sequence[Log]) -> None:
         raise ViewerError(f"Omega is {' and '.join(map(str, pace))}; runs laid over each other need one and the same")
 
 
-def send_overlay(rec: rr.RecordingStream, logs: Sequence[Log], states: Sequence[dict[str, np.ndarray]]) -> None:
+def send_overlay(rec: rr.RecordingStream, runs: Sequence[Drawn], states: Sequence[dict[str, np.ndarray]]) -> None:
     """Send the curves of all runs, and w' over w.
 
     Parameters
     ----------
     rec : rerun.RecordingStream
         Where they go.
-    logs : sequence of Log
+    runs : sequence of Drawn
         The runs.
     states : sequence of dict of str to numpy.ndarray, shape (n,)
         Columns of their ``vines.v1.State``, n > 0.
     """
+    logs = [run.log for run in runs]
     gaps = [_gaps(log, own) for log, own in zip(logs, states, strict=True)]
     several = any(log.balls for log in logs)
     largest = max(float(np.abs(w_dot).max()) for each in gaps for _, w_dot in each.values()) or 1.0
@@ -83,7 +85,8 @@ def send_overlay(rec: rr.RecordingStream, logs: Sequence[Log], states: Sequence[
             path = f"{_ROOT}/{name}/run_{k}"
             rec.log(path, rr.SeriesLines(colors=colour, widths=width, names=log.name), static=True)
             rec.send_columns(path, indexes=clock.columns(own["t"]), columns=rr.Scalars.columns(scalars=values))
-        loops = [np.column_stack([w, w_dot * (_HEIGHT / largest)]) for w, w_dot in gaps[k].values()]
+        paths = [np.column_stack([w, w_dot * (_HEIGHT / largest)]) for w, w_dot in gaps[k].values()]
+        loops = [path[part] for path in paths for part in runs[k].parts]
         style = {"radii": rr.Radius.ui_points(width / 2), "colors": colour, "draw_order": 10.0 + k}
         rec.log(f"{plane}/run_{k}", rr.LineStrips2D(loops, **style), static=True)
 

@@ -19,6 +19,7 @@ from vines.logs import Log
 from vines.viewer._balls import half_of, send_balls, track_labels
 from vines.viewer._clock import Clock
 from vines.viewer._curves import curves
+from vines.viewer._drawn import Drawn, drawn, thinning
 from vines.viewer._foreign import write_foreign
 from vines.viewer._impacts import dial, lanes
 from vines.viewer._layout import Shown, blueprint
@@ -34,7 +35,15 @@ APPLICATION = "vines"
 """Application id under which the viewer keeps layouts."""
 
 
-def write_recording(logs: Sequence[Log], out: Path, *, still: bool = False, overlay: bool = False) -> None:
+def write_recording(
+    logs: Sequence[Log],
+    out: Path,
+    *,
+    still: bool = False,
+    overlay: bool = False,
+    at: float | None = None,
+    full: bool = False,
+) -> None:
     """Write runs as one recording, side by side or laid over each other, with the layout that shows them.
 
     Parameters
@@ -47,6 +56,10 @@ def write_recording(logs: Sequence[Log], out: Path, *, still: bool = False, over
         Whether its layout is for a picture.
     overlay : bool
         Whether the curves of all runs are in the same views.
+    at : float, optional
+        Time around which a long run is drawn with all its states; the middle if left out.
+    full : bool
+        Whether every state is drawn, however long a run is.
 
     Raises
     ------
@@ -64,14 +77,17 @@ def write_recording(logs: Sequence[Log], out: Path, *, still: bool = False, over
     shown: list[Shown] = []
     for root, log in zip(roots, logs, strict=True):
         shown.append(_shown(root, log))
+    parts = [drawn(log, at=at, full=full) for log in logs]
     rec = rr.RecordingStream(APPLICATION, recording_id=_identity(logs), send_properties=False)
     rec.save(out, default_blueprint=overlaid(shown, still=still) if overlay else blueprint(shown, still=still))
     rec.send_recording_name(", ".join(log.name for log in logs))
     rec.send_property("vines", _properties(logs))
-    for root, log in zip(roots, logs, strict=True):
-        _send(rec, root, log)
+    for root, log, part in zip(roots, logs, parts, strict=True):
+        told = about(log, "" if full else thinning(log))
+        rec.log(f"{root}/about", rr.TextDocument(told, media_type=rr.MediaType.MARKDOWN), static=True)
+        _send(rec, root, part)
     if overlay:
-        send_overlay(rec, logs, [_columns(log.states) for log in logs])
+        send_overlay(rec, parts, [_columns(part.log.states) for part in parts])
     rec.flush()
     rec.disconnect()
 
@@ -96,9 +112,9 @@ def _title(log: Log) -> str:
     return f"{log.name} ({log.word})" if log.word else log.name
 
 
-def _send(rec: rr.RecordingStream, root: str, log: Log) -> None:
-    """Send one run."""
-    rec.log(f"{root}/about", rr.TextDocument(about(log), media_type=rr.MediaType.MARKDOWN), static=True)
+def _send(rec: rr.RecordingStream, root: str, part: Drawn) -> None:
+    """Send what is drawn of one run."""
+    log = part.log
     if is_rig(log):
         send_rig(rec, root, log)
         return
@@ -106,11 +122,11 @@ def _send(rec: rr.RecordingStream, root: str, log: Log) -> None:
     start, end = float(states["t"][0]), float(states["t"][-1])
     clock = Clock(start, float(states["phase"][0]), log.parameters.get("Omega"), impacts["t"], end)
     if log.balls:
-        send_balls(rec, root, log, states, impacts, clock)
+        send_balls(rec, root, part, states, impacts, clock)
         send_impact_log(rec, f"{root}/impacts", impacts, clock)
         return
     cavity(rec, f"{root}/cavity", states, clock)
-    phase_plane(rec, f"{root}/phase", states, impacts, clock)
+    phase_plane(rec, f"{root}/phase", states, impacts, clock, part.parts)
     curves(rec, root, states, impacts, clock)
     dial(rec, f"{root}/dial", states, impacts, clock)
     lanes(rec, f"{root}/lanes", states, impacts, clock)
