@@ -16,9 +16,9 @@ import rerun.blueprint as rrb
 from vines.errors import ViewerError
 from vines.logs import Log
 from vines.viewer._balls import half_of
-from vines.viewer._clock import SIM_TIME, Clock
+from vines.viewer._clock import CYCLE, Clock, ticks
 from vines.viewer._drawn import Drawn
-from vines.viewer._layout import Shown, cavity_views
+from vines.viewer._layout import FPS, Shown, cavity_views
 from vines.viewer._style import GRID, OVERLAID, PLANE
 
 __all__ = ["check_overlay", "overlaid", "send_overlay"]
@@ -78,7 +78,7 @@ def send_overlay(rec: rr.RecordingStream, runs: Sequence[Drawn], states: Sequenc
     walls = [[(w, -_HEIGHT), (w, _HEIGHT)] for w in (-1.0, 1.0)]
     rec.log(f"{plane}/walls", rr.LineStrips2D(walls, radii=rr.Radius.ui_points(0.8), colors=GRID), static=True)
     for k, (log, own) in enumerate(zip(logs, states, strict=True)):
-        clock = Clock(float(own["t"][0]), float(own["phase"][0]), log.parameters.get("Omega"))
+        clock = Clock(float(own["t"][0]), float(own["phase"][0]), log.parameters.get("Omega", 1.0))
         width, colour = (3.6 if k == 0 else 1.3), OVERLAID[k]
         drawn = {f"w_{ball}": w for ball, (w, _) in gaps[k].items()} | {"x1": own["x1"]}
         for name, values in (drawn if several else {name: own[name] for name in _CURVES}).items():
@@ -109,11 +109,11 @@ def overlaid(runs: Sequence[Shown], *, still: bool = False) -> rrb.Blueprint:
     still : bool
         For a picture that nobody can pan: curves leave room for their legends, the top bar is hidden.
     """
-    start, end = min(run.start for run in runs), max(run.end for run in runs)
+    start, end = min(run.first for run in runs), max(run.last for run in runs)
     boundary = rrb.TimeRangeBoundary
     last = end + _LEGEND * (end - start)
     span = (
-        rrb.TimeRange(start=boundary.absolute(seconds=start), end=boundary.absolute(seconds=last))
+        rrb.TimeRange(start=boundary.absolute(seq=int(ticks(start))), end=boundary.absolute(seq=int(ticks(last))))
         if still
         else rrb.TimeRange(start=boundary.infinite(), end=boundary.infinite())
     )
@@ -144,6 +144,6 @@ def overlaid(runs: Sequence[Shown], *, still: bool = False) -> rrb.Blueprint:
         rrb.Vertical(plane, *cavities, abouts, row_shares=[2.2, *heights, 0.9]),
         column_shares=[3.0, 2.0],
     )
-    panel = rrb.TimePanel(state="collapsed", timeline=SIM_TIME, play_state="paused")
+    panel = rrb.TimePanel(state="collapsed", timeline=CYCLE, fps=FPS, play_state="paused")
     parts = (body, panel, rrb.TopPanel(state="hidden")) if still else (body, panel)
     return rrb.Blueprint(*parts, collapse_panels=True)

@@ -101,7 +101,9 @@ def _shown(root: str, log: Log) -> Shown:
     times = log.states["t"].to_numpy()
     period = 2 * math.pi / log.parameters.get("Omega", 1.0)
     reach = float(np.abs(log.states["x1"].to_numpy()).max())
-    shown = Shown(root, _title(log), float(times[0]), float(times[-1]), period, reach, log.kind)
+    clock = Clock(float(times[0]), log.states["phase"][0].as_py(), 2 * math.pi / period)
+    first, last = clock.cycles(times[[0, -1]]).tolist()
+    shown = Shown(root, _title(log), float(times[0]), float(times[-1]), first, last, period, reach, log.kind)
     if log.balls:
         longest = max(half_of(log, ball) for ball in log.balls)
         return replace(shown, parts=track_labels(log), longest=longest)
@@ -120,7 +122,7 @@ def _send(rec: rr.RecordingStream, root: str, part: Drawn) -> None:
         return
     states, impacts = _columns(log.states), _columns(log.impacts)
     start, end = float(states["t"][0]), float(states["t"][-1])
-    clock = Clock(start, float(states["phase"][0]), log.parameters.get("Omega"), impacts["t"], end)
+    clock = Clock(start, float(states["phase"][0]), log.parameters.get("Omega", 1.0), impacts["t"], end)
     if log.balls:
         send_balls(rec, root, part, states, impacts, clock)
         send_impact_log(rec, f"{root}/impacts", impacts, clock)

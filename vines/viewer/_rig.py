@@ -36,7 +36,7 @@ def shown_rig(root: str, log: Log) -> Shown:
         raise ViewerError(f"{log.path} holds no samples of sensors or of the base, so there is nothing to show")
     start = min(float(t[0]) for t, _, _ in curves.values())
     end = max(float(t[-1]) for t, _, _ in curves.values())
-    return Shown(root, log.name, start, end, period=1.0, kind="rig", parts=tuple(curves))
+    return Shown(root, log.name, start, end, start, end, period=1.0, kind="rig", parts=tuple(curves))
 
 
 def send_rig(rec: rr.RecordingStream, root: str, log: Log) -> None:

@@ -71,6 +71,7 @@ def screenshot(
         If the viewer cannot start (it needs Vulkan; Mesa's software one will do), a view reports an error, or the
         picture does not come to rest.
     """
+    from vines.viewer._cursor import set_time
     from vines.viewer._program import headless
 
     runs = logs_of(logs)
@@ -82,10 +83,8 @@ def screenshot(
 
         def drawing() -> bytes:
             with headless(recording, size, laid_out=ours) as viewer:
-                from vines.viewer._clock import SIM_TIME
-
                 if ours:
-                    viewer.set_time(SIM_TIME, duration=moment, play_state="paused")
+                    set_time(viewer, runs, moment)
                 picture = _at_rest(viewer)
                 reports = [
                     f"{view.name}: {report.summary}"
