@@ -58,7 +58,8 @@ def test_recording_holds_every_state_and_impact(settled, tmp_path):
     assert found[f"{root}/w/left"] == found[f"{root}/ends/left"] == found[f"{root}/w_dot/left"] == left
     assert found[f"{root}/impacts"] == log.impacts.num_rows
     assert f"{root}/about" in found
-    assert "/__properties/vines" in found
+    groups = [path.rsplit("/", 1)[1] for path in sorted(found) if path.startswith("/__properties/")]
+    assert groups == ["from", "given", "got", "vines"]  # the order of the columns of `vines browse`
 
 
 def test_several_runs_keep_apart(settled, chatter, tmp_path):

@@ -47,6 +47,9 @@ def _pixels(context: click.Context, option: click.Parameter, value: str | None) 
 @click.option("--web", is_flag=True, help="Serve the web viewer on 127.0.0.1 and print its page; needs no network.")
 @click.option("--png", type=_FILE, help="Draw a picture without any screen.")
 @click.option("--save", type=_FILE, help="Write a recording (.rrd) with its blueprint.")
+@click.option("--video", type=_FILE, help="Write a film of the motion (.mp4 or .gif); needs no viewer.")
+@click.option("--periods", type=click.FloatRange(0, min_open=True), help="Forcing cycles of the film; ten if left out.")
+@click.option("--fps", type=click.IntRange(1, 100), help="Frames a second of the film, 25 if left out.")
 @click.option("--overlay", is_flag=True, help="Curves of all runs in the same views, as of a rig and of the model.")
 @click.option(
     "--at",
@@ -55,13 +58,16 @@ def _pixels(context: click.Context, option: click.Parameter, value: str | None) 
     help="Time that the picture shows and around which a long run is drawn in full; past the middle if left out.",
 )
 @click.option("--full", is_flag=True, help="Draw every state of a long run, not only the peaks of its curves.")
-@click.option("--size", callback=_pixels, metavar="WxH", help="Pixels of the picture, 1600x900 if left out.")
+@click.option("--size", callback=_pixels, metavar="WxH", help="Pixels of the picture (1600x900) or film (800x450).")
 @max_chunk_option
 def command(
     logs: tuple[str, ...],
     web: bool,
     png: Path | None,
     save: Path | None,
+    video: Path | None,
+    periods: float | None,
+    fps: int | None,
     overlay: bool,
     at: float | None,
     full: bool,
@@ -76,6 +82,7 @@ def command(
     \b
     vines view quickstart.asymmetric_run
     vines view quickstart.doubled_run --png doubled.png
+    vines view quickstart.doubled_run --video doubled.gif --periods 4
     vines view rehearsal.compare/01_up --overlay        measured and modelled
     """  # noqa: D301
     from vines import viewer
@@ -87,8 +94,12 @@ def command(
     for option, file, suffix, what in (("--png", png, ".png", "a picture"), ("--save", save, ".rrd", "a recording")):
         if file is not None and file.suffix.lower() != suffix:
             raise click.UsageError(f"{option} {file}: {what} ends in {suffix}, such as {file.with_suffix(suffix)}")
-    if size is not None and png is None:
-        raise click.UsageError("--size is that of a picture; give --png FILE too")
+    if size is not None and png is None and video is None:
+        raise click.UsageError("--size is that of a picture or film; give --png FILE or --video FILE too")
+    if (periods is not None or fps is not None) and video is None:
+        raise click.UsageError("--periods and --fps are those of a film; give --video FILE too")
+    if video is not None and (web or len(logs) > 1):
+        raise click.UsageError("--video is a film of one run and goes without --web; name one log")
     study = the_study()
     limit = max_chunk * 2**20
 
@@ -113,7 +124,12 @@ def command(
     if png is not None:
         viewer.screenshot(runs, png, at=at, size=size or _SIZE, overlay=overlay, full=full, tell=told)
         click.echo(f"wrote {png}")
+    if video is not None:
+        if len(runs) != 1:
+            raise click.UsageError(f"--video is a film of one run, {logs[0]} has {len(runs)}; name one point")
+        viewer.video(runs[0], video, periods=periods, fps=fps or 25, size=size or (800, 450))
+        click.echo(f"wrote {video}")
     if web:
         viewer.web(runs, cache=recordings_folder(study=study), tell=click.echo, overlay=overlay, at=at, full=full)
-    elif png is None and save is None:
+    elif png is None and save is None and video is None:
         viewer.view(runs, cache=recordings_folder(study=study), overlay=overlay, at=at, full=full)

@@ -34,7 +34,7 @@ _BRIEF = {"w": "Gap w", "w_dot": "Rate w'", "lanes": "Impacts L, R", "balance": 
 _LEGEND = 0.4
 """Room that a still picture leaves for a legend, as a part of the run."""
 _STACKED = 3
-"""Tracks that fit above each other."""
+"""Tracks, and curves of a rig, that fit above each other."""
 _LOW = 0.3
 """Room below the ruler in a low view of a cavity, b."""
 _NARROW = 0.4
@@ -178,7 +178,8 @@ def _lanes_share(run: Shown) -> float:
 def _measured(run: Shown, still: bool) -> rrb.Horizontal:
     """Return the views of a run of a rig: a curve a sensor."""
     curves = [_series(run, part, part.replace("_", " "), still) for part in run.parts]
-    return rrb.Horizontal(rrb.Vertical(*curves), _about(run), column_shares=[4.0, 1.4])
+    stacked = rrb.Vertical(*curves) if len(curves) <= _STACKED else rrb.Grid(*curves, grid_columns=2)
+    return rrb.Horizontal(stacked, _about(run), column_shares=[4.0, 1.4])
 
 
 def _track(run: Shown, ball: int, label: str) -> rrb.Spatial2DView:

@@ -81,7 +81,8 @@ def write_recording(
     rec = rr.RecordingStream(APPLICATION, recording_id=_identity(logs), send_properties=False)
     rec.save(out, default_blueprint=overlaid(shown, still=still) if overlay else blueprint(shown, still=still))
     rec.send_recording_name(", ".join(log.name for log in logs))
-    rec.send_property("vines", _properties(logs))
+    for group, values in _properties(logs).items():
+        rec.send_property(group, values)
     for root, log, part in zip(roots, logs, parts, strict=True):
         told = about(log, "" if full else thinning(log))
         rec.log(f"{root}/about", rr.TextDocument(told, media_type=rr.MediaType.MARKDOWN), static=True)
@@ -166,18 +167,31 @@ def _identity(logs: Sequence[Log]) -> str:
     return digest.hexdigest()[:32]
 
 
-def _properties(logs: Sequence[Log]) -> rr.AnyValues:
-    """Return what a catalogue of recordings shows as columns: names, parameters and provenance."""
-    properties: dict[str, Any] = {
-        "name": [log.name for log in logs],
-        "attractor": [log.attractor for log in logs],
-        "kind": [log.kind for log in logs],
-        "impacts": [log.impacts.num_rows for log in logs],
-        "sticks": [log.sticks.num_rows for log in logs],
-        "log": [log.path.name for log in logs],
+def _properties(logs: Sequence[Log]) -> dict[str, rr.AnyValues]:
+    """Return what a catalogue of recordings shows as columns, in groups.
+
+    The catalogue sorts columns by the names of their groups: these are named so that the run comes first, then its
+    parameters, then its attractor and impacts, then the rest.
+    """
+    stages = [log.name.partition("/")[0].partition(".") for log in logs]
+    parameters = dict.fromkeys(key for log in logs for key in log.parameters)
+    groups: dict[str, dict[str, Any]] = {
+        "from": {
+            "pipeline": [pipeline if dot else "" for pipeline, dot, _ in stages],
+            "stage": [stage or pipeline for pipeline, _, stage in stages],
+        },
+        "given": {key: [log.parameters.get(key, math.nan) for log in logs] for key in parameters},
+        "got": {
+            "attractor": [log.attractor for log in logs],
+            "impacts": [log.impacts.num_rows for log in logs],
+            "sticks": [log.sticks.num_rows for log in logs],
+        },
+        "vines": {
+            "name": [log.name for log in logs],
+            "kind": [log.kind for log in logs],
+            "log": [log.path.name for log in logs],
+        },
     }
-    for key in dict.fromkeys(key for log in logs for key in log.parameters):
-        properties[key] = [log.parameters.get(key, math.nan) for log in logs]
     for key in dict.fromkeys(key for log in logs for key in log.provenance):
-        properties[f"provenance_{key}"] = [log.provenance.get(key, "") for log in logs]
-    return rr.AnyValues(**properties)
+        groups["vines"][f"provenance_{key}"] = [log.provenance.get(key, "") for log in logs]
+    return {name: rr.AnyValues(**group) for name, group in groups.items() if group}
