@@ -126,7 +126,7 @@ def command(
         click.echo(f"wrote {png}")
     if video is not None:
         if len(runs) != 1:
-            raise click.UsageError(f"--video is a film of one run, {logs[0]} has {len(runs)}; name one point")
+            raise click.UsageError(f"--video is a film of one run, {' '.join(logs)} has {len(runs)}; name one point")
         viewer.video(runs[0], video, periods=periods, fps=fps or 25, size=size or (800, 450))
         click.echo(f"wrote {video}")
     if web:
