@@ -47,7 +47,7 @@ def views(part):
 def test_the_layout_has_a_track_a_cavity_with_its_label(path, runs):
     labels = track_labels(logs.read(path))
     assert labels == LABELS
-    shown = [Shown(f"/run_{k}", "three", 0.0, 75.0, 6.28, parts=labels) for k in range(runs)]
+    shown = [Shown(f"/run_{k}", "three", 0.0, 75.0, 0.0, 12.0, 6.28, parts=labels) for k in range(runs)]
     found = views(blueprint(shown).root_container)
     for run in shown:
         tracks = [(origin, name) for origin, name in found if origin.startswith(f"{run.root}/track")]
