@@ -139,6 +139,10 @@ class ViewerError(VinesError, RuntimeError):
     """The Rerun viewer could not be started or could not draw."""
 
 
+class ViewerStallError(ViewerError):
+    """The Rerun viewer ended, did not answer or did not come to rest in time, which a second start may mend."""
+
+
 class RigError(VinesError, ValueError):
     """Data of a rig cannot be used: no unit, sign, rate or sensitivity, a clipped signal, clocks that don't agree."""
 

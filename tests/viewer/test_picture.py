@@ -45,7 +45,7 @@ def test_views_draw_without_errors(recording):
         assert all(view.visible for view in state.views)
         assert [report for view in state.views for report in view.reports] == []
         kinds = {line.name: line.time_type for line in state.recordings[0].timelines}
-        assert kinds["sim_time"] == kinds["cycle"] == kinds["impact"] == "duration"
+        assert (kinds["sim_time"], kinds["cycle/1000"], kinds["impact"]) == ("duration", "sequence", "duration")
 
 
 def test_bare_rerun_shows_a_log_that_explains_itself(settled):

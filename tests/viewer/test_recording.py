@@ -12,6 +12,7 @@ from vines.errors import FileMissingError, LogError, ViewerError
 from vines.logs import read
 from vines.viewer._clock import Clock
 from vines.viewer._curves import balance
+from vines.viewer._layout import _BEFORE, _WINDOW, _moment, _span
 from vines.viewer._text import impact_lines
 
 
@@ -57,7 +58,8 @@ def test_recording_holds_every_state_and_impact(settled, tmp_path):
     assert found[f"{root}/w/left"] == found[f"{root}/ends/left"] == found[f"{root}/w_dot/left"] == left
     assert found[f"{root}/impacts"] == log.impacts.num_rows
     assert f"{root}/about" in found
-    assert "/__properties/vines" in found
+    groups = [path.rsplit("/", 1)[1] for path in sorted(found) if path.startswith("/__properties/")]
+    assert groups == ["from", "given", "got", "vines"]  # the order of the columns of `vines browse`
 
 
 def test_several_runs_keep_apart(settled, chatter, tmp_path):
@@ -110,6 +112,17 @@ def test_cycles_agree_with_the_phase(settled):
     np.testing.assert_allclose(off, np.rint(off), atol=1e-12)
     assert len(clock.columns(states["t"])) == 2
     assert len(Clock(0.0, 0.0, None).columns(states["t"])) == 1
+
+
+def test_window_opens_on_data_in_forcing_cycles():
+    """Without a still: the cursor stands on the first state, so the span of a long run lies after it."""
+    run = viewer.Shown("/run", "run", 0.0, 60.0 * 6.28, 0.0, 60.0, period=6.28)
+    assert run.timeline == "cycle/1000"
+    before, after = (_span(run, part)["seq"] for part in (-_BEFORE * _WINDOW, (1 - _BEFORE) * _WINDOW))
+    assert after - before == 20_000
+    assert -before < 0.1 * after
+    rig = viewer.Shown("/rig", "rig", 0.0, 3.0, 0.0, 3.0, period=1.0, kind="rig", parts=("base",), timeline="sim_time")
+    assert _moment(rig, 0.5) == {"seconds": 1.5}
 
 
 def test_impacts_in_words(settled):

@@ -61,9 +61,9 @@ def test_catalogue_has_parameters_and_attractors_as_columns(settled, chatter, tm
         rows = dataset.segment_table().to_pandas()
     assert len(rows) == 2
     one = rows.set_index(rows["property:vines:log"].map(lambda value: value[0]))
-    assert one.loc["chatter.mcap", "property:vines:mu"] == [0.0084]
-    assert one.loc["settled.mcap", "property:vines:attractor"] == ["1:1"]
-    assert one.loc["chatter.mcap", "property:vines:sticks"][0] >= 1
+    assert one.loc["chatter.mcap", "property:given:mu"] == [0.0084]
+    assert one.loc["settled.mcap", "property:got:attractor"] == ["1:1"]
+    assert one.loc["chatter.mcap", "property:got:sticks"][0] >= 1
     assert [path.suffix for path in (tmp_path / "cache").iterdir()] == [".rrd", ".rrd"]
 
 

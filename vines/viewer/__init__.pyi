@@ -11,3 +11,4 @@ from ._save import save_rrd as save_rrd
 from ._show import screenshot as screenshot
 from ._show import view as view
 from ._show import web as web
+from ._video import video as video

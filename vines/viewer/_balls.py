@@ -11,6 +11,7 @@ import rerun as rr
 from vines.logs import Log
 from vines.viewer._clock import Clock
 from vines.viewer._curves import balance_of, lines, running
+from vines.viewer._drawn import Drawn
 from vines.viewer._impacts import dial
 from vines.viewer._scene import cavity, move, phase_frame, stretch_of
 from vines.viewer._style import BALLS, GRID, LINE, MASS, SPRING
@@ -69,12 +70,13 @@ def half_of(log: Log, ball: int) -> float:
 def send_balls(
     rec: rr.RecordingStream,
     root: str,
-    log: Log,
+    drawn: Drawn,
     states: dict[str, np.ndarray],
     impacts: dict[str, np.ndarray],
     clock: Clock,
 ) -> None:
     """Send all that is drawn of a run with several balls; `states` are those of the oscillator."""
+    log = drawn.log
     balls = [_ball(log, ball, states, impacts) for ball in log.balls]
     longest = max(ball.half for ball in balls)
     for ball in balls:
@@ -85,7 +87,7 @@ def send_balls(
             colour=ball.colour,
         )
     indexes = clock.columns(states["t"])
-    _plane(rec, f"{root}/phase/plane", balls, indexes)
+    _plane(rec, f"{root}/phase/plane", balls, indexes, drawn.parts)
     lines(rec, f"{root}/w/gap", [(each.name, each.states["w"] / each.half, each.colour) for each in balls], indexes)
     lines(rec, f"{root}/w_dot/rate", [(each.name, each.states["w_dot"], each.colour) for each in balls], indexes)
     own = [each.states["kinetic_2"] + each.states["potential_2"] for each in balls]
@@ -121,7 +123,13 @@ def _ball(log: Log, ball: int, states: dict[str, np.ndarray], impacts: dict[str,
     )
 
 
-def _plane(rec: rr.RecordingStream, root: str, balls: list[_Ball], indexes: list[rr.TimeColumn]) -> None:
+def _plane(
+    rec: rr.RecordingStream,
+    root: str,
+    balls: list[_Ball],
+    indexes: list[rr.TimeColumn],
+    parts: tuple[slice, ...],
+) -> None:
     """Draw the orbits of all balls in the plane of w/beta and w', and where they are now."""
     fastest = max(float(np.abs(each.states["w_dot"]).max()) for each in balls) or 1.0
     rec.log(root, rr.Transform3D(scale=[1.0, -stretch_of(fastest), 1.0]), static=True)
@@ -129,7 +137,7 @@ def _plane(rec: rr.RecordingStream, root: str, balls: list[_Ball], indexes: list
         path = np.column_stack([each.states["w"] / each.half, each.states["w_dot"]])
         at = f"{root}/ball_{each.number}"
         style = {"radii": rr.Radius.ui_points(1.0), "colors": (*each.colour, 150), "draw_order": 10.0}
-        rec.log(f"{at}/orbit", rr.LineStrips2D([path], **style), static=True)
+        rec.log(f"{at}/orbit", rr.LineStrips2D([path[part] for part in parts], **style), static=True)
         size = rr.Radius.ui_points(6.0)
         rec.log(f"{at}/now", rr.Points2D([(0.0, 0.0)], radii=size, colors=each.colour, draw_order=40.0), static=True)
         move(rec, f"{at}/now", indexes, path[:, 0], path[:, 1])

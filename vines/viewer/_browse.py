@@ -88,7 +88,7 @@ def browse(
         If there is no log, no display, or a program cannot start.
     """
     with catalogue_of(logs, cache) as address:
-        tell(f"catalogue of {len(logs)} logs: {address}")
+        tell(f"catalogue of {len(logs)} logs; any Rerun viewer on this machine opens {address}")
         if web:
             with served(address) as (url, wait):
                 tell(f"open {url} in a browser; Ctrl-C ends it")

@@ -14,7 +14,9 @@ from vines.viewer._save import save_rrd
 __all__ = ["cached_rrd"]
 
 
-def cached_rrd(logs: Sequence[str | os.PathLike[str] | Log], folder: Path) -> Path:
+def cached_rrd(
+    logs: Sequence[str | os.PathLike[str] | Log], folder: Path, *, at: float | None = None, full: bool = False
+) -> Path:
     """Return a recording of logs from a folder, made if the logs or the layout have changed since.
 
     A recording is named by the places of its logs, by a digest of their bytes, the modules that draw them and the
@@ -27,6 +29,8 @@ def cached_rrd(logs: Sequence[str | os.PathLike[str] | Log], folder: Path) -> Pa
         One run, or several to be shown side by side.
     folder : Path
         Where recordings are kept; made if it is missing.
+    at, full : float or None, bool
+        What is drawn of a long run, as in :func:`vines.viewer.save_rrd`.
 
     Raises
     ------
@@ -39,7 +43,7 @@ def cached_rrd(logs: Sequence[str | os.PathLike[str] | Log], folder: Path) -> Pa
     """
     paths = [os.path.realpath(log.path if isinstance(log, Log) else log) for log in logs]
     place = hashlib.sha256("\0".join(paths).encode()).hexdigest()[:12]
-    content = hashlib.sha256(f"{version('rerun-sdk')} {_drawing()}".encode())
+    content = hashlib.sha256(f"{version('rerun-sdk')} {_drawing()} {at} {full}".encode())
     for log in logs:
         sha256 = log.sha256 if isinstance(log, Log) else hashlib.sha256(bytes_of_file(Path(log))).hexdigest()
         content.update(bytes.fromhex(sha256))
@@ -48,7 +52,7 @@ def cached_rrd(logs: Sequence[str | os.PathLike[str] | Log], folder: Path) -> Pa
     if kept:
         return kept[0]
     folder.mkdir(parents=True, exist_ok=True)
-    made = save_rrd(logs, folder / f"{name}.rrd")
+    made = save_rrd(logs, folder / f"{name}.rrd", at=at, full=full)
     target = made.rename(folder / f"{name}-{_own_digest(made)}.rrd")
     for other in folder.glob(f"{place}-*.rrd"):
         if other != target:

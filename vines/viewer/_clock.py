@@ -1,6 +1,8 @@
 """The timelines of a recording: simulation time, cycles of the forcing, and impacts.
 
-All are durations, in which the viewer shows one unit as a second: one 1/omega0, one cycle, one impact.
+Rerun writes times as durations or as whole numbers. Forcing cycles, which the viewer opens with, are whole numbers of
+thousandths, since as durations they would be shown as seconds, hours and days. The others are durations, of which the
+viewer shows one unit as a second: one 1/omega0, one impact.
 """
 
 from __future__ import annotations
@@ -10,14 +12,25 @@ import math
 import numpy as np
 import rerun as rr
 
-__all__ = ["CYCLE", "IMPACT", "SIM_TIME", "Clock"]
+__all__ = ["CYCLE", "IMPACT", "SIM_TIME", "Clock", "ticks"]
 
 SIM_TIME = "sim_time"
 """Timeline of the dimensionless time t."""
-CYCLE = "cycle"
-"""Timeline of the forcing cycles, fractions included: (Omega t + phi)/2π, whole where the phase is 0."""
+CYCLE = "cycle/1000"
+"""Timeline of the forcing cycles (Omega t + phi)/2π, whole where the phase is 0, in thousandths."""
 IMPACT = "impact"
 """Timeline of the impacts: k at impact k, and between two the fraction of the flight that has passed."""
+
+
+def ticks(cycles: np.ndarray | float) -> np.ndarray:
+    """Return forcing cycles as thousandths, whole.
+
+    Examples
+    --------
+    >>> int(ticks(12.3456))
+    12346
+    """
+    return np.rint(1000.0 * np.asarray(cycles)).astype(np.int64)
 
 
 class Clock:
@@ -68,7 +81,7 @@ class Clock:
         """Return the time columns of rows at these times, shape (n,)."""
         columns = [rr.TimeColumn(SIM_TIME, duration=t)]
         if self._Omega is not None:
-            columns.append(rr.TimeColumn(CYCLE, duration=self.cycles(t)))
+            columns.append(rr.TimeColumn(CYCLE, sequence=ticks(self.cycles(t))))
         if self._knots is not None:
             columns.append(rr.TimeColumn(IMPACT, duration=self.impacts(t)))
         return columns

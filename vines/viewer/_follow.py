@@ -15,7 +15,7 @@ import rerun as rr
 from vines.errors import ViewerError
 from vines.logs import Tail
 from vines.schema import numpy_dtype
-from vines.viewer._clock import Clock
+from vines.viewer._clock import SIM_TIME, Clock
 from vines.viewer._curves import curves
 from vines.viewer._impacts import lanes
 from vines.viewer._layout import Shown, following
@@ -156,7 +156,8 @@ class _Run:
     def _begin(self, states: np.ndarray) -> None:
         Omega = self._tail.parameters.get("Omega")
         period = 2 * math.pi / (Omega or 1.0)
-        shown = Shown("/run", self._tail.name, 0.0, math.inf, period, _REACH, following=True)
+        times = (0.0, math.inf, 0.0, math.inf)
+        shown = Shown("/run", self._tail.name, *times, period, _REACH, following=True, timeline=SIM_TIME)
         self._rec = rec = self._show.recording(self._tail.name, following(shown))
         self._clock = Clock(float(states["t"][0]), float(states["phase"][0]), Omega)
         rows = "\n".join(f"| {key} | {value:.10g} |" for key, value in self._tail.parameters.items())

@@ -3,31 +3,44 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import Any
 
 import rerun.blueprint as rrb
 from rerun.blueprint.encodings import TimelineColumn
 
 from vines.viewer._balls import lanes_range, track
-from vines.viewer._clock import CYCLE, IMPACT, SIM_TIME
+from vines.viewer._clock import CYCLE, IMPACT, SIM_TIME, ticks
 from vines.viewer._impacts import DIAL_BOUNDS, LANES
 from vines.viewer._scene import PHASE_BOUNDS, cavity_bounds
 from vines.viewer._style import CAVITY, PARAMETERS, PLANE
 
-__all__ = ["Shown", "blueprint", "cavity_views", "following"]
+__all__ = ["FPS", "Shown", "blueprint", "cavity_views", "following"]
 
 _WINDOW = 20
 """Forcing cycles up to which curves show a whole run; longer runs scroll with the time cursor."""
 _LATEST = 10
 """Forcing cycles that curves of a run show that goes on."""
+_BEFORE = 0.05
+"""Part of the span of such curves that is before the cursor: the viewer opens with the cursor on the first state."""
+_BEFORE_STILL = 0.6
+"""The same in a picture, whose cursor is in the middle of the run."""
+FPS = 320.0
+"""Thousandths of a forcing cycle that pass in a second where it plays."""
+_ABREAST = 3
+"""Runs side by side from which on the titles have to be short."""
 _TRAIL = 0.25
 """Length of the trail in the phase plane, in forcing cycles."""
+_BRIEF = {"w": "Gap w", "w_dot": "Rate w'", "lanes": "Impacts L, R", "balance": "Balance"}
+"""Titles of curves where there is little room."""
 _LEGEND = 0.4
 """Room that a still picture leaves for a legend, as a part of the run."""
 _STACKED = 3
-"""Tracks that fit above each other."""
+"""Tracks, and curves of a rig, that fit above each other."""
 _LOW = 0.3
 """Room below the ruler in a low view of a cavity, b."""
+_NARROW = 0.4
+"""Room beside the ends of a narrow phase plane, for what is written there."""
 _DARK = [13, 17, 23]
 
 
@@ -42,7 +55,9 @@ class Shown:
     name : str
         What it is called.
     start, end : float
-        First and last time, 1/omega0.
+        First and last time, 1/omega0; of a rig in seconds.
+    first, last : float
+        The same in forcing cycles.
     period : float
         Forcing period, 1/omega0.
     reach : float
@@ -55,18 +70,26 @@ class Shown:
         Half the length of the longest cavity, b.
     following : bool
         Whether the run goes on: curves show the last cycles.
+    timeline : str
+        That by which curves are drawn.
+    brief : bool
+        Whether there is room for short titles only.
     """
 
     root: str
     name: str
     start: float
     end: float
+    first: float
+    last: float
     period: float
     reach: float = 1.0
     kind: str = "run"
     parts: tuple[str, ...] = ()
     longest: float = 1.0
     following: bool = False
+    timeline: str = CYCLE
+    brief: bool = False
 
     @property
     def several(self) -> bool:
@@ -84,14 +107,18 @@ def blueprint(runs: Sequence[Shown], *, still: bool = False) -> rrb.Blueprint:
     still : bool
         For a picture that nobody can pan: curves leave room for their legends, the top bar is hidden.
     """
+    # A rig has seconds and no cycles that are known.
+    timeline = SIM_TIME if any(run.kind == "rig" for run in runs) else CYCLE
+    runs = [replace(run, timeline=timeline, brief=len(runs) >= _ABREAST) for run in runs]
     # One period of an orbit is there to be watched going round.
     looping = not still and all(run.kind == "orbit" for run in runs)
     panel = rrb.TimePanel(
         state="collapsed",
-        timeline=SIM_TIME,
+        timeline=timeline,
+        fps=FPS,
         play_state="playing" if looping else "paused",
         loop_mode="all",
-        playback_speed=1.0 if looping else 2.0,
+        playback_speed=0.5 if looping else 1.0,
     )
     if len(runs) == 1:
         body = _measured(runs[0], still) if runs[0].kind == "rig" else _alone(runs[0], still)
@@ -171,7 +198,8 @@ def _lanes_share(run: Shown) -> float:
 def _measured(run: Shown, still: bool) -> rrb.Horizontal:
     """Return the views of a run of a rig: a curve a sensor."""
     curves = [_series(run, part, part.replace("_", " "), still) for part in run.parts]
-    return rrb.Horizontal(rrb.Vertical(*curves), _about(run), column_shares=[4.0, 1.4])
+    stacked = rrb.Vertical(*curves) if len(curves) <= _STACKED else rrb.Grid(*curves, grid_columns=2)
+    return rrb.Horizontal(stacked, _about(run), column_shares=[4.0, 1.4])
 
 
 def _track(run: Shown, ball: int, label: str) -> rrb.Spatial2DView:
@@ -183,28 +211,31 @@ def _drawn(run: Shown, origin: str, name: str, more: float = 0.0) -> rrb.Spatial
     (left, right), (top, bottom) = cavity_bounds(run.reach, run.longest)
     return rrb.Spatial2DView(
         origin=origin,
-        name=f"{CAVITY}: {name}",
+        name=name if run.brief else f"{CAVITY}: {name}",
         background=_DARK,
-        visual_bounds=rrb.VisualBounds2D(x_range=(left, right), y_range=(top, bottom + more)),
+        visual_bounds=rrb.VisualBounds2D(x_range=(left, right), y_range=(top, bottom + (_LOW if run.brief else more))),
     )
 
 
 def _phase(run: Shown) -> rrb.Spatial2DView:
     (left, right), (top, bottom) = PHASE_BOUNDS
-    back = {SIM_TIME: _TRAIL * run.period, CYCLE: _TRAIL, IMPACT: 1.0}
+    if run.brief:
+        left, right = left - _NARROW, right + _NARROW
+    boundary = rrb.TimeRangeBoundary
+    back = {
+        SIM_TIME: boundary.cursor_relative(seconds=-_TRAIL * run.period),
+        CYCLE: boundary.cursor_relative(seq=-int(ticks(_TRAIL))),
+        IMPACT: boundary.cursor_relative(seconds=-1.0),
+    }
     across = "w/β across, w' up" if run.several else "w across, w' up, trail of a quarter cycle"
     return rrb.Spatial2DView(
         origin=f"{run.root}/phase",
-        name=f"{PLANE}: {across}",
+        name=PLANE if run.brief else f"{PLANE}: {across}",
         background=_DARK,
         visual_bounds=rrb.VisualBounds2D(x_range=(left, right), y_range=(top, bottom)),
         time_ranges=[
-            rrb.VisibleTimeRange(
-                timeline,
-                start=rrb.TimeRangeBoundary.cursor_relative(seconds=-length),
-                end=rrb.TimeRangeBoundary.cursor_relative(),
-            )
-            for timeline, length in back.items()
+            rrb.VisibleTimeRange(timeline, start=start, end=boundary.cursor_relative())
+            for timeline, start in back.items()
         ],
     )
 
@@ -212,27 +243,41 @@ def _phase(run: Shown) -> rrb.Spatial2DView:
 def _series(
     run: Shown, part: str, name: str, still: bool, legend: bool = True, span: tuple[float, float] | None = None
 ) -> rrb.TimeSeriesView:
-    length = run.end - run.start
     boundary = rrb.TimeRangeBoundary
     if run.following:
-        start, end = boundary.cursor_relative(seconds=-_LATEST * run.period), boundary.cursor_relative()
-    elif run.kind != "rig" and length > _WINDOW * run.period:
-        reach = _WINDOW * run.period
-        start = boundary.cursor_relative(seconds=-0.6 * reach)
-        end = boundary.cursor_relative(seconds=0.4 * reach)
+        start, end = boundary.cursor_relative(**_span(run, -_LATEST)), boundary.cursor_relative()
+    elif run.kind != "rig" and run.last - run.first > _WINDOW:
+        before = _BEFORE_STILL if still else _BEFORE
+        start, end = (
+            boundary.cursor_relative(**_span(run, part)) for part in (-before * _WINDOW, (1 - before) * _WINDOW)
+        )
     elif still:
-        start = boundary.absolute(seconds=run.start)
-        end = boundary.absolute(seconds=run.end + _LEGEND * length)
+        start = boundary.absolute(**_moment(run, 0.0))
+        end = boundary.absolute(**_moment(run, 1.0 + _LEGEND))
     else:
         # Without numbers, since they would be those of one timeline only.
         start, end = boundary.infinite(), boundary.infinite()
     return rrb.TimeSeriesView(
         origin=f"{run.root}/{part}",
-        name=name,
+        name=_BRIEF.get(part, name) if run.brief else name,
         axis_x=rrb.TimeAxis(view_range=rrb.TimeRange(start=start, end=end)),
         axis_y=None if span is None else rrb.ScalarAxis(range=span),
         plot_legend=rrb.PlotLegend(corner=rrb.Corner2D.RightTop, visible=legend),
     )
+
+
+def _span(run: Shown, cycles: float) -> dict[str, Any]:
+    """Return a length of time on the timeline of a run, as Rerun's boundaries take it."""
+    if run.timeline == CYCLE:
+        return {"seq": int(ticks(cycles))}
+    return {"seconds": cycles * run.period}
+
+
+def _moment(run: Shown, part: float) -> dict[str, Any]:
+    """Return the time at which a part of a run is over, as Rerun's boundaries take it."""
+    if run.timeline == CYCLE:
+        return {"seq": int(ticks(run.first + part * (run.last - run.first)))}
+    return {"seconds": run.start + part * (run.end - run.start)}
 
 
 def _ends(run: Shown, still: bool) -> rrb.TimeSeriesView:
@@ -265,7 +310,7 @@ def _dial(run: Shown) -> rrb.Spatial2DView:
     (left, right), (top, bottom) = DIAL_BOUNDS
     return rrb.Spatial2DView(
         origin=f"{run.root}/dial",
-        name="Phase at impacts: L outside, R inside",
+        name="Phases" if run.brief else "Phase at impacts: L outside, R inside",
         background=_DARK,
         visual_bounds=rrb.VisualBounds2D(x_range=(left, right), y_range=(top, bottom)),
     )

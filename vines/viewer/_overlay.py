@@ -16,8 +16,9 @@ import rerun.blueprint as rrb
 from vines.errors import ViewerError
 from vines.logs import Log
 from vines.viewer._balls import half_of
-from vines.viewer._clock import SIM_TIME, Clock
-from vines.viewer._layout import Shown, cavity_views
+from vines.viewer._clock import CYCLE, Clock, ticks
+from vines.viewer._drawn import Drawn
+from vines.viewer._layout import FPS, Shown, cavity_views
 from vines.viewer._style import GRID, OVERLAID, PLANE
 
 __all__ = ["check_overlay", "overlaid", "send_overlay"]
@@ -56,18 +57,19 @@ def check_overlay(logs: Sequence[Log]) -> None:
         raise ViewerError(f"Omega is {' and '.join(map(str, pace))}; runs laid over each other need one and the same")
 
 
-def send_overlay(rec: rr.RecordingStream, logs: Sequence[Log], states: Sequence[dict[str, np.ndarray]]) -> None:
+def send_overlay(rec: rr.RecordingStream, runs: Sequence[Drawn], states: Sequence[dict[str, np.ndarray]]) -> None:
     """Send the curves of all runs, and w' over w.
 
     Parameters
     ----------
     rec : rerun.RecordingStream
         Where they go.
-    logs : sequence of Log
+    runs : sequence of Drawn
         The runs.
     states : sequence of dict of str to numpy.ndarray, shape (n,)
         Columns of their ``vines.v1.State``, n > 0.
     """
+    logs = [run.log for run in runs]
     gaps = [_gaps(log, own) for log, own in zip(logs, states, strict=True)]
     several = any(log.balls for log in logs)
     largest = max(float(np.abs(w_dot).max()) for each in gaps for _, w_dot in each.values()) or 1.0
@@ -76,14 +78,15 @@ def send_overlay(rec: rr.RecordingStream, logs: Sequence[Log], states: Sequence[
     walls = [[(w, -_HEIGHT), (w, _HEIGHT)] for w in (-1.0, 1.0)]
     rec.log(f"{plane}/walls", rr.LineStrips2D(walls, radii=rr.Radius.ui_points(0.8), colors=GRID), static=True)
     for k, (log, own) in enumerate(zip(logs, states, strict=True)):
-        clock = Clock(float(own["t"][0]), float(own["phase"][0]), log.parameters.get("Omega"))
+        clock = Clock(float(own["t"][0]), float(own["phase"][0]), log.parameters.get("Omega", 1.0))
         width, colour = (3.6 if k == 0 else 1.3), OVERLAID[k]
         drawn = {f"w_{ball}": w for ball, (w, _) in gaps[k].items()} | {"x1": own["x1"]}
         for name, values in (drawn if several else {name: own[name] for name in _CURVES}).items():
             path = f"{_ROOT}/{name}/run_{k}"
             rec.log(path, rr.SeriesLines(colors=colour, widths=width, names=log.name), static=True)
             rec.send_columns(path, indexes=clock.columns(own["t"]), columns=rr.Scalars.columns(scalars=values))
-        loops = [np.column_stack([w, w_dot * (_HEIGHT / largest)]) for w, w_dot in gaps[k].values()]
+        paths = [np.column_stack([w, w_dot * (_HEIGHT / largest)]) for w, w_dot in gaps[k].values()]
+        loops = [path[part] for path in paths for part in runs[k].parts]
         style = {"radii": rr.Radius.ui_points(width / 2), "colors": colour, "draw_order": 10.0 + k}
         rec.log(f"{plane}/run_{k}", rr.LineStrips2D(loops, **style), static=True)
 
@@ -106,11 +109,11 @@ def overlaid(runs: Sequence[Shown], *, still: bool = False) -> rrb.Blueprint:
     still : bool
         For a picture that nobody can pan: curves leave room for their legends, the top bar is hidden.
     """
-    start, end = min(run.start for run in runs), max(run.end for run in runs)
+    start, end = min(run.first for run in runs), max(run.last for run in runs)
     boundary = rrb.TimeRangeBoundary
     last = end + _LEGEND * (end - start)
     span = (
-        rrb.TimeRange(start=boundary.absolute(seconds=start), end=boundary.absolute(seconds=last))
+        rrb.TimeRange(start=boundary.absolute(seq=int(ticks(start))), end=boundary.absolute(seq=int(ticks(last))))
         if still
         else rrb.TimeRange(start=boundary.infinite(), end=boundary.infinite())
     )
@@ -141,6 +144,6 @@ def overlaid(runs: Sequence[Shown], *, still: bool = False) -> rrb.Blueprint:
         rrb.Vertical(plane, *cavities, abouts, row_shares=[2.2, *heights, 0.9]),
         column_shares=[3.0, 2.0],
     )
-    panel = rrb.TimePanel(state="collapsed", timeline=SIM_TIME, play_state="paused")
+    panel = rrb.TimePanel(state="collapsed", timeline=CYCLE, fps=FPS, play_state="paused")
     parts = (body, panel, rrb.TopPanel(state="hidden")) if still else (body, panel)
     return rrb.Blueprint(*parts, collapse_panels=True)

@@ -19,7 +19,7 @@ from types import FrameType, MappingProxyType
 from typing import IO, TYPE_CHECKING
 from urllib.parse import quote
 
-from vines.errors import ViewerError
+from vines.errors import ViewerError, ViewerStallError
 from vines.viewer._page import guarded
 from vines.viewer._style import OURS
 
@@ -296,9 +296,13 @@ def headless(file: Path, size: tuple[int, int], *, laid_out: bool = True) -> Ite
             client = None
             while client is None:
                 if process.poll() is not None:
-                    raise ViewerError(_why(said, process.returncode))
+                    kind = ViewerError if _no_vulkan(_text(said)) else ViewerStallError
+                    raise kind(_why(said, process.returncode))
                 if time.monotonic() > deadline:
-                    raise ViewerError(f"the viewer did not load {file.name} within {_START_SECONDS:g} s; try again")
+                    raise ViewerStallError(
+                        f"the viewer did not load {file.name} ({file.stat().st_size / 1e6:.0f} MB) within "
+                        f"{_START_SECONDS:g} s{_last_words(said)}; try again on an idle machine"
+                    )
                 time.sleep(0.2)
                 client = _loaded(ViewerClient, port, laid_out)
             yield client
@@ -306,7 +310,9 @@ def headless(file: Path, size: tuple[int, int], *, laid_out: bool = True) -> Ite
             if isinstance(lost, ViewerError):
                 raise
             said_so = " ".join(str(lost).split())
-            raise ViewerError(f"the viewer stopped answering ({said_so}); try again on an idle machine") from lost
+            raise ViewerStallError(
+                f"the viewer stopped answering ({said_so}){_last_words(said)}; try again on an idle machine"
+            ) from lost
         finally:
             _end(process)
 
@@ -328,13 +334,38 @@ def _loaded(kind: type[ViewerClient], port: int, laid_out: bool) -> ViewerClient
 
 def _why(said: IO[bytes], status: int) -> str:
     """Return one line about a viewer that ended by itself, from what it printed."""
-    said.seek(0)
-    text = said.read().decode(errors="replace")
-    if any(sign in text for sign in _NO_VULKAN):
+    text = _text(said)
+    if _no_vulkan(text):
         return f"the viewer found no graphics adapter; Mesa's software Vulkan will do ({_VULKAN})"
-    lines = [line.strip() for line in text.splitlines() if line.strip()]
-    telling = [line for line in lines if line.startswith("Error") or "panicked" in line] or lines or ["it said nothing"]
     return (
-        f"the viewer ended with status {status}: {telling[-1]}; "
+        f"the viewer ended with status {status}: {_telling(text) or 'it said nothing'}; "
         "write a recording with --save FILE.rrd and open it where there is a display"
     )
+
+
+def _no_vulkan(text: str) -> bool:
+    return any(sign in text for sign in _NO_VULKAN)
+
+
+def _text(said: IO[bytes]) -> str:
+    said.seek(0)
+    return said.read().decode(errors="replace")
+
+
+def _telling(text: str) -> str:
+    r"""Return the line of what the viewer printed that tells most, or nothing.
+
+    Examples
+    --------
+    >>> _telling("thread main panicked at x.rs: no room\nnote: run with RUST_BACKTRACE=1\n")
+    'thread main panicked at x.rs: no room'
+    """
+    lines = [line.strip() for line in text.splitlines() if line.strip()]
+    telling = [line for line in lines if line.startswith("Error") or "panicked" in line] or lines or [""]
+    return telling[-1]
+
+
+def _last_words(said: IO[bytes]) -> str:
+    """Return what a viewer that is stuck printed, as a part of a line."""
+    words = _telling(_text(said))
+    return f", it said: {words}" if words else ""

@@ -19,6 +19,7 @@ from vines.logs import Log
 from vines.viewer._balls import half_of, send_balls, track_labels
 from vines.viewer._clock import Clock
 from vines.viewer._curves import curves
+from vines.viewer._drawn import Drawn, drawn, thinning
 from vines.viewer._foreign import write_foreign
 from vines.viewer._impacts import dial, lanes
 from vines.viewer._layout import Shown, blueprint
@@ -34,7 +35,15 @@ APPLICATION = "vines"
 """Application id under which the viewer keeps layouts."""
 
 
-def write_recording(logs: Sequence[Log], out: Path, *, still: bool = False, overlay: bool = False) -> None:
+def write_recording(
+    logs: Sequence[Log],
+    out: Path,
+    *,
+    still: bool = False,
+    overlay: bool = False,
+    at: float | None = None,
+    full: bool = False,
+) -> None:
     """Write runs as one recording, side by side or laid over each other, with the layout that shows them.
 
     Parameters
@@ -47,6 +56,10 @@ def write_recording(logs: Sequence[Log], out: Path, *, still: bool = False, over
         Whether its layout is for a picture.
     overlay : bool
         Whether the curves of all runs are in the same views.
+    at : float, optional
+        Time around which a long run is drawn with all its states; the middle if left out.
+    full : bool
+        Whether every state is drawn, however long a run is.
 
     Raises
     ------
@@ -64,14 +77,18 @@ def write_recording(logs: Sequence[Log], out: Path, *, still: bool = False, over
     shown: list[Shown] = []
     for root, log in zip(roots, logs, strict=True):
         shown.append(_shown(root, log))
+    parts = [drawn(log, at=at, full=full) for log in logs]
     rec = rr.RecordingStream(APPLICATION, recording_id=_identity(logs), send_properties=False)
     rec.save(out, default_blueprint=overlaid(shown, still=still) if overlay else blueprint(shown, still=still))
     rec.send_recording_name(", ".join(log.name for log in logs))
-    rec.send_property("vines", _properties(logs))
-    for root, log in zip(roots, logs, strict=True):
-        _send(rec, root, log)
+    for group, values in _properties(logs).items():
+        rec.send_property(group, values)
+    for root, log, part in zip(roots, logs, parts, strict=True):
+        told = about(log, "" if full else thinning(log))
+        rec.log(f"{root}/about", rr.TextDocument(told, media_type=rr.MediaType.MARKDOWN), static=True)
+        _send(rec, root, part)
     if overlay:
-        send_overlay(rec, logs, [_columns(log.states) for log in logs])
+        send_overlay(rec, parts, [_columns(part.log.states) for part in parts])
     rec.flush()
     rec.disconnect()
 
@@ -85,7 +102,9 @@ def _shown(root: str, log: Log) -> Shown:
     times = log.states["t"].to_numpy()
     period = 2 * math.pi / log.parameters.get("Omega", 1.0)
     reach = float(np.abs(log.states["x1"].to_numpy()).max())
-    shown = Shown(root, _title(log), float(times[0]), float(times[-1]), period, reach, log.kind)
+    clock = Clock(float(times[0]), log.states["phase"][0].as_py(), 2 * math.pi / period)
+    first, last = clock.cycles(times[[0, -1]]).tolist()
+    shown = Shown(root, _title(log), float(times[0]), float(times[-1]), first, last, period, reach, log.kind)
     if log.balls:
         longest = max(half_of(log, ball) for ball in log.balls)
         return replace(shown, parts=track_labels(log), longest=longest)
@@ -96,21 +115,21 @@ def _title(log: Log) -> str:
     return f"{log.name} ({log.word})" if log.word else log.name
 
 
-def _send(rec: rr.RecordingStream, root: str, log: Log) -> None:
-    """Send one run."""
-    rec.log(f"{root}/about", rr.TextDocument(about(log), media_type=rr.MediaType.MARKDOWN), static=True)
+def _send(rec: rr.RecordingStream, root: str, part: Drawn) -> None:
+    """Send what is drawn of one run."""
+    log = part.log
     if is_rig(log):
         send_rig(rec, root, log)
         return
     states, impacts = _columns(log.states), _columns(log.impacts)
     start, end = float(states["t"][0]), float(states["t"][-1])
-    clock = Clock(start, float(states["phase"][0]), log.parameters.get("Omega"), impacts["t"], end)
+    clock = Clock(start, float(states["phase"][0]), log.parameters.get("Omega", 1.0), impacts["t"], end)
     if log.balls:
-        send_balls(rec, root, log, states, impacts, clock)
+        send_balls(rec, root, part, states, impacts, clock)
         send_impact_log(rec, f"{root}/impacts", impacts, clock)
         return
     cavity(rec, f"{root}/cavity", states, clock)
-    phase_plane(rec, f"{root}/phase", states, impacts, clock)
+    phase_plane(rec, f"{root}/phase", states, impacts, clock, part.parts)
     curves(rec, root, states, impacts, clock)
     dial(rec, f"{root}/dial", states, impacts, clock)
     lanes(rec, f"{root}/lanes", states, impacts, clock)
@@ -148,18 +167,31 @@ def _identity(logs: Sequence[Log]) -> str:
     return digest.hexdigest()[:32]
 
 
-def _properties(logs: Sequence[Log]) -> rr.AnyValues:
-    """Return what a catalogue of recordings shows as columns: names, parameters and provenance."""
-    properties: dict[str, Any] = {
-        "name": [log.name for log in logs],
-        "attractor": [log.attractor for log in logs],
-        "kind": [log.kind for log in logs],
-        "impacts": [log.impacts.num_rows for log in logs],
-        "sticks": [log.sticks.num_rows for log in logs],
-        "log": [log.path.name for log in logs],
+def _properties(logs: Sequence[Log]) -> dict[str, rr.AnyValues]:
+    """Return what a catalogue of recordings shows as columns, in groups.
+
+    The catalogue sorts columns by the names of their groups: these are named so that the run comes first, then its
+    parameters, then its attractor and impacts, then the rest.
+    """
+    stages = [log.name.partition("/")[0].partition(".") for log in logs]
+    parameters = dict.fromkeys(key for log in logs for key in log.parameters)
+    groups: dict[str, dict[str, Any]] = {
+        "from": {
+            "pipeline": [pipeline if dot else "" for pipeline, dot, _ in stages],
+            "stage": [stage or pipeline for pipeline, _, stage in stages],
+        },
+        "given": {key: [log.parameters.get(key, math.nan) for log in logs] for key in parameters},
+        "got": {
+            "attractor": [log.attractor for log in logs],
+            "impacts": [log.impacts.num_rows for log in logs],
+            "sticks": [log.sticks.num_rows for log in logs],
+        },
+        "vines": {
+            "name": [log.name for log in logs],
+            "kind": [log.kind for log in logs],
+            "log": [log.path.name for log in logs],
+        },
     }
-    for key in dict.fromkeys(key for log in logs for key in log.parameters):
-        properties[key] = [log.parameters.get(key, math.nan) for log in logs]
     for key in dict.fromkeys(key for log in logs for key in log.provenance):
-        properties[f"provenance_{key}"] = [log.provenance.get(key, "") for log in logs]
-    return rr.AnyValues(**properties)
+        groups["vines"][f"provenance_{key}"] = [log.provenance.get(key, "") for log in logs]
+    return {name: rr.AnyValues(**group) for name, group in groups.items() if group}

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from vines.errors import printable
 from vines.logs import Log
+from vines.viewer._drawn import thinning
 
 __all__ = ["is_foreign", "remarks"]
 
@@ -16,8 +17,16 @@ def is_foreign(log: Log) -> bool:
     return log.kind == "foreign" and not (log.states.num_rows or log.base.num_rows or log.sensors)
 
 
-def remarks(log: Log) -> list[str]:
-    """Return what somebody who looks at a log should know, a line each: what is missing from it or from the picture."""
+def remarks(log: Log, *, full: bool = False) -> list[str]:
+    """Return what somebody who looks at a log should know, a line each: what is missing from it or from the picture.
+
+    Parameters
+    ----------
+    log : Log
+        What is looked at.
+    full : bool
+        Whether every state of a long run is drawn.
+    """
     lines = list(log.remarks)
     if log.kind == "foreign" and not is_foreign(log):
         lines.append("no provenance: nothing vouches that these are the messages that vines wrote")
@@ -30,4 +39,6 @@ def remarks(log: Log) -> list[str]:
         lines.append(f"not drawn: {', '.join(map(printable, log.encodings))}")
     if not log.parameters and (log.states.num_rows or log.kind == "run"):
         lines.append("no parameters: forcing cycles are drawn as if Omega were 1")
+    if not full and (left_out := thinning(log)):
+        lines.append(f"{left_out}; --full draws all")
     return lines

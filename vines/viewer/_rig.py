@@ -36,7 +36,7 @@ def shown_rig(root: str, log: Log) -> Shown:
         raise ViewerError(f"{log.path} holds no samples of sensors or of the base, so there is nothing to show")
     start = min(float(t[0]) for t, _, _ in curves.values())
     end = max(float(t[-1]) for t, _, _ in curves.values())
-    return Shown(root, log.name, start, end, period=1.0, kind="rig", parts=tuple(curves))
+    return Shown(root, log.name, start, end, start, end, period=1.0, kind="rig", parts=tuple(curves))
 
 
 def send_rig(rec: rr.RecordingStream, root: str, log: Log) -> None:
@@ -58,12 +58,26 @@ def _curves(log: Log) -> dict[str, tuple[np.ndarray, np.ndarray, str]]:
         if log.base.num_rows:
             values = log.base[name].to_numpy()
             if np.isfinite(values).any():
-                found[f"base_{name}"] = (log.base["t"].to_numpy(), values, f"base {name} [{unit}]")
+                found[f"base_{name}"] = (log.base["t"].to_numpy(), values, f"base {name} [{unit}], {_reach(values)}")
     for name, samples in log.sensors.items():
         if samples.num_rows:
             about = {key.decode(): text.decode() for key, text in (samples.schema.metadata or {}).items()}
             values = np.where(samples["valid"].to_numpy() == 1, samples["value"].to_numpy(), np.nan)
             part = "sensor_" + re.sub(r"[^A-Za-z0-9]+", "_", name)
-            label = f"{name}: {about['quantity']} [{about['unit']}], {about['sign']}"
+            label = f"{name}: {about['quantity']} [{about['unit']}], {_reach(values)}, {about['sign']}"
             found[part] = (samples["t"].to_numpy(), values, label)
     return found
+
+
+def _reach(values: np.ndarray) -> str:
+    """Return from where to where values go: Rerun writes few numbers on an axis that is low.
+
+    Examples
+    --------
+    >>> _reach(np.array([-2.0, np.nan, 3.14159]))
+    '−2 to 3.14'
+    """
+    finite = values[np.isfinite(values)]
+    if not finite.size:
+        return "nothing valid"
+    return f"{finite.min():.3g} to {finite.max():.3g}".replace("-", "−")

@@ -126,10 +126,12 @@ def phase_plane(
     states: dict[str, np.ndarray],
     impacts: dict[str, np.ndarray],
     clock: Clock,
+    parts: tuple[slice, ...],
 ) -> None:
     """Draw the orbit in the plane of w and w', its recent part as a trail, where it is now, and its impacts.
 
-    Parameters are those of `vines.viewer._scene.cavity`; `impacts` has the columns of ``vines.v1.Impact``.
+    Parameters are those of `vines.viewer._scene.cavity`; `impacts` has the columns of ``vines.v1.Impact``, and `parts`
+    are the states between which none was left out: only these are joined by lines.
     """
     indexes = clock.columns(states["t"])
     path = np.column_stack([states["w"], states["w_dot"]])
@@ -141,18 +143,19 @@ def phase_plane(
     rec.log(root, rr.Transform3D(scale=[1.0, -stretch, 1.0]), static=True)
     rec.log(
         f"{root}/orbit",
-        rr.LineStrips2D([path], radii=rr.Radius.ui_points(1.0), colors=LINE, draw_order=10.0),
+        rr.LineStrips2D([path[part] for part in parts], radii=rr.Radius.ui_points(1.0), colors=LINE, draw_order=10.0),
         static=True,
     )
 
-    pieces = np.stack([np.concatenate([path[:1], path[:-1]]), path], axis=1)
+    joined = np.concatenate([np.arange(len(path))[part] for part in parts])
+    pieces = np.stack([path[np.maximum(joined - 1, 0)], path[joined]], axis=1)
     trail = rr.LineStrips2D.columns(strips=pieces.astype(np.float32))
     rec.log(
         f"{root}/trail",
         rr.LineStrips2D.from_fields(radii=rr.Radius.ui_points(2.2), colors=TRAIL, draw_order=20.0),
         static=True,
     )
-    rec.send_columns(f"{root}/trail", indexes=indexes, columns=trail)
+    rec.send_columns(f"{root}/trail", indexes=clock.columns(states["t"][joined]), columns=trail)
     rec.log(
         f"{root}/now",
         rr.Points2D([(0.0, 0.0)], radii=rr.Radius.ui_points(6.0), colors=BALL, draw_order=40.0),

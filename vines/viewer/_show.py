@@ -10,7 +10,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from vines.errors import ParameterError, ViewerError
+from vines.errors import ViewerError, ViewerStallError
 from vines.logs import Log
 from vines.viewer._cache import cached_rrd
 from vines.viewer._remarks import is_foreign
@@ -32,6 +32,8 @@ def screenshot(
     at: float | None = None,
     size: tuple[int, int] = (1600, 900),
     overlay: bool = False,
+    full: bool = False,
+    tell: Callable[[str], object] | None = None,
 ) -> Path:
     """Draw runs as the viewer shows them, without a window, and keep the picture.
 
@@ -47,6 +49,10 @@ def screenshot(
         Width and height in pixels.
     overlay : bool
         Whether the curves of all runs are in the same views.
+    full : bool
+        Whether every state of a long run is drawn.
+    tell : callable, optional
+        Called with a line when the viewer has to be started again.
 
     Returns
     -------
@@ -65,34 +71,53 @@ def screenshot(
         If the viewer cannot start (it needs Vulkan; Mesa's software one will do), a view reports an error, or the
         picture does not come to rest.
     """
+    from vines.viewer._cursor import set_time
     from vines.viewer._program import headless
 
     runs = logs_of(logs)
-    if at is not None:
-        _check_time(at, runs)
+    moment = _moment(runs[0]) if at is None else at
     with replacing(Path(out)) as partial, tempfile.TemporaryDirectory() as folder:
         recording = Path(folder) / "still.rrd"
-        record(runs, recording, still=True, overlay=overlay)
+        record(runs, recording, still=True, overlay=overlay, at=moment, full=full)
         ours = not any(map(is_foreign, runs))
-        with headless(recording, size, laid_out=ours) as viewer:
-            from vines.viewer._clock import SIM_TIME
 
-            if ours:
-                viewer.set_time(SIM_TIME, duration=_moment(runs[0]) if at is None else at, play_state="paused")
-            picture = _at_rest(viewer)
-            reports = [
-                f"{view.name}: {report.summary}"
-                for view in viewer.get_state().views
-                for report in view.reports
-                if report.severity == "error"
-            ]
-        if reports:
-            raise ViewerError(f"the viewer could not draw {'; '.join(reports)}")
-        partial.write_bytes(picture)
+        def drawing() -> bytes:
+            with headless(recording, size, laid_out=ours) as viewer:
+                if ours:
+                    set_time(viewer, runs, moment)
+                picture = _at_rest(viewer)
+                reports = [
+                    f"{view.name}: {report.summary}"
+                    for view in viewer.get_state().views
+                    for report in view.reports
+                    if report.severity == "error"
+                ]
+            if reports:
+                raise ViewerError(f"the viewer could not draw {'; '.join(reports)}")
+            return picture
+
+        partial.write_bytes(_twice(drawing, tell))
     return Path(out)
 
 
-def view(logs: Sequence[str | os.PathLike[str] | Log], *, cache: Path | None = None, overlay: bool = False) -> None:
+def _twice(drawing: Callable[[], bytes], tell: Callable[[str], object] | None) -> bytes:
+    """Return a picture, of a second start of the viewer if the first came to nothing for want of time or luck."""
+    try:
+        return drawing()
+    except ViewerStallError as first:
+        if tell is not None:
+            tell(f"{first}; it is started once more")
+        return drawing()
+
+
+def view(
+    logs: Sequence[str | os.PathLike[str] | Log],
+    *,
+    cache: Path | None = None,
+    overlay: bool = False,
+    at: float | None = None,
+    full: bool = False,
+) -> None:
     """Show runs in the viewer and wait until its window is closed.
 
     Parameters
@@ -103,6 +128,8 @@ def view(logs: Sequence[str | os.PathLike[str] | Log], *, cache: Path | None = N
         Folder where their recording is kept for the next time.
     overlay : bool
         Whether the curves of all runs are in the same views; such a recording is not kept.
+    at, full : float or None, bool
+        What is drawn of a long run, as in :func:`vines.viewer.save_rrd`.
 
     Raises
     ------
@@ -115,7 +142,7 @@ def view(logs: Sequence[str | os.PathLike[str] | Log], *, cache: Path | None = N
     """
     from vines.viewer._program import native
 
-    with _recorded(logs, None if overlay else cache, overlay=overlay) as recording:
+    with _recorded(logs, None if overlay else cache, overlay=overlay, at=at, full=full) as recording:
         native(recording)
 
 
@@ -125,6 +152,8 @@ def web(
     cache: Path | None = None,
     tell: Callable[[str], object] = print,
     overlay: bool = False,
+    at: float | None = None,
+    full: bool = False,
 ) -> None:
     """Serve runs in the web viewer, offline and on 127.0.0.1 only, until Ctrl-C.
 
@@ -138,6 +167,8 @@ def web(
         Called with the line that names the page.
     overlay : bool
         Whether the curves of all runs are in the same views; such a recording is not kept.
+    at, full : float or None, bool
+        What is drawn of a long run, as in :func:`vines.viewer.save_rrd`.
 
     Raises
     ------
@@ -150,30 +181,31 @@ def web(
     """
     from vines.viewer._program import served
 
-    with _recorded(logs, None if overlay else cache, overlay=overlay) as recording, served(recording) as (url, wait):
+    with (
+        _recorded(logs, None if overlay else cache, overlay=overlay, at=at, full=full) as recording,
+        served(recording) as (url, wait),
+    ):
         tell(f"open {url} in a browser; Ctrl-C ends it")
         wait()
 
 
 @contextmanager
-def _recorded(logs: Sequence[str | os.PathLike[str] | Log], cache: Path | None, *, overlay: bool) -> Iterator[Path]:
+def _recorded(
+    logs: Sequence[str | os.PathLike[str] | Log],
+    cache: Path | None,
+    *,
+    overlay: bool,
+    at: float | None,
+    full: bool,
+) -> Iterator[Path]:
     """Give a recording of runs, from the cache if there is one."""
     if cache is not None:
-        yield cached_rrd(logs, cache)
+        yield cached_rrd(logs, cache, at=at, full=full)
         return
     with tempfile.TemporaryDirectory() as folder:
         recording = Path(folder) / "vines.rrd"
-        record(logs, recording, overlay=overlay)
+        record(logs, recording, overlay=overlay, at=at, full=full)
         yield recording
-
-
-def _check_time(at: float, runs: Sequence[Log]) -> None:
-    """Refuse a time at which none of the runs shows anything."""
-    times = [time for run in runs if run.states.num_rows for time in run.states["t"].to_numpy()[[0, -1]].tolist()]
-    if times and not min(times) <= at <= max(times):
-        raise ParameterError(
-            f"at is {at:g}, allowed is {min(times):g} to {max(times):g}, the time of the run, 1/omega0"
-        )
 
 
 def _moment(log: Log) -> float:
@@ -198,4 +230,6 @@ def _at_rest(viewer: ViewerClient) -> bytes:
         if picture == before:
             return picture
         before = picture
-    raise ViewerError(f"the picture did not come to rest within {_SETTLE_SECONDS:g} s; try again on an idle machine")
+    raise ViewerStallError(
+        f"the picture did not come to rest within {_SETTLE_SECONDS:g} s; try again on an idle machine"
+    )

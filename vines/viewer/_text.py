@@ -48,8 +48,8 @@ def send_impact_log(rec: rr.RecordingStream, path: str, impacts: dict[str, np.nd
     rec.send_columns(path, indexes=clock.columns(impacts["t"]), columns=columns)
 
 
-def about(log: Log) -> str:
-    """Return a run's parameters, counts and provenance as Markdown."""
+def about(log: Log, left_out: str = "") -> str:
+    """Return a run's parameters, counts, provenance and what is left out of its picture, as Markdown."""
     rows = [(_named(name), f"{value:.10g}") for name, value in log.parameters.items()]
     if log.word:
         rows.append(("word", log.word))
@@ -65,7 +65,10 @@ def about(log: Log) -> str:
     if log.recovered:
         rows.append(("**recovered**, lost", _short(log.recovered.get("lost", ""), 80)))
     rows += [(name, _short(text)) for name, text in log.provenance.items() if text not in _EMPTY]
-    return "\n".join([f"### {log.name}", "", "| | |", "|---|---|", *(f"| {name} | {text} |" for name, text in rows)])
+    more = ["", f"*{left_out}*"] if left_out else []
+    return "\n".join(
+        [f"### {log.name}", *more, "", "| | |", "|---|---|", *(f"| {name} | {text} |" for name, text in rows)]
+    )
 
 
 def _counts(log: Log) -> list[tuple[str, str]]:
