@@ -85,7 +85,7 @@ def section(name, **changes):
     told = {
         "title": f"<b>{name}</b>",
         "source": "Fig. 1",
-        "figures": [Figure(f"{name}.figure", "A <figure>", SVG)],
+        "figures": [Figure(f"{name}.figure", "A <figure>", SVG, "svg")],
         "checks": [{"id": "c", "verdict": "differs", "statement": "a < b & c", "remark": '"x"'}],
         "comparisons": [],
         "runs": [Run(f"{name}.run", "1:1", "run.mcap")],

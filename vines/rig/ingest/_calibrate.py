@@ -119,6 +119,7 @@ def calibrate(
             f"{max_clipped:.2%} (max_clipped in run.json); record again with a larger range"
         )
     remarks = found.remarks
+    clipped = int(lost.sum())
     bursts = "" if gone is None else _told(lost, gone[0] & ~lost, gone[1] & ~lost, rate)
     if gone is not None and bursts:
         lost = lost | gone[0] | gone[1]
@@ -137,7 +138,7 @@ def calibrate(
     values = values * (factor * float(row.sign))
     if row.high_pass:
         values = _undo_high_pass(values, row.high_pass, rate, valid)
-    return Calibrated(row, values, valid, rate, found.start - row.group_delay, int(lost.sum()), remarks, bursts)
+    return Calibrated(row, values, valid, rate, found.start - row.group_delay, clipped, remarks, bursts)
 
 
 def _no_signal(values: npt.NDArray[np.float64]) -> tuple[npt.NDArray[np.bool_], npt.NDArray[np.bool_]]:

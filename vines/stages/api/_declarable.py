@@ -129,6 +129,6 @@ def default_shown(row: Mapping[str, Any]) -> str:
     # That of a table of options is said by its options.
     return (
         ""
-        if row["default"] is None or (row["type"] == "table" and row["default"])
+        if row["default"] is None or (row.get("type") == "table" and row["default"])
         else json.dumps(row["default"], ensure_ascii=False)
     )

@@ -101,7 +101,7 @@ def save_figure(
     pipeline, stage = _asked(name, width, overrides, study)
     path = Path(f"{pipeline.name}.{stage}.pdf") if out is None else out
     declared: Any = pipeline.stages[stage].options
-    resolution = dpi or max(declared.look.dpi, _PRINTED)
+    resolution = dpi or max(declared.worn.dpi, _PRINTED)
     with _worn(pipeline, stage, style):
         return save_as(_drawn(pipeline, stage, study), path, dpi=resolution)
 
@@ -116,7 +116,7 @@ def _worn(pipeline: Pipeline, stage: str, style: str | Path | None) -> AbstractC
     from vines.stages.plots import worn_by
 
     options: Any = pipeline.stages[stage].options
-    return worn_by(options.look, None if style is None else style_settings(style))
+    return worn_by(options.worn, None if style is None else style_settings(style))
 
 
 def _drawn(pipeline: Pipeline, stage: str, study: Home) -> Figure:

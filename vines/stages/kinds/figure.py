@@ -17,7 +17,7 @@ def _fits(stage: Stage, pipeline: Pipeline) -> None:
     plot = plot_of(stage.options)
     options: Any = stage.options
     inches(options.width)
-    check_look(options.look)
+    check_look(options.worn)
     plot.check_systems(stage, pipeline)
     check = plot.check
     if check is not None:

@@ -12,7 +12,7 @@ __all__ = ["compute"]
 
 def compute(job: WholeJob[PlotOptions]) -> Batch:
     """Draw the needed stages."""
-    look = job.options.look
+    look = job.options.worn
     with worn_by(look):
         save(plot_of(job.options).draw(job.inputs, job.options), job.folder, formats=look.formats, dpi=look.dpi)
     return Batch()

@@ -32,8 +32,14 @@ class PlotOptions(msgspec.Struct, frozen=True, forbid_unknown_fields=True, tag_f
         msgspec.Meta(description='Width of the picture: inches, or a text with its unit, "85mm", "8.5cm", "3.35in"'),
     ] = 7.0
     look: Annotated[
-        LookOptions, msgspec.Meta(description="Size, letters, colours, labels, limits and files of the picture")
-    ] = LookOptions()
+        LookOptions | msgspec.UnsetType,
+        msgspec.Meta(description="Size, letters, colours, labels, limits and files of the picture"),
+    ] = msgspec.UNSET  # so that it stands in no key where nothing is said
+
+    @property
+    def worn(self) -> LookOptions:
+        """The look that is declared, or that of all figures."""
+        return LookOptions() if self.look is msgspec.UNSET else self.look
 
     @property
     def inches(self) -> float:
