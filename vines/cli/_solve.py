@@ -34,9 +34,9 @@ def command(
 ) -> None:
     """Print the periodic orbit of a WORD of impacts, such as LR, LLR or LRLR/2T.
 
-    A star stands behind a chatter that ends in sticking, such as L*R*, which a shell wants in quotes; a word without a
-    star is that of orbits that never stick. Of several the symmetric admissible one is shown, else a stable one, else the one with the smallest largest
-    multiplier. Exit 1 if there is none.
+    A star stands behind a chatter that ends in sticking, such as L*R*, which a shell wants in quotes; a word without
+    a star is that of orbits that never stick. Of several the symmetric admissible one is shown, else a stable one,
+    else the one with the smallest largest multiplier. Exit 1 if there is none.
 
     \b
     vines solve LR --mu 0.01 --A 0.017

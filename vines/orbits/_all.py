@@ -49,9 +49,9 @@ class Orbits(list[Orbit]):
     ----------
     complete : bool
         Whether every orbit of the word is in the list, not whether every motion of the system is. True for words of
-        two and three impacts, where all flight times are searched; two orbits nearer than 1e-5 of a forcing period, next to a fold, may count as one. A word without
-        a star has no orbits that stick, so that nothing is said about those; words with a star
-        are complete for the impact pair only, where a release fixes all that follows.
+        two and three impacts, where all flight times are searched; two orbits nearer than 1e-5 of a forcing period,
+        next to a fold, may count as one. A word without a star has no orbits that stick, so that nothing is said
+        about those; words with a star are complete for the impact pair only, where a release fixes all that follows.
     remark : str
         How they were searched for.
     nearest : float
