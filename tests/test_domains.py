@@ -10,15 +10,18 @@ import inspect
 import signal
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from fractions import Fraction
 from typing import Any
 
 import numpy as np
 import pytest
+from numba.core import event
 
 import vines
 from vines import attractors, dynamics, orbits
+from vines.domains import Number, Whole, stated
 from vines.dynamics import Scatter
-from vines.errors import VinesError
+from vines.errors import ParameterError, VinesError
 from vines.model import VI_NES, Params, PhysicalParams, Word
 from vines.systems import ImpactPair, Parallel
 
@@ -30,7 +33,13 @@ SECONDS = 60
 P = Params(mu=0.01, A=0.017)
 FLIGHT = Params(mu=0.1, A=0.3, Omega=1.2)
 SHORT: dict[str, Any] = {"settle": 2, "record": 4, "patience": 0, "watch": 16}
+AXES = {"A": [0.017, 0.0175], "Omega": [1.0]}
 STATE = {"x1": 0.0, "v1": 0.0, "x2": 0.0, "v2": 0.1}
+
+
+def _orbit(**changed: float) -> Any:
+    return vines.find_orbit("LR", P.replace(**changed))
+
 
 Calls = dict[str, tuple[Callable[..., Any], dict[str, Any]]]
 
@@ -45,6 +54,7 @@ def calls() -> Calls:
     run = vines.simulate(P, periods=20)
     orbit = vines.find_orbit("LR", P)
     [bifurcation] = vines.continue_orbit(orbit, "A", 0.0185).bifurcations
+    known = attractors.atlas(P, {"A": [0.017], "Omega": [1.0]}, words=["LR"])
     walk = {"within": None, "at": (), "step": 0.02, "max_points": 50}
     options = {**SHORT, "tolerance": 1e-10, "largest_p": 2, "max_impacts_per_period": 100}
     scatter = {name: each.default for name, each in inspect.signature(Scatter).parameters.items()}
@@ -94,6 +104,12 @@ def calls() -> Calls:
                 "watch": 16,
             },
         ),
+        "atlas": (
+            attractors.atlas,
+            {"p": P, "axes": {"A": [0.017], "Omega": [1.0]}, "words": ["LR"], "every": 1, "runs": 0, "seed": 0},
+        ),
+        "Atlas.entry_of": (known.entry_of, {"orbit": orbit}),
+        "orbit_of": (attractors.orbit_of, {"attractor": vines.settle(P, lyapunov=False, errors=False)}),
         "share_error": (attractors.share_error, {"share": 0.5, "number": 10}),
         "impact_map": (
             dynamics.impact_map,
@@ -155,6 +171,7 @@ def calls() -> Calls:
         ),
         "switch_branch": (vines.switch_branch, {"bifurcation": bifurcation}),
         "mirror_image": (orbits.mirror_image, {"orbit": orbit}),
+        "carry_orbit": (orbits.carry_orbit, {"orbit": orbit, "p": P.replace(A=0.0171)}),
         "optimise": (
             orbits.optimise,
             {
@@ -178,6 +195,7 @@ def calls() -> Calls:
 
 BESIDE = {
     "curve_rows", "branch_row", "bifurcation_row", "orbit_row", "orbit_outline", "own_word", "warm_up", "apart",
+    "of_two_mirror_images", "one_of", "orbit_through", "partners",
 }  # fmt: skip
 """Public to the rooms above, which call them with what other functions returned."""
 
@@ -232,9 +250,47 @@ def test_whatever_is_given_is_taken_or_refused_in_one_line(calls: Calls) -> None
     assert not wrong, "\n".join(wrong)
 
 
+def test_numbers_of_other_kinds_than_those_of_python_are_the_same_to_kernels(calls: Calls) -> None:
+    wrong: list[str] = []
+    for name, (function, arguments) in calls.items():
+        _answer(lambda: function(**arguments))  # noqa: B023
+        for argument, value in arguments.items():
+            if type(value) not in (int, float):
+                continue
+            with event.install_recorder("numba:compile") as compiled:
+                answer = _answer(lambda: function(**{**arguments, argument: np.array(value)}))  # noqa: B023
+            if answer or compiled.buffer:
+                wrong.append(f"{name}({argument}={np.array(value)!r}) {answer or 'compiles anew'}")
+    assert not wrong, "\n".join(wrong)
+
+
+@pytest.mark.parametrize("value", [np.float32(0.5), np.float16(0.5), np.array(0.5), Fraction(1, 2), np.float64(0.5)])
+def test_a_function_gets_an_allowed_number_as_one_of_python(value: Any) -> None:
+    @stated(ParameterError, share=Number(), count=Whole())
+    def types(share: float, count: int = 1) -> tuple[type, type]:
+        return type(share), type(count)
+
+    assert types(value, np.array(3)) == types(share=value, count=np.uint8(3)) == (float, int)
+    assert types(1, count=2) == (int, int)
+
+
 @pytest.mark.parametrize(
     ("call", "said"),
     [
+        (lambda: attractors.atlas(P, AXES, words="LR"), "words is 'LR'; give a list of words"),
+        (lambda: attractors.atlas(P, AXES, runs=2**70), "runs is 1180591620717411303424; give an integer >= 0 and <= "),
+        (
+            lambda: attractors.atlas(P, AXES, words=["LR"]).entry_of(_orbit(A=0.05)),
+            "A of the orbit is 0.05, the atlas goes",
+        ),
+        (
+            lambda: attractors.atlas(P, AXES, words=["LR"]).entry_of(_orbit(mu=0.02)),
+            "mu of the orbit is 0.02, that of the",
+        ),
+        (
+            lambda: attractors.orbit_of(vines.settle(ImpactPair(B=0.5, r=0.5))),
+            "attractor is of ImpactPair, this is there",
+        ),
         (lambda: vines.simulate({"mu": 0.01, "A": 0.02}), "p is {'mu': 0.01, 'A': 0.02}; give parameters"),
         (lambda: vines.settle(0.02), "p is 0.02; give parameters, such as vines.Params(mu=0.01, A=0.02)"),
         (lambda: vines.settle(P, tolerance="a"), "tolerance is 'a'; give a finite number > 0 and <= 0.0001"),

@@ -1,6 +1,8 @@
 """What arguments public functions take: stated once at each function, and checked before anything is done.
 
-A domain says in one line what was given and what is allowed. Nothing is converted: a function gets what it was given.
+A domain says in one line what was given and what is allowed. A function gets what it was given, but for numbers of
+other kinds than Python's (NumPy's of any width, arrays of no dimension, fractions): these it gets as int or float,
+because a kernel would be compiled anew for each of their types, or not at all.
 """
 
 from __future__ import annotations
@@ -8,6 +10,7 @@ from __future__ import annotations
 import functools
 import inspect
 import math
+import operator
 from collections.abc import Callable, Collection, Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import Any, ParamSpec, Protocol, TypeVar
@@ -81,6 +84,10 @@ class Number:
             error=error,
         )
 
+    def plain(self, value: Any) -> Any:
+        """Return an allowed value as int or float."""
+        return value if value is None or type(value) in (int, float) else float(value)
+
 
 @dataclass(frozen=True)
 class Whole:
@@ -94,6 +101,10 @@ class Whole:
         """Raise `error` unless the value is such a number."""
         if value is not None or not self.optional:
             check_count(name, value, least=self.least, most=self.most, error=error)
+
+    def plain(self, value: Any) -> Any:
+        """Return an allowed value as int."""
+        return None if value is None else operator.index(value)
 
 
 @dataclass(frozen=True)
@@ -309,15 +320,23 @@ def stated(
             if each.kind in (inspect.Parameter.POSITIONAL_ONLY, inspect.Parameter.POSITIONAL_OR_KEYWORD)
         ]
 
+        def one(name: str, value: Any) -> Any:
+            domain = domains.get(name)
+            if domain is None:
+                return value
+            domain.check(name, value, ParameterError if isinstance(domain, Parameters) else error)
+            return domain.plain(value) if isinstance(domain, Number | Whole) else value
+
         @functools.wraps(function)
         def checked(*args: _Arguments.args, **kwargs: _Arguments.kwargs) -> _Result:
             # What Python itself says of arguments that do not fit is said by the call.
-            for given in (zip(positional, args, strict=False), kwargs.items()):
-                for name, value in given:
-                    if name in domains:
-                        domain = domains[name]
-                        domain.check(name, value, ParameterError if isinstance(domain, Parameters) else error)
-            return function(*args, **kwargs)
+            by_place: list[Any] = list(args)
+            by_name: dict[str, Any] = dict(kwargs)
+            for k, (name, value) in enumerate(zip(positional, args, strict=False)):
+                by_place[k] = one(name, value)
+            for name, value in kwargs.items():
+                by_name[name] = one(name, value)
+            return function(*by_place, **by_name)
 
         return checked
 

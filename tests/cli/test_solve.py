@@ -42,7 +42,9 @@ def test_an_inadmissible_orbit_says_where_it_meets_a_wall():
 
 def test_all_orbits_are_printed_with_what_is_known_of_others():
     text = solve("LR", "--mu", "0.01", "--A", "0.019", "--all")
-    assert text.startswith("3 orbits of this word, and no more (all flight times searched)\n")
+    assert text.startswith(
+        "3 orbits of this word, and no more (all flight times searched; orbits that stick have other words)\n"
+    )
     assert text.count("Floquet multipliers") == 3
 
 

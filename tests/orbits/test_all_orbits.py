@@ -120,6 +120,15 @@ def test_the_remark_of_find_orbit_counts_the_asymmetric_pair():
     assert "all flight times searched" in orbit.remark
 
 
+def test_where_a_run_sticks_the_word_without_a_star_says_that_it_is_of_no_run():
+    p = Params(mu=0.0256654, A=0.965717, Omega=1.02946, r=0.347164, lam=0.0959532)
+    orbit = find_orbit("LR", p)
+    assert not orbit.admissible
+    assert "orbits that stick have other words" in orbit.remark
+    assert orbit.remark.endswith("vines.settle says what one settles to, and its word")
+    assert "none is admissible" not in find_orbit("LR", P).remark
+
+
 def test_given_its_flight_times_an_orbit_is_linear(independent):
     """The rows of the linear problem vanish on an orbit, and its phase comes out; also for half a symmetric one."""
     for word, half in (("LLR", False), ("LR", False), ("LLRR", True)):

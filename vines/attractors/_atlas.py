@@ -1,5 +1,7 @@
 """A catalogue of the stable orbits over a rectangle of two parameters.
 
+Not the stage kind ``atlas``, which lists all orbits, unstable ones too, of words up to a length, line by line.
+
 Orbits are sought at some nodes of a grid by their equations, and from simulations at random places; each is carried
 from node to node for as long as it is stable, and what comes out of it where it loses its stability goes the same way
 (docs/orbits.md, "An atlas of stable orbits").
@@ -20,9 +22,9 @@ import numpy.typing as npt
 from vines.attractors._classify import classify_many
 from vines.attractors._orbit_of import orbit_through
 from vines.bounds import shown
-from vines.domains import Numbers, Of, Parameters, Whole, stated
+from vines.domains import Numbers, Of, Parameters, Whole, listed, stated
 from vines.errors import OrbitNotFound, ParameterError
-from vines.model import PARAMETER_NAMES, START_NAMES, Params, Word
+from vines.model import PARAMETER_NAMES, START_NAMES, VI_NES, Params, Word, word_for
 from vines.orbits import Orbit, all_orbits, carry_orbit, of_two_mirror_images, one_of, partners, words_up_to
 
 __all__ = ["Atlas", "Entry", "atlas"]
@@ -37,6 +39,9 @@ _HALVINGS = 8
 
 _BEYOND = (0.01, 0.03, 0.1, 0.3)
 """How far beyond that place, as a share of what is left of the way, what comes out of the orbit is looked for."""
+
+_MOST_RUNS = 10_000_000
+"""Most simulations: they take hours."""
 
 _NEAR = 2.0
 """Farthest place, in steps of the grid, to which an orbit is carried to be compared."""
@@ -117,13 +122,16 @@ class Atlas:
 
     Attributes
     ----------
+    params : Params
+        The other parameters, those at the first node.
     axes : dict of str to list of float
         The two parameters and their values.
     entries : list of Entry
         At the nodes all that was found there; between them those that a run told of, and the first ones of families
         that come out of another one between two nodes.
     searched : dict of Word to bool
-        The words that were searched by their equations, and whether that was exhaustive where they were.
+        The words that were searched by their equations, and whether that was exhaustive at every node where they were:
+        of orbits that never stick for a word without a star, and never for one with a star.
     nodes : list of tuple of int, int
         The nodes at which they were searched.
     runs : int
@@ -132,6 +140,7 @@ class Atlas:
         Periodic attractors of them of which Newton's method found no orbit.
     """
 
+    params: Params
     axes: dict[str, list[float]]
     entries: list[Entry]
     searched: dict[Word, bool]
@@ -160,8 +169,31 @@ class Atlas:
         ----------
         orbit : Orbit
             With the other parameters of the atlas.
+
+        Raises
+        ------
+        ParameterError
+            If it lies outside the rectangle, or has other parameters than the atlas beside the two.
         """
+        self._check_inside(orbit.params)
         return self._index.find(orbit)
+
+    def _check_inside(self, p: Any) -> None:
+        """Raise `ParameterError` unless the atlas is about these parameters."""
+        if not isinstance(p, Params):
+            raise ParameterError(f"orbit is of {type(p).__name__}; an atlas is of vines.Params alone")
+        for name, value in p.as_dict().items():
+            if name in self.axes:
+                low, high = self.axes[name][0], self.axes[name][-1]
+                if not low <= value <= high:
+                    raise ParameterError(
+                        f"{name} of the orbit is {value:g}, the atlas goes from {low:g} to {high:g}; give one in there"
+                    )
+            elif value != getattr(self.params, name):
+                raise ParameterError(
+                    f"{name} of the orbit is {value!r}, that of the atlas is {getattr(self.params, name)!r}; "
+                    "carry_orbit takes it there"
+                )
 
 
 class _Growing:
@@ -269,7 +301,7 @@ def _splits(orbit: Orbit) -> bool:
     ParameterError,
     p=Parameters(any_system=False),
     every=Whole(least=1),
-    runs=Whole(least=0),
+    runs=Whole(least=0, most=_MOST_RUNS),
     seed=Whole(least=0),
 )
 def atlas(
@@ -282,6 +314,9 @@ def atlas(
     seed: int = 0,
 ) -> Atlas:
     """Return the stable orbits over a rectangle of two parameters.
+
+    The stage kind ``atlas`` of a pipeline is another thing: it lists all orbits, unstable ones too, of words up to a
+    length, and follows them along lines of the forcing amplitude, without simulations.
 
     Parameters
     ----------
@@ -322,7 +357,7 @@ def atlas(
     [((0, 0), True), ((1, 0), False)]
     """
     grid = _checked(p, axes)
-    wanted = [Word(word) for word in words] if words is not None else [*words_up_to(3, period=3), Word("L*R*")]
+    wanted = _wanted(words)
     growing = _Growing(p, grid)
     chosen = [node for node in growing.nodes() if all(k % every == every // 2 for k in node)] or [(0, 0)]
     searched = dict.fromkeys(wanted, True)
@@ -335,7 +370,7 @@ def atlas(
     lost = _run(growing, runs, seed) if runs else 0
     entries = [entry for known in growing.index.cells.values() for entry in known]
     entries.sort(key=lambda entry: entry.place)
-    return Atlas(grid, entries, searched, chosen, runs, lost, growing.index)
+    return Atlas(growing.params((0, 0)), grid, entries, searched, chosen, runs, lost, growing.index)
 
 
 def _run(growing: _Growing, runs: int, seed: int) -> int:
@@ -362,6 +397,16 @@ def _run(growing: _Growing, runs: int, seed: int) -> int:
         # At once, so that the next runs on the same family are known.
         growing.spread()
     return lost
+
+
+def _wanted(words: Sequence[str | Word] | None) -> list[Word]:
+    """Return the words to be searched, or raise `ParameterError`."""
+    if words is None:
+        return [*words_up_to(3, period=3), Word("L*R*")]
+    given = listed(words)
+    if given is None:
+        raise ParameterError(f"words is {shown(words)}; give a list of words, such as ['LR', 'L*R*']")
+    return [word_for(word, VI_NES) for word in given]
 
 
 def _checked(p: Params, axes: Mapping[str, npt.ArrayLike]) -> dict[str, list[float]]:

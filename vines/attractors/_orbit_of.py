@@ -11,7 +11,7 @@ from vines.attractors._attractor import Attractor
 from vines.domains import Of, stated
 from vines.dynamics import simulate
 from vines.errors import OrbitNotFound, ParameterError
-from vines.model import STATE_NAMES, VI_NES, Word
+from vines.model import STATE_NAMES, VI_NES, Params, Word
 from vines.orbits import Orbit, find_orbit
 
 __all__ = ["orbit_of", "orbit_through"]
@@ -38,6 +38,8 @@ def orbit_of(attractor: Attractor) -> Orbit:
     ------
     OrbitNotFound
         If it is not periodic, or Newton's method finds no orbit of its word from there.
+    ParameterError
+        If it is of another system.
 
     Examples
     --------
@@ -47,6 +49,11 @@ def orbit_of(attractor: Attractor) -> Orbit:
     >>> orbit.word.name, orbit.stable, orbit.admissible
     ('2:1', True, True)
     """
+    if not isinstance(attractor.params, Params):
+        raise ParameterError(
+            f"attractor is of {type(attractor.params).__name__}, this is there for vines.Params alone; "
+            "vines.find_orbit takes its word"
+        )
     if attractor.word is None:
         raise OrbitNotFound(f"the attractor is {attractor.regime}, only a periodic one is an orbit; settle elsewhere")
     return orbit_through(Word(str(attractor.word)), attractor.params, attractor.final)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from vines.bounds import MOST_EVENTS, check_count, check_number, check_periods
+from vines.domains import Number, Whole
 from vines.dynamics.runs import EVENTS_PER_PERIOD
 
 __all__ = ["LARGEST_P", "Patience"]
@@ -49,6 +50,10 @@ class Patience:
         check_count("max_impacts_per_period", self.cap, most=MOST_EVENTS)
         if self.largest_p is not None:
             check_count("largest_p", self.largest_p, most=MOST_P)
+        for name in ("settle", "record", "patience", "watch", "tolerance"):
+            object.__setattr__(self, name, Number().plain(getattr(self, name)))
+        for name in ("cap", "largest_p"):
+            object.__setattr__(self, name, Whole().plain(getattr(self, name)))
 
     def check_length(self, period: float) -> None:
         """Raise `StateError` if runs of a forcing period would take years."""

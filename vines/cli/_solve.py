@@ -34,12 +34,14 @@ def command(
 ) -> None:
     """Print the periodic orbit of a WORD of impacts, such as LR, LLR or LRLR/2T.
 
-    Of several the symmetric admissible one is shown, else a stable one, else the one with the smallest largest
-    multiplier. Exit 1 if there is none.
+    A star stands behind a chatter that ends in sticking, such as L*R*, which a shell wants in quotes; a word without
+    a star is that of orbits that never stick. Of several the symmetric admissible one is shown, else a stable one,
+    else the one with the smallest largest multiplier. Exit 1 if there is none.
 
     \b
     vines solve LR --mu 0.01 --A 0.017
     vines solve LLR --mu 0.01 --A 0.023 --all
+    vines solve 'L*R*' --mu 0.01 --A 0.5
     vines solve LR --mu 0.01 --A 0.02 --log orbit.mcap && vines view orbit.mcap
     """  # noqa: D301
     if every and log is not None:

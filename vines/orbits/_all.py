@@ -48,10 +48,10 @@ class Orbits(list[Orbit]):
     Attributes
     ----------
     complete : bool
-        Whether every orbit of the word is in the list. True for words of two and three impacts, where all flight times
-        are searched; two orbits nearer than 1e-5 of a forcing period, next to a fold, may count as one. A word without
-        a star has no orbits that stick, so that nothing is said about those; words with a star
-        are complete for the impact pair only, where a release fixes all that follows.
+        Whether every orbit of the word is in the list, not whether every motion of the system is. True for words of
+        two and three impacts, where all flight times are searched; two orbits nearer than 1e-5 of a forcing period,
+        next to a fold, may count as one. A word without a star has no orbits that stick, so that nothing is said
+        about those; words with a star are complete for the impact pair only, where a release fixes all that follows.
     remark : str
         How they were searched for.
     nearest : float
@@ -139,6 +139,7 @@ def all_orbits(word: str | Word, p: Any, *, proof: bool = False) -> Orbits:
     if can_search(word, halves=False):
         remark = "all flight times searched" if complete else "all flight times searched, in part not to the last level"
         remark += ", with bounds of what interpolants leave out" if proof else ""
+        remark += "; orbits that stick have other words"
     else:
         complete = False
         _gather_long(gathered)

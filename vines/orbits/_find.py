@@ -20,6 +20,11 @@ from vines.orbits._symmetric import no_symmetric_orbit
 
 __all__ = ["find_orbit"]
 
+_NONE_ADMISSIBLE = (
+    "; none is admissible, so that no run has this word here: vines.settle says what one settles to, and its word"
+)
+"""What the remark of an orbit goes on with that is no motion of the system."""
+
 
 @stated(ParameterError, p=Parameters())
 def find_orbit(word: str | Word, p: Any, guess: Orbit | npt.ArrayLike | None = None) -> Orbit:
@@ -27,7 +32,8 @@ def find_orbit(word: str | Word, p: Any, guess: Orbit | npt.ArrayLike | None = N
 
     Of several the symmetric admissible one is returned, else a stable one, else the one with the smallest largest
     multiplier; its remark counts the others and says how they were searched for (`all_orbits`). If none is
-    admissible the best of them comes with ``admissible = False`` and the time and side of the violation.
+    admissible the best of them comes with ``admissible = False`` and the time and side of the violation, and its remark
+    says so: what a run settles to there has another word, perhaps one that sticks (`vines.settle`).
 
     Parameters
     ----------
@@ -77,7 +83,7 @@ def find_orbit(word: str | Word, p: Any, guess: Orbit | npt.ArrayLike | None = N
     if isinstance(p, Params) and (word.n == 0 or word.m == 0):
         raise OrbitNotFound(f"no {word} orbit at any parameters: {found.remark}; give a word with both L and R")
     nearest = search(word, p)[1] if found.complete else found.nearest
-    how = "there is none (all flight times were searched); " if found.complete else ""
+    how = "there is none that never sticks (all flight times were searched); " if found.complete else ""
     raise OrbitNotFound(
         f"no {word} orbit at {p}: {how}the nearest of all starts that failed left a defect of {nearest:.2g} in v2; "
         "try other parameters, or simulate there and give the impact times of the attractor as guess"
@@ -98,8 +104,9 @@ def choose(found: Orbits) -> Orbit:
         ),
     )
     others = [orbit for orbit in found if orbit is not best]
+    advice = "" if best.admissible else _NONE_ADMISSIBLE
     if not others:
-        return replace(best, remark=f"the only solution found of this word ({found.remark})")
+        return replace(best, remark=f"the only solution found of this word ({found.remark}){advice}")
     counts = ", ".join(
         f"{sum(test(orbit) for orbit in others)} {label}"
         for label, test in (
@@ -110,5 +117,5 @@ def choose(found: Orbits) -> Orbit:
     )
     plural = "s" if len(others) > 1 else ""
     return replace(
-        best, remark=f"{len(others)} other solution{plural} of this word, of which {counts} ({found.remark})"
+        best, remark=f"{len(others)} other solution{plural} of this word, of which {counts} ({found.remark}){advice}"
     )

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, fields
+from numbers import Real
 from typing import Any
 
 from vines.errors import ParameterError
@@ -157,7 +158,7 @@ def _groups(balls: Iterable[tuple[float, ...]]) -> tuple[tuple[int, ...], ...]:
 
 
 def _listed(name: str, value: object) -> tuple[Any, ...]:
-    if isinstance(value, int | float):
+    if isinstance(value, Real) or getattr(value, "ndim", 1) == 0:
         return (value,)
     if isinstance(value, str) or not isinstance(value, Iterable):
         raise ParameterError(f"{name} is {value!r}; give a number for each ball")

@@ -1,4 +1,7 @@
-"""The kind ``atlas``: all orbits of a set of words over a box."""
+"""The kind ``atlas``: all orbits of a set of words over a box.
+
+Not `vines.attractors.atlas`, which catalogues the stable orbits of any word over a rectangle.
+"""
 
 from __future__ import annotations
 
@@ -27,7 +30,9 @@ class AtlasOptions(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """All orbits of all words of up to `length` impacts and `period` forcing periods over a box of parameters.
 
     A point of the grid is a line through the box along the forcing amplitude, on which the families are followed, so
-    that each orbit knows its branch.
+    that each orbit knows its branch. Unstable orbits are listed too. The Python function `vines.attractors.atlas` is
+    another thing: the stable orbits of any word over a rectangle of two parameters, with simulations to say what is
+    missing.
     """
 
     amplitude: Annotated[Amplitudes, Meta(description="Forcing amplitudes at which orbits are listed")]
