@@ -17,7 +17,7 @@ from vines.rig.impacts._pulses import pulses_of
 from vines.rig.recording import ROLES, Sampled
 from vines.rig.uncertainty import robust_deviation
 
-__all__ = ["Mode", "less_modes", "modes_heard", "modes_seen", "unpredicted"]
+__all__ = ["Mode", "less_modes", "modes_heard", "modes_seen", "rung", "unpredicted"]
 
 Floats = npt.NDArray[np.float64]
 
@@ -145,8 +145,8 @@ def _stretch(bins: Bins) -> Bins:
 
 def _with_modes(model: JumpModel, train: Train, dv: Floats, poles: list[complex], moved: bool = False) -> JumpFit:
     """Fit the motion with modes beside it, and with their derivatives by the poles where these are to be moved."""
-    rung = [_rung(model.bins.t, train.t, dv, s) for s in poles]
-    columns = np.vstack([_pair(each) for both in rung for each in (both if moved else both[:1])])
+    waves = [rung(model.bins.t, train.t, dv, s) for s in poles]
+    columns = np.vstack([_pair(each) for both in waves for each in (both if moved else both[:1])])
     u = np.concatenate([_widths(s, moved) for s in poles])
     return replace(model, extra=(columns, u)).fit(train, draws=0)
 
@@ -219,8 +219,8 @@ def modes_heard(
     before = float(np.std(left))
 
     def tried(poles: list[complex], moved: bool) -> tuple[npt.NDArray[np.complex128], float]:
-        rung = [_rung(t, times, dv, s) for s in poles]
-        columns = np.vstack([_pair(each) for both in rung for each in (both if moved else both[:1])])
+        waves = [rung(t, times, dv, s) for s in poles]
+        columns = np.vstack([_pair(each) for both in waves for each in (both if moved else both[:1])])
         columns = np.vstack([columns, own])
         scale = np.linalg.norm(columns, axis=1)
         linear = np.linalg.lstsq((columns / scale[:, None]).T, left, rcond=1e-10)[0] / scale
@@ -254,7 +254,7 @@ def less_modes(channel: Sampled, modes: tuple[Mode, ...], times: Floats, dv: Flo
     t = channel.times
     for mode in modes:
         if mode.name == channel.name:
-            values -= (mode.size * _rung(t, times, dv, mode.s)[0]).real
+            values -= (mode.size * rung(t, times, dv, mode.s)[0]).real
     return replace(channel, values=values)
 
 
@@ -378,7 +378,7 @@ def _nearby(s: complex, step: complex) -> complex:
     return abs(s) * complex(-ratio, np.sqrt(1 - ratio**2))
 
 
-def _rung(t: Floats, times: Floats, dv: Floats, s: complex) -> tuple[npt.NDArray[np.complex128], ...]:
+def rung(t: Floats, times: Floats, dv: Floats, s: complex) -> tuple[npt.NDArray[np.complex128], ...]:
     """Return sum dv_k exp(s (t - t_k)) over the impacts before each time, and its derivative by s."""
     z, w = np.zeros(len(times) + 1, complex), np.zeros(len(times) + 1, complex)
     for k in range(len(times)):
