@@ -34,7 +34,10 @@ _LASTS = 6e-4
 """Longest contact that passes for an impact [s]: the oscillator turns by 2 degrees in it."""
 
 _LASTS_HEARD = 1.3e-3
-"""The same by an acceleration, in which structural modes near a kilohertz look like a contact of a millisecond [s]."""
+"""The same by an acceleration, in which structural modes near a kilohertz look like a contact of a millisecond [s].
+
+So does what is left in a displacement of modes of the frame.
+"""
 
 _GIVES = 1e-3
 """Most that the base may follow the oscillator: it shifts the free oscillation by half of it."""
@@ -88,7 +91,9 @@ def limits(
         Of the frame, that were taken off the oscillator's channels; the base's sensors feel them, too.
     """
     bend = stiffened(ringdowns, response)
-    lasts, longest = contact_time(recording, response), _LASTS if response.order == 0 else _LASTS_HEARD
+    lasts = contact_time(recording, response)
+    # What modes that were taken off leave in the first milliseconds looks like a contact of a millisecond, too.
+    longest = _LASTS if response.order == 0 and not modes else _LASTS_HEARD
     gives = reaction(recording, base, _ringing(modes, response))
     found = [
         Finding(
@@ -242,7 +247,7 @@ class Ringing:
     dv: Floats
 
     def waves(self, t: Floats) -> Floats:
-        """Return the two phases of each mode and of its derivative by the exponent, which is known nearly, one a row."""
+        """Return the two phases of each mode and of its derivative by the exponent, one a row."""
         waves = [wave for s in self.s for wave in rung(t, self.t, self.dv, s)]
         return np.array([part for wave in waves for part in (wave.real, wave.imag)]).reshape(-1, len(t))
 
