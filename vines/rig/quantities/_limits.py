@@ -22,6 +22,7 @@ from vines.rig.quantities._forcing import Base, Tuning
 from vines.rig.quantities._reconstruction import Finding
 from vines.rig.quantities._ring_down import RingDown
 from vines.rig.recording import Recording, Uncertain
+from vines.rig.uncertainty import robust_deviation
 
 __all__ = ["STIFFENS", "Ringing", "contact_time", "limits", "reaction", "stiffened"]
 
@@ -176,6 +177,11 @@ def contact_time(recording: Recording, response: Response) -> Uncertain | None:
     told = _corner if response.order == 0 else _width
     part, weight = told(recording, response, t[alone], dv[alone])
     good = np.isfinite(part)
+    for _ in range(_TURNS):
+        # An impact that is missing beside one makes a bend that no contact has.
+        square = float(part[good] @ weight[good] / (weight[good] @ weight[good]))
+        left = part - square * weight
+        good = np.isfinite(part) & (np.abs(left) <= _STRAY * max(robust_deviation(left[good]), 1e-300))
     part, weight = part[good], weight[good]
     square = float(part @ weight / (weight @ weight))
     u = float(np.sqrt(np.sum((weight * (part - square * weight)) ** 2)) / (weight @ weight))
@@ -186,6 +192,9 @@ def contact_time(recording: Recording, response: Response) -> Uncertain | None:
 
 
 _FEW = 8
+_TURNS = 4
+_STRAY = 4.0
+"""Robust standard deviations beyond which what an impact says of its contact is left out."""
 
 
 def _corner(recording: Recording, response: Response, t: Floats, dv: Floats) -> tuple[Floats, Floats]:
