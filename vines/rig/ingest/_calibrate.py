@@ -146,7 +146,7 @@ def _no_signal(
 ) -> tuple[npt.NDArray[np.bool_], npt.NDArray[np.bool_]]:
     """Return which samples are held and which wild; the way out of the range and back is neither."""
     found = lost_signal(values)
-    near = binary_dilation(out, iterations=_GUARD)
+    near: npt.NDArray[np.bool_] = np.asarray(binary_dilation(out, iterations=_GUARD), np.bool_)
     return found.held & ~near, found.wild & ~near
 
 
