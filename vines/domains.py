@@ -336,7 +336,8 @@ def stated(
                 by_place[k] = one(name, value)
             for name, value in kwargs.items():
                 by_name[name] = one(name, value)
-            return function(*by_place, **by_name)
+            call: Callable[..., _Result] = function
+            return call(*by_place, **by_name)
 
         return checked
 

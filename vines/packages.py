@@ -20,6 +20,7 @@ OPTIONAL = {
     "duckdb": ("SQL over tables", "duckdb", _RUN),
     "matplotlib": ("drawing figures", "matplotlib", _RUN),
     "pandas": ("reading a table as a data frame", "pandas", _RUN),
+    "PIL": ("writing a GIF", "pillow", _RUN),
     "rerun": ("the viewer", "rerun-sdk", _RUN),
     "distributed": ("--engine dask", "distributed", _DASK),
     "h5py": ("HDF5 and MATLAB 7.3", "h5py", _RIG),

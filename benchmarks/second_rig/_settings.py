@@ -108,11 +108,11 @@ PHYSICS = {
     "cubic": ("spring is not linear",),
     "shaker": ("base gives way",),
     "table": ("base moved in the ring-down",),
-    "modes": ("mode", "resonan"),
-    "hum": ("hum", "mains", "50 Hz"),
-    "drift_E": ("drift", "trend", "ramp"),
-    "drift_r": ("drift", "trend"),
-    "drift_omega0": ("drift", "trend"),
+    "modes": ("modes of the frame ring",),
+    "hum": ("hum of the mains",),
+    "drift_E": ("the amplitude of the base changes", "the base dwells at"),
+    "drift_r": ("the restitution changes",),
+    "drift_omega0": ("the natural frequency omega0 changes",),
 }
 """What may be switched on, and words one of which names it."""
 

@@ -123,7 +123,11 @@ def test_where_there_is_no_family_it_is_said(small):
         ("seeds = 3", "seeds = 1", "seeds >= 2"),
         ("window = [0.015, 0.022]", "window = [0.022, 0.015]", "lower end first"),
         (MODULI, 'plot = "chart"', "a chart draws stages of kind 'curve'"),
-        ('plot = "multipliers"', 'plot = "chart"', "unknown key 'panels': allowed: kind, look, needs, plot, title, width"),
+        (
+            'plot = "multipliers"',
+            'plot = "chart"',
+            "unknown key 'panels': allowed: kind, look, needs, plot, title, width",
+        ),
         ('plot = "multipliers"', 'plot = "multiplier"', "plot: unknown plot 'multiplier': did you mean 'multipliers'"),
         ('plot = "multipliers"', "", "'plot' is missing; allowed: basins, bifurcation"),
     ],

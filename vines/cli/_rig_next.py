@@ -67,7 +67,7 @@ def command(
     )
     print_rows(*table_of(plan), wrap=-1)
     for number, one in enumerate(plan.suggestions, 1):
-        click.echo(f"{number}. {_KINDS[one.kind]}: {one.reason}")
+        click.echo(f"{number}. {_KINDS[one.purpose]}: {one.reason}")
         if one.near:
             click.secho(f"   near: {one.near}", fg="yellow")
     for name, reason in found.lost.items():

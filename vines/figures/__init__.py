@@ -13,7 +13,7 @@ from vines.packages import need
 _attached, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)
 
 
-_DRAWS = frozenset({"finish", "save", "save_as", "style_settings"})
+_DRAWS = frozenset({"finish", "save", "save_as", "start_symbol", "style_settings", "wearing"})
 """What needs matplotlib beside the figures themselves."""
 
 

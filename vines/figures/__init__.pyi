@@ -7,10 +7,10 @@ from ._chart import CurveLine as CurveLine
 from ._chart import Region as Region
 from ._chart import SpecialMark as SpecialMark
 from ._chart import chart_figure as chart_figure
+from ._colours import COLOUR_NAMES as COLOUR_NAMES
 from ._colours import COLOURS as COLOURS
 from ._colours import PALETTE as PALETTE
 from ._colours import REGIME_CLASSES as REGIME_CLASSES
-from ._colours import colour_names as colour_names
 from ._designs import BandCurve as BandCurve
 from ._designs import BandPanel as BandPanel
 from ._designs import DesignMap as DesignMap

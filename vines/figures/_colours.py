@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from vines.figures._look import WornColours, WornList, WornPairs
 
-__all__ = ["BALLS", "CHAOS", "COLOURS", "CURVES", "FAMILIES", "HUES", "PALETTE", "REGIME_CLASSES", "colour_names"]
+__all__ = ["BALLS", "CHAOS", "COLOURS", "COLOUR_NAMES", "CURVES", "FAMILIES", "HUES", "PALETTE", "REGIME_CLASSES"]
 
 
 def _lighter(colour: str) -> str:
@@ -92,14 +92,12 @@ HUES = WornList("attractor", ("#33658a", "#e07a1f", "#117733", "#aa4499", "#ddcc
 CHAOS = WornList("chaos", ("#d2d2d2", "#a9a9a9", "#808080"))
 
 
-def colour_names() -> list[str]:
-    """Return the names of all colours that a declaration may change.
-
-    Examples
-    --------
-    >>> [name in colour_names() for name in ("L", "symmetric R", "ball 2", "fold", "chaotic")]
-    [True, True, True, True, True]
-    """
-    pairs = [f"{name} {side}" for name in FAMILIES for side in "LR"]
-    lists = [name for own in (BALLS, HUES, CHAOS) for name in own.names]
-    return [*COLOURS, *PALETTE, *pairs, *lists, *CURVES, *REGIME_CLASSES]
+COLOUR_NAMES = (
+    *COLOURS,
+    *PALETTE,
+    *(f"{name} {side}" for name in FAMILIES for side in "LR"),
+    *(name for own in (BALLS, HUES, CHAOS) for name in own.names),
+    *CURVES,
+    *REGIME_CLASSES,
+)
+"""Names of all colours that a declaration may change."""

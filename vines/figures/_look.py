@@ -25,7 +25,7 @@ class Look:
     font_size : float, optional
         Of numbers and captions [point]; everything else that is written keeps its ratio to them.
     colours : mapping of str to str
-        Colours, ``"#rrggbb"``, by the names of :func:`vines.figures.colour_names`.
+        Colours, ``"#rrggbb"``, by the names of :data:`vines.figures.COLOUR_NAMES`.
     labels : mapping of str to str
         What is written at the axes that show a quantity or a parameter, by its name.
     limits : mapping of str to (float, float)

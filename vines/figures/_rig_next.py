@@ -31,8 +31,8 @@ class StableBand:
     Attributes
     ----------
     name : str
-        As the legend calls it, one of the keys of `REGIME_CLASSES` by its kind.
-    kind : str
+        As the legend calls it, one of the keys of `REGIME_CLASSES` by its regime.
+    regime : str
         A key of `REGIME_CLASSES`: its colour.
     omega : ndarray, shape (n,)
         Columns, rising, next to each other.
@@ -41,7 +41,7 @@ class StableBand:
     """
 
     name: str
-    kind: str
+    regime: str
     omega: Floats
     low: Floats
     high: Floats
@@ -96,10 +96,10 @@ def rig_next_figure(
         entries: dict[str, Patch | Line2D] = {}
         for band in bands:
             omega, low, high = _wide(band, step)
-            colour = REGIME_CLASSES[band.kind]
+            colour = REGIME_CLASSES[band.regime]
             # Of two families of one kind the one whose ends differ is hatched.
             n, _, m = band.name.partition("/")[0].partition(":")
-            hatch = "////" if band.kind == "p > 1 periods" and n != m else ""
+            hatch = "////" if band.regime == "p > 1 periods" and n != m else ""
             drawn: Any = {"facecolor": (*to_rgb(colour), 0.55), "edgecolor": colour, "hatch": hatch, "linewidth": 0.8}
             ax.fill_between(omega, low, high, **drawn)
             entries.setdefault(band.name, Patch(**drawn))

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from vines.logs import Log
+from vines.packages import need
 from vines.viewer._clock import Clock
 
 if TYPE_CHECKING:
@@ -36,6 +37,7 @@ class Film:
     """
 
     def __init__(self, figure: Figure, run: Log, times: np.ndarray):
+        need("matplotlib")
         from matplotlib.patches import Circle
 
         states = run.states

@@ -13,6 +13,7 @@ import numpy as np
 
 from vines.errors import ParameterError, ViewerError
 from vines.logs import Log, read
+from vines.packages import need
 from vines.viewer._save import replacing
 
 __all__ = ["FORMATS", "SECONDS_PER_CYCLE", "video"]
@@ -102,6 +103,7 @@ def _times(run: Log, periods: float | None, fps: int) -> np.ndarray:
 
 def _frames(run: Log, times: np.ndarray, size: tuple[int, int]) -> Iterator[np.ndarray]:
     """Yield the frames, shape (height, width, 3)."""
+    need("matplotlib")
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 
@@ -120,6 +122,7 @@ def _frames(run: Log, times: np.ndarray, size: tuple[int, int]) -> Iterator[np.n
 
 
 def _gif(frames: Iterator[np.ndarray], out: Path, fps: int) -> None:
+    need("PIL")
     from PIL import Image
 
     first, *more = [Image.fromarray(frame).quantize(64) for frame in frames]

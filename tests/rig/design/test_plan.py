@@ -62,7 +62,7 @@ def test_a_plan_is_sorted_and_says_why(plan):
     assert all(first.after[name] <= first.before[name] * (1 + 1e-9) for name in PARAMETERS)
     assert first.f == pytest.approx(first.Omega * plan.known.values["omega0"] / (2 * np.pi))
     assert pytest.approx(first.A * plan.known.values["b"]) == first.E
-    jumps = [one for one in plan.suggestions if one.kind == "jump"]
+    jumps = [one for one in plan.suggestions if one.purpose == "jump"]
     assert jumps
     assert all("u(A) away" in one.reason and one.bits == 0 for one in jumps)
     assert not np.isfinite(first.volts)

@@ -2,12 +2,14 @@
 
 import warnings
 from itertools import pairwise
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from vines.rig import reconstruct, ring_down
 from vines.rig.fit import Bins
+from vines.rig.impacts import rung, still_rings
 from vines.rig.quantities._dwells import dwells, envelope
 from vines.rig.quantities._hum import without_hum
 from vines.rig.quantities._trends import FALSE_ALARM, trend
@@ -63,6 +65,29 @@ def test_modes_that_hide_every_corner_are_found_with_their_frequencies(run, free
     assert all(min(abs(f - one) for one in told) < 0.02 * f for f in (38.0, 112.0, 310.0))
     assert abs(len(made.impacts) - len(run.truth["impacts"]["t"])) <= 4
     assert abs(made.quantities["r"].value - 0.65) < 0.005
+
+
+def left_over(size):
+    """Return a response of which a fit left noise, and what two modes ring after impacts."""
+    rng = np.random.default_rng(8)
+    t = np.arange(12 * 3200) / 3200
+    hits = np.sort(rng.uniform(0.0, 12.0, 90)) + 0.06 * np.arange(90)
+    hits = hits[hits < 12.0]
+    dv = 0.015 * rng.choice([-1.0, 1.0], len(hits))
+    left = 5e-7 * rng.normal(size=len(t))
+    for f in (37.0, 107.0):
+        s = 2 * np.pi * f * complex(-0.02, 1.0)
+        left += size * (rung(t, hits, dv, s)[0] / 0.015).imag
+    fit = SimpleNamespace(left_t=t, left=left, jumps=SimpleNamespace(t=hits, dv=dv), noise=5e-7, residual=np.std(left))
+    return SimpleNamespace(fit=fit, order=0, bins=SimpleNamespace(width=1 / 3200))
+
+
+def test_what_rings_on_below_the_gates_is_seen_and_noise_is_not():
+    size, frequencies = still_rings(left_over(2e-6))
+    assert size > 0.5
+    assert any(abs(f - 107.0) < 3 for f in frequencies)
+    assert still_rings(left_over(0.0)) is None
+    assert still_rings(left_over(2e-7)) is None
 
 
 def test_lost_signal_is_bridged_counted_and_marked(run, free):

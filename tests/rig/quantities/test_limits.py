@@ -8,7 +8,8 @@ from scipy.signal import butter, sosfilt
 
 from vines.rig import Recording, RunInfo, Sampled, Uncertain
 from vines.rig.fit import Bins, Motion, root
-from vines.rig.quantities._limits import contact_time, reaction
+from vines.rig.impacts import rung
+from vines.rig.quantities._limits import Ringing, contact_time, reaction
 
 RATE, SECONDS, OMEGA = 3200.0, 30.0, 55.0
 
@@ -46,6 +47,26 @@ def test_a_base_that_does_not_is_not():
     assert found.value < 1e-3 + 3.5 * found.u
     assert found.value < 2e-3
     assert reaction(recording(lo_disp=np.zeros(100)), SimpleNamespace()) is None
+
+
+def test_a_mode_that_the_base_feels_is_no_reaction():
+    rng = np.random.default_rng(6)
+    t = np.arange(round(SECONDS * RATE)) / RATE
+    hits = np.sort(rng.uniform(0.0, SECONDS, 520))
+    dv = 0.015 * rng.choice([-1.0, 1.0], len(hits))
+    free, mode = (2 * np.pi * f * complex(-z, 1.0) for f, z in ((8.7, 0.006), (38.0, 0.008)))
+    x1 = (rung(t, hits, dv, free)[0] / free).real
+    e = 2e-4 * np.sin(OMEGA * t) + 0.3 * (rung(t, hits, dv, mode)[0] / mode).real + 1e-8 * rng.normal(size=len(t))
+    found = SimpleNamespace(fit=SimpleNamespace(omega=OMEGA, f=OMEGA / 2 / np.pi))
+    run = recording(base_disp=e, lo_disp=x1)
+
+    # As it was found: a little off, and with jumps that are not quite those.
+    ringing = Ringing((1.0005 * mode,), hits, 1.01 * dv)
+    assert reaction(run, found).value > 0.01
+    known = reaction(run, found, ringing)
+    assert known.value - 3.5 * known.u < 1e-3
+    gives = reaction(recording(base_disp=e + 0.004 * x1, lo_disp=x1), found, ringing)
+    assert gives.value == pytest.approx(0.004, rel=0.15)
 
 
 def soft(length, noise=3e-7):

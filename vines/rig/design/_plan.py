@@ -45,7 +45,7 @@ class Suggestion:
 
     Attributes
     ----------
-    kind : str
+    purpose : str
         ``inform``, ``coexist`` or ``jump``.
     A, Omega : float
         Where.
@@ -66,7 +66,7 @@ class Suggestion:
         One line.
     """
 
-    kind: str
+    purpose: str
     A: float
     Omega: float
     f: float
@@ -338,7 +338,7 @@ def _chosen(
         one = min(found, key=lambda one: one.after[name] / one.before[name], default=None)
         if one is not None and one.after[name] < _HELPS * one.before[name]:
             best.append(replace(one, reason=_said(known, one, dwells, name)))
-    best += [one for one in found if one.kind == "coexist"][:1]
+    best += [one for one in found if one.purpose == "coexist"][:1]
     kept: list[Suggestion] = []
     for one in (*best, *found):
         beside = any(

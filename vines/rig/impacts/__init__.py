@@ -2,8 +2,18 @@
 
 from vines.rig.impacts._oscillator import Response, measure_response
 from vines.rig.impacts._pulses import find_pulses, pulses_of
-from vines.rig.impacts._ringing import Mode
+from vines.rig.impacts._ringing import Mode, rung
 from vines.rig.impacts._search import threshold
-from vines.rig.impacts._undisturbed import undisturbed
+from vines.rig.impacts._undisturbed import still_rings, undisturbed
 
-__all__ = ["Mode", "Response", "find_pulses", "measure_response", "pulses_of", "threshold", "undisturbed"]
+__all__ = [
+    "Mode",
+    "Response",
+    "find_pulses",
+    "measure_response",
+    "pulses_of",
+    "rung",
+    "still_rings",
+    "threshold",
+    "undisturbed",
+]

@@ -17,7 +17,7 @@ from vines.rig.impacts._pulses import pulses_of
 from vines.rig.recording import ROLES, Sampled
 from vines.rig.uncertainty import robust_deviation
 
-__all__ = ["Mode", "less_modes", "modes_heard", "modes_seen", "unpredicted"]
+__all__ = ["Mode", "less_modes", "mean_ringing", "modes_heard", "modes_seen", "rung", "unpredicted"]
 
 Floats = npt.NDArray[np.float64]
 
@@ -119,7 +119,7 @@ def modes_seen(fitter: Fitter, channel: Sampled, train: Train, known: tuple[Mode
         new = _apart([*poles, *new])[len(poles) : _MOST]
         # A slow mode is half taken up by the flights, so that what they leave does not tell its pole.
         slow = [[_begun(2 * np.pi * f * complex(-_USUAL, 1.0))] for f in _SLOW]
-        starts = [new, *slow] if poles else [new]
+        starts = [new, *slow] if poles else [new, *([*new, *one] for one in slow)]
         begun = [_apart([*poles, *start]) for start in starts if start]
         fits = [_with_modes(model, part, fit.jumps.dv, start) for start in begun if len(start) > len(poles)]
         if not fits:
@@ -145,8 +145,8 @@ def _stretch(bins: Bins) -> Bins:
 
 def _with_modes(model: JumpModel, train: Train, dv: Floats, poles: list[complex], moved: bool = False) -> JumpFit:
     """Fit the motion with modes beside it, and with their derivatives by the poles where these are to be moved."""
-    rung = [_rung(model.bins.t, train.t, dv, s) for s in poles]
-    columns = np.vstack([_pair(each) for both in rung for each in (both if moved else both[:1])])
+    waves = [rung(model.bins.t, train.t, dv, s) for s in poles]
+    columns = np.vstack([_pair(each) for both in waves for each in (both if moved else both[:1])])
     u = np.concatenate([_widths(s, moved) for s in poles])
     return replace(model, extra=(columns, u)).fit(train, draws=0)
 
@@ -219,8 +219,8 @@ def modes_heard(
     before = float(np.std(left))
 
     def tried(poles: list[complex], moved: bool) -> tuple[npt.NDArray[np.complex128], float]:
-        rung = [_rung(t, times, dv, s) for s in poles]
-        columns = np.vstack([_pair(each) for both in rung for each in (both if moved else both[:1])])
+        waves = [rung(t, times, dv, s) for s in poles]
+        columns = np.vstack([_pair(each) for both in waves for each in (both if moved else both[:1])])
         columns = np.vstack([columns, own])
         scale = np.linalg.norm(columns, axis=1)
         linear = np.linalg.lstsq((columns / scale[:, None]).T, left, rcond=1e-10)[0] / scale
@@ -254,7 +254,7 @@ def less_modes(channel: Sampled, modes: tuple[Mode, ...], times: Floats, dv: Flo
     t = channel.times
     for mode in modes:
         if mode.name == channel.name:
-            values -= (mode.size * _rung(t, times, dv, mode.s)[0]).real
+            values -= (mode.size * rung(t, times, dv, mode.s)[0]).real
     return replace(channel, values=values)
 
 
@@ -312,14 +312,33 @@ def _told(channel: Sampled, dv: Floats, poles: list[complex], sizes: list[comple
     )
 
 
-def _poles(t: Floats, left: Floats, times: Floats, dv: Floats, step: float) -> list[complex]:
-    """Return the poles of the mean response after impacts, by the matrix pencil."""
+def mean_ringing(fit: JumpFit, width: float) -> tuple[float, tuple[float, ...]]:
+    """Return the root mean square of what a fit leaves after the usual impact, on the mean, and its frequencies [Hz].
+
+    Parameters
+    ----------
+    fit : JumpFit
+        Of a displacement.
+    width : float
+        Of its samples [s].
+    """
+    times, dv = fit.jumps.t, fit.jumps.dv
+    mean = _mean_response(fit.left_t, fit.left, times, dv, width)
+    if not len(mean):
+        return 0.0, ()
+    poles = _poles(fit.left_t, fit.left, times, dv, width)
+    return float(np.std(mean) * np.median(np.abs(dv))), tuple(sorted(abs(s) / (2 * np.pi) for s in poles))
+
+
+def _mean_response(t: Floats, left: Floats, times: Floats, dv: Floats, step: float) -> Floats:
+    """Return the mean response after impacts, by least squares; empty where they are too few or too dense."""
+    nothing = np.zeros(0)
     if len(times) < 6:
-        return []
+        return nothing
     usual = float(np.quantile(np.diff(times), 0.25))
     n = int(min(usual, _LONGEST) / step)
     if n < 40:
-        return []
+        return nothing
     flight = np.searchsorted(times, t, side="right") - 1
     lag = np.rint((t - times[np.maximum(flight, 0)]) / step).astype(np.intp)
     use = (flight >= 0) & (lag < n)
@@ -328,7 +347,13 @@ def _poles(t: Floats, left: Floats, times: Floats, dv: Floats, step: float) -> l
     count = np.bincount(lag[use], weight**2, n)
     first = int(np.argmax(count > 0.5 * np.median(count)))
     mean = (total / np.maximum(count, 1e-300))[first:]
-    if not np.all(count[first:] > 0) or len(mean) < 40:
+    return mean if np.all(count[first:] > 0) and len(mean) >= 40 else nothing
+
+
+def _poles(t: Floats, left: Floats, times: Floats, dv: Floats, step: float) -> list[complex]:
+    """Return the poles of the mean response after impacts, by the matrix pencil."""
+    mean = _mean_response(t, left, times, dv, step)
+    if not len(mean):
         return []
     half = len(mean) // 2
     hankel = np.lib.stride_tricks.sliding_window_view(mean, half)
@@ -378,7 +403,7 @@ def _nearby(s: complex, step: complex) -> complex:
     return abs(s) * complex(-ratio, np.sqrt(1 - ratio**2))
 
 
-def _rung(t: Floats, times: Floats, dv: Floats, s: complex) -> tuple[npt.NDArray[np.complex128], ...]:
+def rung(t: Floats, times: Floats, dv: Floats, s: complex) -> tuple[npt.NDArray[np.complex128], ...]:
     """Return sum dv_k exp(s (t - t_k)) over the impacts before each time, and its derivative by s."""
     z, w = np.zeros(len(times) + 1, complex), np.zeros(len(times) + 1, complex)
     for k in range(len(times)):

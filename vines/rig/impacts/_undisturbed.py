@@ -8,15 +8,18 @@ from dataclasses import replace
 import numpy as np
 
 from vines.errors import RigError
-from vines.rig.fit import Train
+from vines.rig.fit import Train, bins_of
 from vines.rig.impacts._oscillator import Response
-from vines.rig.impacts._ringing import Mode, less_modes, modes_heard, modes_seen, unpredicted
+from vines.rig.impacts._ringing import Mode, less_modes, mean_ringing, modes_heard, modes_seen, unpredicted
 from vines.rig.recording import Recording
 
-__all__ = ["undisturbed"]
+__all__ = ["still_rings", "undisturbed"]
 
 _CLEAN = 1.25
 """Most that a fit leaves, relative to the noise, before modes are looked for."""
+
+_LEFT = 0.5
+"""Most that may ring on after the usual impact, relative to the noise."""
 
 _FEW = 6
 _ROUNDS = 4
@@ -43,11 +46,24 @@ def undisturbed(
     found: tuple[Recording, Response, tuple[Mode, ...]] = (recording, best, ())
     if best.order != 0 or (len(best.fit.jumps.t) >= _FEW and best.fit.residual < _CLEAN * best.fit.noise):
         return found
-    channel, heard = recording.channels[best.channel.name], recording.role("lo_acc")
     fair = len(best.fit.jumps.t) >= _FEW and np.mean(best.fit.fair) > 0.5
-    train = Train(best.fit.jumps.t, best.fit.jumps.dv, np.full(len(best.fit.jumps.t), _LOOSE))
-    if not fair:
-        train = unpredicted(best.begun.bins)
+    trains = [unpredicted(best.begun.bins)]
+    if fair:
+        # Those that modes imitate may fit each other well enough, and ring nothing.
+        trains.insert(0, Train(best.fit.jumps.t, best.fit.jumps.dv, np.full(len(best.fit.jumps.t), _LOOSE)))
+    for train in trains:
+        taken = _taken_off(recording, best, train, measure)
+        if taken[2]:
+            return taken
+    return found
+
+
+def _taken_off(
+    recording: Recording, best: Response, train: Train, measure: Callable[[Recording], Response]
+) -> tuple[Recording, Response, tuple[Mode, ...]]:
+    """Return recording, response and modes, found and taken off in turns, begun with given impacts."""
+    channel, heard = recording.channels[best.channel.name], recording.role("lo_acc")
+    found: tuple[Recording, Response, tuple[Mode, ...]] = (recording, best, ())
     for _ in range(_ROUNDS):
         if len(train) < _FEW:
             break
@@ -58,12 +74,17 @@ def undisturbed(
             channels = dict(recording.channels)
             channels[channel.name] = less_modes(channel, modes, train.t, train.dv)
             again = measure(replace(recording, channels=channels))
-            if heard is not None and len(again.fit.jumps.t) >= _FEW and again.gain is not None:
-                more = modes_heard(again.fit, again.delay, heard, again.gain, modes)
+            if heard is not None and best.gain is not None:
+                fit, delay = again.fit, again.delay
+                if len(fit.jumps.t) < _FEW:
+                    # Its own modes hide the pulses; what the displacement's past does not predict tells when they ring.
+                    less = replace(best.begun.model, bins=bins_of(channels[channel.name]))
+                    fit, delay = less.fit(train, draws=0), best.delay
+                more = modes_heard(fit, delay, heard, again.gain or best.gain, modes)
                 if more:
-                    times, dv = again.fit.jumps.t, again.fit.jumps.dv
+                    times, dv = fit.jumps.t, fit.jumps.dv
                     channels[channel.name] = less_modes(channel, modes, times, dv)
-                    channels[heard.name] = less_modes(heard, more, times - again.delay, dv)
+                    channels[heard.name] = less_modes(heard, more, times - delay, dv)
                     modes = (*modes, *more)
                     again = measure(replace(recording, channels=channels))
         except (RigError, np.linalg.LinAlgError):
@@ -78,3 +99,22 @@ def undisturbed(
             break
         train = Train(again.fit.jumps.t, again.fit.jumps.dv, np.full(len(again.fit.jumps.t), _TIGHT))
     return found
+
+
+def still_rings(response: Response) -> tuple[float, tuple[float, ...]] | None:
+    """Return what rings on in a displacement after the usual impact, beside its motion; None where that is little.
+
+    Returns
+    -------
+    tuple of float and tuple of float, or None
+        Its root mean square relative to the noise, and its frequencies [Hz].
+
+    Notes
+    -----
+    The mean of what the fit leaves after impacts. It bends what the flights say of velocities, and with them r.
+    """
+    fit = response.fit
+    if response.order != 0 or fit.residual < _CLEAN * fit.noise:
+        return None
+    size, frequencies = mean_ringing(fit, response.bins.width)
+    return (size / fit.noise, frequencies) if frequencies and size > _LEFT * fit.noise else None

@@ -68,7 +68,7 @@ def _tones(channels: Sequence[Sampled], roles: tuple[str, ...], near: float | No
 
 def _check_command(run: RunInfo, base: list[tuple[Sampled, Tone]]) -> list[str]:
     for channel, tone in base:
-        if not tone.clear:
+        if not (tone.clear or tone.steady):
             raise RigError(
                 f"{channel.where}: the base shows no clear forcing ({tone.amplitude:.3g} against {tone.noise:.3g} of "
                 f"noise), but protocol is {run.protocol}; is the channel connected?"

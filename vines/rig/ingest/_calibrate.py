@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
+from scipy.ndimage import binary_dilation
 
 from vines.errors import RigError
 from vines.rig.formats import RawChannel
@@ -112,7 +113,7 @@ def calibrate(
     else:
         lost = np.abs(values) >= row.range if still else clipped_samples(values, row.range)
     share = lost.mean()
-    gone = _no_signal(values) if row.role in _BY_LIGHT else None
+    gone = _no_signal(values, lost) if row.role in _BY_LIGHT else None
     if share > max_clipped and not camera:
         raise RigError(
             f"{where}: {share:.2%} of the samples are clipped at {row.range:g} {row.unit}, allowed is "
@@ -120,7 +121,7 @@ def calibrate(
         )
     remarks = found.remarks
     clipped = int(lost.sum())
-    bursts = "" if gone is None else _told(lost, gone[0] & ~lost, gone[1] & ~lost, rate)
+    bursts = "" if gone is None else _told(lost, *gone, rate)
     if gone is not None and bursts:
         lost = lost | gone[0] | gone[1]
         remarks = (*remarks, bursts)
@@ -141,9 +142,13 @@ def calibrate(
     return Calibrated(row, values, valid, rate, found.start - row.group_delay, clipped, remarks, bursts)
 
 
-def _no_signal(values: npt.NDArray[np.float64]) -> tuple[npt.NDArray[np.bool_], npt.NDArray[np.bool_]]:
+def _no_signal(
+    values: npt.NDArray[np.float64], out: npt.NDArray[np.bool_]
+) -> tuple[npt.NDArray[np.bool_], npt.NDArray[np.bool_]]:
+    """Return which samples are held and which wild; the way out of the range and back is neither."""
     found = lost_signal(values)
-    return found.held, found.wild
+    near: npt.NDArray[np.bool_] = np.asarray(binary_dilation(out, iterations=_GUARD), np.bool_)
+    return found.held & ~near, found.wild & ~near
 
 
 def _told(out: npt.NDArray[np.bool_], held: npt.NDArray[np.bool_], wild: npt.NDArray[np.bool_], rate: float) -> str:

@@ -16,6 +16,11 @@ _PERIODS = 8
 _SHORTEST = 0.5
 
 
+_MANY = 5
+_STEADY = 0.1
+"""[rad] Blocks of noise alone scatter by ten times that."""
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class Tone:
     """A sine in a channel.
@@ -48,6 +53,11 @@ class Tone:
     def clear(self) -> bool:
         """Whether it stands out, so that its phase means something."""
         return self.amplitude > 0.5 * self.noise
+
+    @property
+    def steady(self) -> bool:
+        """Whether it has one phase from block to block, as a sine has below whatever rings louder than it."""
+        return len(self.slips) >= _MANY and float(np.std(self.slips)) * 2 * np.pi * self.f < _STEADY
 
 
 def find_tone(

@@ -179,6 +179,7 @@ def _solved(bins: Bins, s: complex, g: complex, reach: float, more: Floats | Non
         if not s.real * tau[-1] < _GROWS or not abs(g.real * h[-1]) < _GROWS:
             raise RigError(f"the ring-down grows, by exp({s.real:.3g} t); record the free decay with the base at rest")
         e: Any = sinhc(0.5 * s * bins.width) * np.exp(s * tau + g * h)
+        bare = bool(reach) and not len(terms)
         columns = np.vstack([e.real, -e.imag, beside, terms])
         linear = np.linalg.solve(columns @ columns.T, columns @ y)
         z, known = complex(linear[0], linear[1]), len(columns)
@@ -200,7 +201,7 @@ def _solved(bins: Bins, s: complex, g: complex, reach: float, more: Floats | Non
         s += change * held
         if bends:
             g += complex(step[known + 2], step[known + 3]) * held
-        if abs(change) < 1e-11 * abs(s) and (len(terms) > 0 or not reach):
+        if abs(change) < 1e-11 * abs(s) and not bare:
             break
     else:
         raise RigError("the ring-down is no decaying sine: its fit does not come to rest")

@@ -31,6 +31,8 @@ _LOBE = 6.0
 """Half width of its main lobe, in units of 1/duration."""
 _AROUND = 2.0
 """[Hz] Where the floor beside a line is read."""
+_LEAST_SHOWN = 0.1
+"""Least amplitude relative to the noise of a channel's means, in one of them: what is smaller moves nothing."""
 _LEAST_CYCLES = 100
 _BLOCK = 3.0
 """[s] In stretches of this length the phase of the mains is read."""
@@ -115,7 +117,7 @@ def without_hum(recording: Recording, f: float | None) -> tuple[Recording, Hum |
             channels[name] = _less(channels[name], phase, sizes)
             lines[name] = {n: abs(size) for n, size in sizes.items()}
             shown[name] = float(np.sqrt(sum(abs(size) ** 2 for size in sizes.values()))) / max(noise_of(bins), 1e-300)
-    if not lines:
+    if max(shown.values(), default=0.0) < _LEAST_SHOWN:
         return recording, None
     ends = seen[next(iter(lines))].t[[0, -1]]
     mean = float(np.diff(phase(ends))[0] / np.diff(ends)[0])

@@ -8,6 +8,7 @@ docs/rig.md, "What a rig does that the model doesn't", has statistics and limits
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -16,13 +17,14 @@ from scipy.signal import csd
 
 from vines.rig.ball import FRICTION, Rebounds, stated
 from vines.rig.fit import bins_of
-from vines.rig.impacts import Response, pulses_of
+from vines.rig.impacts import Mode, Response, pulses_of, rung
 from vines.rig.quantities._forcing import Base, Tuning
 from vines.rig.quantities._reconstruction import Finding
 from vines.rig.quantities._ring_down import RingDown
 from vines.rig.recording import Recording, Uncertain
+from vines.rig.uncertainty import robust_deviation
 
-__all__ = ["STIFFENS", "contact_time", "limits", "reaction", "stiffened"]
+__all__ = ["STIFFENS", "Ringing", "contact_time", "limits", "reaction", "stiffened"]
 
 Floats = npt.NDArray[np.float64]
 
@@ -33,7 +35,10 @@ _LASTS = 6e-4
 """Longest contact that passes for an impact [s]: the oscillator turns by 2 degrees in it."""
 
 _LASTS_HEARD = 1.3e-3
-"""The same by an acceleration, in which structural modes near a kilohertz look like a contact of a millisecond [s]."""
+"""The same by an acceleration, in which structural modes near a kilohertz look like a contact of a millisecond [s].
+
+So does what is left in a displacement of modes of the frame.
+"""
 
 _GIVES = 1e-3
 """Most that the base may follow the oscillator: it shifts the free oscillation by half of it."""
@@ -62,6 +67,9 @@ _SEGMENT = 2.0
 _NEAR = 1.5
 """Lines nearer than that to a harmonic of the forcing are left out [Hz]."""
 
+_BESIDE = 0.15
+"""The same for modes of the frame, relative to their frequency."""
+
 
 def limits(
     recording: Recording,
@@ -70,6 +78,7 @@ def limits(
     tuning: Tuning,
     ball: Rebounds,
     ringdowns: Sequence[RingDown],
+    modes: Sequence[Mode] = (),
 ) -> tuple[Finding, ...]:
     """Return what is found of each thing that the model does not have.
 
@@ -79,10 +88,14 @@ def limits(
         What was reconstructed.
     ringdowns : sequence of RingDown
         That gave omega0 and lam.
+    modes : sequence of Mode
+        Of the frame, that were taken off the oscillator's channels; the base's sensors feel them, too.
     """
     bend = stiffened(ringdowns, response)
-    lasts, longest = contact_time(recording, response), _LASTS if response.order == 0 else _LASTS_HEARD
-    gives = reaction(recording, base)
+    lasts = contact_time(recording, response)
+    # What modes that were taken off leave in the first milliseconds looks like a contact of a millisecond, too.
+    longest = _LASTS if response.order == 0 and not modes else _LASTS_HEARD
+    gives = reaction(recording, base, _ringing(modes, response))
     found = [
         Finding(
             "linear_spring", _within(bend, STIFFENS),
@@ -164,6 +177,11 @@ def contact_time(recording: Recording, response: Response) -> Uncertain | None:
     told = _corner if response.order == 0 else _width
     part, weight = told(recording, response, t[alone], dv[alone])
     good = np.isfinite(part)
+    for _ in range(_TURNS):
+        # An impact that is missing beside one makes a bend that no contact has.
+        square = float(part[good] @ weight[good] / (weight[good] @ weight[good]))
+        left = part - square * weight
+        good = np.isfinite(part) & (np.abs(left) <= _STRAY * max(robust_deviation(left[good]), 1e-300))
     part, weight = part[good], weight[good]
     square = float(part @ weight / (weight @ weight))
     u = float(np.sqrt(np.sum((weight * (part - square * weight)) ** 2)) / (weight @ weight))
@@ -174,6 +192,9 @@ def contact_time(recording: Recording, response: Response) -> Uncertain | None:
 
 
 _FEW = 8
+_TURNS = 4
+_STRAY = 4.0
+"""Robust standard deviations beyond which what an impact says of its contact is left out."""
 
 
 def _corner(recording: Recording, response: Response, t: Floats, dv: Floats) -> tuple[Floats, Floats]:
@@ -218,8 +239,50 @@ def _width(recording: Recording, response: Response, t: Floats, dv: Floats) -> t
     return parts * np.sign(sizes), np.abs(sizes)
 
 
-def reaction(recording: Recording, base: Base) -> Uncertain | None:
+@dataclass(frozen=True, slots=True, eq=False)
+class Ringing:
+    """Modes of the frame that the base's sensor may feel.
+
+    Attributes
+    ----------
+    s : tuple of complex
+        Their exponents [1/s].
+    t, dv : ndarray, shape (n,)
+        Impacts on the run's clock [s], and velocity jumps that ring them.
+    """
+
+    s: tuple[complex, ...]
+    t: Floats
+    dv: Floats
+
+    def waves(self, t: Floats) -> Floats:
+        """Return the two phases of each mode and of its derivative by the exponent, one a row."""
+        waves = [wave for s in self.s for wave in rung(t, self.t, self.dv, s)]
+        return np.array([part for wave in waves for part in (wave.real, wave.imag)]).reshape(-1, len(t))
+
+    def away(self, f: Floats) -> npt.NDArray[np.bool_]:
+        """Return which frequencies [Hz] are away from all of them: near them errors of the exponents remain."""
+        away = np.ones(len(f), bool)
+        for s in self.s:
+            own = abs(s) / (2 * np.pi)
+            away &= np.abs(f - own) > max(_NEAR, _BESIDE * own)
+        return away
+
+
+def _ringing(modes: Sequence[Mode], response: Response) -> Ringing | None:
+    own = tuple(mode.s for mode in modes if mode.name == response.channel.name)
+    return Ringing(own, response.fit.jumps.t - response.late, response.fit.jumps.dv) if own else None
+
+
+def reaction(recording: Recording, base: Base, ringing: Ringing | None = None) -> Uncertain | None:
     """Return by how much the base follows the oscillator between the forcing's harmonics; None if it can't be seen.
+
+    Parameters
+    ----------
+    recording : Recording
+    base : Base
+    ringing : Ringing, optional
+        What modes of the frame ring in the base's sensor, of any size, is taken off.
 
     Notes
     -----
@@ -236,12 +299,16 @@ def reaction(recording: Recording, base: Base) -> Uncertain | None:
     t = np.arange(max(of_base.t[0], of_body.t[0]), min(of_base.t[-1], of_body.t[-1]), width)
     if len(t) * width < _LEAST * _SEGMENT:
         return None
-    e, x = (_without_harmonics(np.interp(t, each.t, each.mean), t, base.fit.omega) for each in (of_base, of_body))
+    more = np.zeros((0, len(t))) if ringing is None else ringing.waves(t)
+    e = _without_harmonics(np.interp(t, of_base.t, of_base.mean), t, base.fit.omega, more)
+    x = _without_harmonics(np.interp(t, of_body.t, of_body.mean), t, base.fit.omega)
     size = round(_SEGMENT / width)
     f, both = csd(e, x, fs=1 / width, nperseg=size)
     of_e, of_x = (np.abs(csd(each, each, fs=1 / width, nperseg=size)[1]) for each in (e, x))
     f0 = base.fit.f
     used = (f > 1.5 * f0) & (f < 8 * f0) & (np.abs(f / f0 - np.round(f / f0)) * f0 > _NEAR)
+    if ringing is not None:
+        used &= ringing.away(f)
     # Hann windows that overlap by half hold as much as 1.9 of three of them would that do not.
     count = 1.9 * (len(t) / size) * 0.95
     by_chance = 1 / count
@@ -257,13 +324,14 @@ def reaction(recording: Recording, base: Base) -> Uncertain | None:
 _LEAST = 6
 
 
-def _without_harmonics(values: Floats, t: Floats, omega: float) -> Floats:
-    """Return a signal less its mean and 24 harmonics of the forcing."""
+def _without_harmonics(values: Floats, t: Floats, omega: float, more: Floats | None = None) -> Floats:
+    """Return a signal less its mean, 24 harmonics of the forcing and, by least squares, further signals."""
     turn = np.exp(1j * omega * t)
     columns: list[Floats] = [np.ones(len(t))]
     power: Any = np.ones_like(turn)
     for _ in range(24):
         power = power * turn
         columns += [power.real, power.imag]
-    matrix = np.stack(columns)
+    matrix = np.stack(columns if more is None else [*columns, *more])
+    matrix /= np.linalg.norm(matrix, axis=1)[:, None]
     return values - np.linalg.solve(matrix @ matrix.T, matrix @ values) @ matrix

@@ -24,7 +24,7 @@ from vines.rig.ball import (
 )
 from vines.rig.camera import see_ball
 from vines.rig.fit import Forced, JumpModel, Push, Train, forced_response, push, root, slide
-from vines.rig.impacts import Mode, Response, measure_response, undisturbed
+from vines.rig.impacts import Mode, Response, measure_response, still_rings, undisturbed
 from vines.rig.quantities._budget import length_parts, quotient, source_values, tuned
 from vines.rig.quantities._camera import with_camera
 from vines.rig.quantities._cycle import Track, slots
@@ -142,7 +142,8 @@ def _reconstructed(
     findings = (
         *_taken_off(recording, hum, modes, int(np.count_nonzero(made.impacts["bridged"]))),
         *trend_findings(recording, course, trends),
-        *limits(recording, base, response, tuning, ball, ringdowns),
+        *_ringing_on(response),
+        *limits(recording, base, response, tuning, ball, ringdowns, modes),
         *judge(recording, base, response, tuning, ball),
     )
     found = replace(made, quantities={**made.quantities, **trends}, findings=_named(findings))
@@ -180,11 +181,34 @@ def _taken_off(recording: Recording, hum: Hum | None, modes: tuple[Mode, ...], b
     return found
 
 
+def _ringing_on(response: Response) -> list[Finding]:
+    """Return that modes are left in the channel which tells the restitution, where they are."""
+    left = still_rings(response)
+    if left is None:
+        return []
+    size, frequencies = left
+    about = ", ".join(f"{f:.3g}" for f in frequencies)
+    return [
+        Finding(
+            "frame_modes_left", False,
+            f"modes of the frame ring after impacts, about {about} Hz, and could not be taken off: {size:.2g} times "
+            f"the noise of {response.channel.name} is left on the mean, and with it r is not known",
+        )
+    ]  # fmt: skip
+
+
 def _named(findings: tuple[Finding, ...]) -> tuple[Finding, ...]:
-    """Return findings without guesses that a run which changes gives rise to: it shifts one sensor's impacts, too."""
+    """Return findings without guesses that a run which changes, or modes, give rise to.
+
+    It shifts one sensor's impacts, too, and its mean response is no answer to its mean forcing. What rings on after
+    impacts looks like a base that follows, and like contacts that last.
+    """
+    guesses: tuple[str, ...] = ()
     if any(each.name in (*MATTERS, "levels") and not each.passed for each in findings):
-        return tuple(each for each in findings if each.name not in ("oscillator_clocks", "forcing"))
-    return findings
+        guesses += ("oscillator_clocks", "forcing", "sliding_ball")
+    if any(each.name == "frame_modes_left" for each in findings):
+        guesses += ("base_reacts", "short_contact", "sliding_ball")
+    return tuple(each for each in findings if each.name not in guesses)
 
 
 def _harmonics(base: Base, recording: Recording, s: complex) -> Forced:

@@ -109,7 +109,7 @@ class LoggedRun:
         return [
             key
             for key, value in form.items()
-            if not key.startswith("_") and key not in ("E_meas", "proposed") and _is_empty(value)
+            if not key.startswith("_") and key not in ("E_meas", "part", "proposed") and _is_empty(value)
         ]
 
 

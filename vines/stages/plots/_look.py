@@ -11,7 +11,7 @@ import msgspec
 from msgspec import Meta
 
 from vines.errors import DeclarationError, nearest
-from vines.figures import NAMES, PANELS, QUANTITIES, SHOWN, colour_names
+from vines.figures import COLOUR_NAMES, NAMES, PANELS, QUANTITIES, SHOWN
 from vines.schema import table, tables
 from vines.stages.plots._width import inches
 
@@ -77,8 +77,8 @@ def check_look(look: LookOptions) -> None:
         if not low < high:
             raise DeclarationError(f"look.limits.{name}: {low:g} to {high:g}; give the lower end first")
     for name, colour in look.colours.items():
-        if name not in (names := colour_names()):
-            raise DeclarationError(f"look.colours: no colour {name!r}: {nearest(name, names)}")
+        if name not in COLOUR_NAMES:
+            raise DeclarationError(f"look.colours: no colour {name!r}: {nearest(name, COLOUR_NAMES)}")
         if not _COLOUR.fullmatch(colour):
             raise DeclarationError(f'look.colours.{name} is {colour!r}; allowed is "#rrggbb", such as "#0b4ea2"')
 

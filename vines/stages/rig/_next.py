@@ -118,7 +118,7 @@ def suggestion_rows(plan: Plan) -> list[dict[str, Any]]:
     rows = []
     for number, one in enumerate(plan.suggestions, 1):
         row: dict[str, Any] = {
-            "number": number, "kind": one.kind, "A": one.A, "Omega": one.Omega, "f": one.f, "E": one.E,
+            "number": number, "kind": one.purpose, "A": one.A, "Omega": one.Omega, "f": one.f, "E": one.E,
             "E_cmd": one.E_cmd, "voltage": one.volts if np.isfinite(one.volts) else None,
             "branches": list(one.branches), "bits": one.bits, "dwells": plan.dwells, "length": plan.known.length,
         }  # fmt: skip
@@ -138,7 +138,9 @@ def _figure(plan: Plan) -> Figure:
     ] + plan.measured[:, 0].tolist()
     step = float(omega[1] - omega[0])
     window = ((float(omega[0] - step / 2), float(omega[-1] + step / 2)), (0.98 * min(tops), 1.02 * max(tops)))
-    marks = [PlaneMark(number, one.Omega, one.A, one.kind == "jump") for number, one in enumerate(plan.suggestions, 1)]
+    marks = [
+        PlaneMark(number, one.Omega, one.A, one.purpose == "jump") for number, one in enumerate(plan.suggestions, 1)
+    ]
     p = known.params
     return rig_next_figure(
         _bands(plan), plan.measured, marks, window=window,
@@ -206,7 +208,7 @@ def table_of(plan: Plan) -> tuple[list[str], Sequence[list[str]]]:
     head += ["bits", "branches"]
     rows = []
     for number, one in enumerate(plan.suggestions, 1):
-        row = [str(number), one.kind, f"{one.A:.5f}", f"{one.Omega:.5f}", f"{one.f:.4f}", f"{1e3 * one.E:.4f}"]
+        row = [str(number), one.purpose, f"{one.A:.5f}", f"{one.Omega:.5f}", f"{one.f:.4f}", f"{1e3 * one.E:.4f}"]
         row += [f"{1e3 * one.E_cmd:.4f}"] + ([f"{one.volts:.4f}"] if volts else [])
         row += [f"{one.bits:.1f}" if one.bits else "", ", ".join(dict.fromkeys(one.branches))]
         rows.append(row)
