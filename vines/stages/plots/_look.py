@@ -67,12 +67,12 @@ def check_look(look: LookOptions) -> None:
         inches(look.height, "look.height")
     if len(set(look.formats)) < len(look.formats):
         raise DeclarationError(f"look.formats = {list(look.formats)} names a format twice")
-    columns = {column.name for name in tables() for column in table(name).columns}
-    known = sorted({*NAMES, *PANELS, *QUANTITIES, *SHOWN, *columns})
-    for what, names in (("labels", look.labels), ("limits", look.limits)):
-        for name in names:
-            if name not in known:
-                raise DeclarationError(f"look.{what}: {name!r} is no parameter or quantity: {nearest(name, known)}")
+    if look.labels or look.limits:  # else nothing is loaded for them
+        known = _known()
+        for what, names in (("labels", look.labels), ("limits", look.limits)):
+            for name in names:
+                if name not in known:
+                    raise DeclarationError(f"look.{what}: {name!r} is no parameter or quantity: {nearest(name, known)}")
     for name, (low, high) in look.limits.items():
         if not low < high:
             raise DeclarationError(f"look.limits.{name}: {low:g} to {high:g}; give the lower end first")
@@ -81,6 +81,12 @@ def check_look(look: LookOptions) -> None:
             raise DeclarationError(f"look.colours: no colour {name!r}: {nearest(name, COLOUR_NAMES)}")
         if not _COLOUR.fullmatch(colour):
             raise DeclarationError(f'look.colours.{name} is {colour!r}; allowed is "#rrggbb", such as "#0b4ea2"')
+
+
+def _known() -> list[str]:
+    """Return what axes can show."""
+    columns = {column.name for name in tables() for column in table(name).columns}
+    return sorted({*NAMES, *PANELS, *QUANTITIES, *SHOWN, *columns})
 
 
 def worn_by(look: LookOptions, settings: Mapping[str, Any] | None = None) -> AbstractContextManager[None]:
