@@ -61,6 +61,7 @@ def files(draw):
 @settings(max_examples=150, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(made=files())
 @example(made=(b"t [s],lo [V]\n0,1,\n1,2,\n", np.array([[1.0], [2.0]]), "s", ["V"]))
+@example(made=(b"ch0 [V]\n+0,000000e+00,\n+0,000000e+00,\n", np.array([[0.0], [0.0]]), "none", ["V"]))
 def test_a_table_is_read_as_it_was_written_or_refused(tmp_path, made):
     data, values, timed, units = made
     path = tmp_path / "a.csv"

@@ -139,6 +139,10 @@ def find_layout(lines: Lines, stated: Mapping[str, Any]) -> Layout:
     raise RigError(f"no rows of numbers; its end is {_short(lines.last[-1])}")
 
 
+_FRACTION = re.compile(r"\d+([eE][+-]?\d+)?")
+"""What may stand behind a decimal comma."""
+
+
 def _the_one(fitting: list[Layout], lines: Lines, stated: Mapping[str, Any]) -> Layout:
     """Return the layout with most columns of numbers, unless its commas may be decimal signs as well."""
     best = fitting[0]
@@ -147,7 +151,7 @@ def _the_one(fitting: list[Layout], lines: Lines, stated: Mapping[str, Any]) -> 
         return single
     rows = [split_line(line, ",") for line in lines.last[-_SHORTEST:]]
     count = len(best.kinds) - (best.kinds[-1] == "empty")
-    pairs = count % 2 == 0 and all(cell.isdecimal() for row in rows for cell in row[1:count:2])
+    pairs = count % 2 == 0 and all(_FRACTION.fullmatch(cell) for row in rows for cell in row[1:count:2])
     if best.separator != "," or best.head or "decimal" in stated or not pairs:
         return best
     raise RigError(
