@@ -35,7 +35,7 @@ def compare(found):
     hits = found.impacts
     for phase, speed in zip(orbit.phase, orbit.w_dot, strict=True):
         away = np.abs((hits["phase"] - phase + math.pi) % (2 * math.pi) - math.pi)
-        assert np.min(np.maximum(away, np.abs(hits["w_dot"] - speed))) < 5e-9  # the farthest of 212 is 3.3e-9 away
+        assert np.min(np.maximum(away, np.abs(hits["w_dot"] - speed))) < 5e-9  # 3.3e-9 was met
     assert orbit.measures.kinetic_ratio == pytest.approx(found.measures.kinetic_ratio, rel=1e-8)
     assert abs(orbit.energy_imbalance) < 1e-10
     assert orbit.residual < 1e-10
