@@ -10,14 +10,12 @@ import numpy as np
 from vines.attractors._attractor import Attractor
 from vines.domains import Of, stated
 from vines.dynamics import simulate
+from vines.dynamics.kernels import rows as col
 from vines.errors import OrbitNotFound, ParameterError
 from vines.model import STATE_NAMES, VI_NES, Params, Word
 from vines.orbits import Orbit, find_orbit
 
 __all__ = ["orbit_of", "orbit_through"]
-
-RELEASE = 3
-"""Kind of an event of a `Trajectory` by which a spell of sticking ends."""
 
 _TRIED = 8
 """Repetitions of the word, or releases, from which Newton's method sets out."""
@@ -81,7 +79,7 @@ def _guesses(word: Word, p: Any, final: Mapping[str, float]) -> Iterator[list[fl
     run = simulate(p, **at, phi=final["phase"], periods=2 * word.p + 1, max_impacts_per_period=2000)
     early = final["phase"] / p.Omega
     if word.sticking:
-        events = run.events[run.events["kind"] == RELEASE]
+        events = run.events[run.events["kind"] == col.RELEASE]
         yield from ([event["phase"] / p.Omega, event["v1"]] for event in events[-_TRIED:])
         return
     hits, N = run.impacts, len(word)

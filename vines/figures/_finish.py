@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -11,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from vines.errors import DeclarationError, nearest
 from vines.figures._axes import shown_by
-from vines.figures._fit import fit_titles
+from vines.figures._fit import LETTER, fit_titles
 from vines.figures._look import worn
 from vines.figures._style import look, write_letter
 
@@ -27,7 +26,6 @@ _TOO_SMALL = (
     "panels, labels and legend do not fit the size of the figure: take a greater height or width, fewer columns, "
     'a smaller font_size, or legend = "none"'
 )
-_LETTER = re.compile(r"\([a-z]\)\s*")
 
 
 def finish(figure: Figure) -> Figure:
@@ -128,7 +126,7 @@ def _letter(figure: Figure, *, wanted: bool) -> None:
         return
     for ax in panels:
         for text in _lettered(ax):
-            rest = _LETTER.sub("", text.get_text(), count=1)
+            rest = LETTER.sub("", text.get_text(), count=1)
             text.set_text(rest)
             if not rest and text in ax.texts:
                 text.remove()
@@ -137,4 +135,4 @@ def _letter(figure: Figure, *, wanted: bool) -> None:
 def _lettered(ax: Axes) -> list[Any]:
     """Return the texts of a panel that begin with its letter."""
     titles: list[Any] = [ax.title, ax._left_title, *ax.texts]  # pyright: ignore[reportAttributeAccessIssue] # no other way
-    return [text for text in titles if _LETTER.match(text.get_text())]
+    return [text for text in titles if LETTER.match(text.get_text())]

@@ -14,11 +14,12 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from matplotlib.text import Text
 
-__all__ = ["broken", "columns_in", "fit_titles", "place_legend"]
+__all__ = ["LETTER", "broken", "columns_in", "fit_titles", "place_legend"]
 
 _WORDS = re.compile(r"(?:\$[^$]*\$|[^\s$])+")
 """What a line is not broken within: a formula, and what is written to it without a space."""
-_LETTER = re.compile(r"\([a-z]\)")
+LETTER = re.compile(r"\([a-z]\)\s*")
+"""How the letter of a panel is written, alone or before its title."""
 _NARROWEST = 1.7
 """Inches that a panel with its numbers and labels takes at least."""
 _PLACES: Any = {"below": "outside lower center", "above": "outside upper center", "right": "outside right upper"}
@@ -172,7 +173,7 @@ def _titles(figure: Figure) -> list[tuple[Text, float]]:
 def _break_label(ax: Axes) -> bool:
     """Break the label of an axis upwards that is longer than its panel, below its letter; say whether it was."""
     label = ax.yaxis.label
-    letters = [_height(text) for text in ax.texts if _LETTER.fullmatch(text.get_text())]
+    letters = [_height(text) for text in ax.texts if LETTER.fullmatch(text.get_text())]
     room = ax.bbox.height - 2 * max(letters, default=0.0)  # in the middle, so that the letter counts on both sides
     text = label.get_text()
     if text and _height(label) > room > 0:

@@ -16,7 +16,7 @@ from xml.sax.saxutils import escape
 import numpy as np
 
 from vines.logs._channels import Channel, Rows, log_times
-from vines.logs._form import Form, stamps
+from vines.logs._form import ROS_LATEST, Form, stamps
 from vines.model import VI_NES
 from vines.schema import WireFormat, foxglove_schema
 
@@ -24,8 +24,6 @@ __all__ = ["BARE", "Profile", "bare_rows", "more_rows"]
 
 _STRIDE = 3
 """Of the states in smooth motion, one in so many."""
-_LATEST = 2.0**31
-"""Times of ROS are seconds in 32 bits; a log that goes on for longer has no such profile."""
 _VIEW = "tf#/"
 """The frame in which Rerun's 3-D view looks when nobody has told it another."""
 
@@ -144,14 +142,14 @@ def more_rows(
         Name and parameters of the run, with the first states.
     """
     found: list[Rows] = []
-    if len(states) and states["t"][-1] < _LATEST:
+    if len(states) and states["t"][-1] < ROS_LATEST:
         kept = states[_kept(states["t"])]
         if about is not None:
             start = log_times(kept["t"][:1])
             found += [_model(_ONE, *about, start), _placed(start)]
         found += [_moved(_ONE, kept), _curves(_ONE, kept)]
     events = [each[name][-1] for each, name in ((impacts, "t"), (sticks, "t_start")) if len(each)]
-    return found + (_words(impacts, sticks, _WORDS) if events and max(events) < _LATEST else [])
+    return found + (_words(impacts, sticks, _WORDS) if events and max(events) < ROS_LATEST else [])
 
 
 def bare_rows(
@@ -176,7 +174,7 @@ def bare_rows(
         That of one ball in a cavity of half length 1 if left out.
     """
     shown = _ONE if profile is None else profile
-    if not len(states) or states["t"][-1] >= _LATEST:
+    if not len(states) or states["t"][-1] >= ROS_LATEST:
         return []
     kept = states[_kept(states["t"])]
     start = log_times(kept["t"][:1])

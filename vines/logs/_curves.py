@@ -12,7 +12,7 @@ from functools import lru_cache
 import numpy as np
 
 from vines.logs._channels import SENSOR, Channel, Rows, log_times
-from vines.logs._form import Form
+from vines.logs._form import ROS_LATEST, Form
 from vines.logs._thin import extremes
 from vines.schema import WireFormat
 
@@ -22,8 +22,6 @@ CURVE_RATE = 512.0
 """Samples a second of a curve at most."""
 _FIRST = 500
 """Number of the first channel of a curve."""
-_LATEST = 2.0**31
-"""Later times are none of ROS, whose seconds have 32 bits."""
 _ARRAY = b"""std_msgs/MultiArrayLayout layout
 
 float64[] data
@@ -73,7 +71,7 @@ def curve_rows(channel: Channel, samples: np.ndarray, rate: float, first: int = 
     first : int
         Sequence number of the first message.
     """
-    good = samples[(samples["valid"] == 1) & (samples["t"] < _LATEST)]
+    good = samples[(samples["valid"] == 1) & (samples["t"] < ROS_LATEST)]
     kept = good[extremes(good["value"], int(np.ceil(min(rate / CURVE_RATE, max(len(good), 1)))))]
     layout = _layout()
     rows = np.empty(len(kept), np.dtype([("value", "<f8")]))

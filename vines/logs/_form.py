@@ -12,8 +12,10 @@ import numpy as np
 
 from vines.schema import WireFormat
 
-__all__ = ["STAMP", "Form", "stamps"]
+__all__ = ["ROS_LATEST", "STAMP", "Form", "stamps"]
 
+ROS_LATEST = 2.0**31
+"""Times from here on are none of ROS, whose seconds have 32 bits: a log that goes on for longer has none of these."""
 STAMP = ("<u1", (5,))
 """A number below 2^35 as a protobuf varint of five bytes, whatever its size (longer than need be, which is allowed)."""
 

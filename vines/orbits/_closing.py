@@ -10,8 +10,8 @@ import numpy as np
 import numpy.typing as npt
 
 from vines.dynamics.kernels import constants
-from vines.errors import ParameterError
 from vines.orbits._equations import closing_kernel
+from vines.orbits._moved import moved
 from vines.orbits._orbit import Orbit
 from vines.orbits._values import frequency_of, marks_of
 
@@ -72,10 +72,7 @@ class Closing:
 
     def params(self, values: Sequence[float] | Floats) -> Any:
         """Return the parameters with those that vary at some values, None where the system does not exist."""
-        try:
-            return self._fixed.replace(**dict(zip(self._names, map(float, values), strict=True)))
-        except ParameterError:
-            return None
+        return moved(self._fixed, dict(zip(self._names, values, strict=True)))
 
     def at(self, phases: Floats, values: Sequence[float] | Floats) -> Closed | None:
         """Return what the equations say, with defects that are nan where they have no solution.

@@ -4,26 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-import numpy as np
-import numpy.typing as npt
-
 from vines.errors import OrbitNotFound, ParameterError
 from vines.model import Word
 from vines.orbits._find import find_orbit
-from vines.orbits._floquet import monodromy
 from vines.orbits._general import same
 from vines.orbits._orbit import Orbit
-from vines.orbits._seeds import doubled_times
+from vines.orbits._seeds import asymmetric_times, doubled_times
 
 __all__ = ["partners"]
 
-Floats = npt.NDArray[np.float64]
-
 _MOST = 64
 """Most impacts of an orbit of twice the period."""
-
-_KICKS = (0.01, 0.05, 0.2)
-"""How far impacts are moved along the critical direction, in flight times of the orbit."""
 
 
 def partners(orbit: Orbit) -> Iterator[Orbit]:
@@ -47,7 +38,7 @@ def partners(orbit: Orbit) -> Iterator[Orbit]:
         word = Word(f"{orbit.word.letters * 2}/{2 * orbit.word.p}T")
         guesses = doubled_times(orbit)
     elif orbit.symmetric:
-        word, guesses = orbit.word, _kicked(orbit)
+        word, guesses = orbit.word, asymmetric_times(orbit)
     else:
         return
     for guess in guesses:
@@ -57,17 +48,3 @@ def partners(orbit: Orbit) -> Iterator[Orbit]:
             continue
         if found.stable and found.admissible and not (word == orbit.word and same(orbit, found.t, found.states)):
             yield found
-
-
-def _kicked(orbit: Orbit) -> Iterator[Floats]:
-    """Yield the impact times of an orbit moved along the eigenvector of its largest multiplier."""
-    values, vectors = np.linalg.eig(monodromy(orbit.jacobians).astype(complex))
-    moved = [np.real(vectors)[:, int(np.argmax(np.abs(values)))]]
-    for J in orbit.jacobians[:-1]:
-        moved.append(J @ moved[-1])
-    along = np.array(moved)[:, 3]
-    if not np.abs(along).max() > 0:
-        return
-    along *= orbit.flight_times.min() / np.abs(along).max()
-    for size in _KICKS:
-        yield orbit.t + size * along

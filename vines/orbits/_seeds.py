@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from typing import Any
 
 import numpy as np
@@ -33,7 +33,7 @@ _BEST = 3
 """Recurrences kept of each simulation: those that come back nearest."""
 
 _KICKS = (0.01, 0.05, 0.2)
-"""How far a doubled seed is moved along the critical direction, in flight times of its base orbit."""
+"""How far a seed is moved along the critical direction, in flight times of its base orbit."""
 
 
 def harvested_times(word: Word, p: Any) -> Iterator[Floats]:
@@ -84,9 +84,20 @@ def base_word(word: Word) -> Word | None:
 
 def doubled_times(base: Orbit) -> Iterator[Floats]:
     """Yield an orbit run twice, moved along the eigenvector of its multiplier nearest to period doubling."""
+    for kick in _kicks(base, lambda values: -np.abs(values + 1)):
+        yield np.concatenate([base.t + kick, base.t + base.period - kick])
+
+
+def asymmetric_times(base: Orbit) -> Iterator[Floats]:
+    """Yield the impact times of an orbit moved along the eigenvector of its largest multiplier."""
+    for kick in _kicks(base, np.abs):
+        yield base.t + kick
+
+
+def _kicks(base: Orbit, rank: Callable[[Any], Floats]) -> Iterator[Floats]:
+    """Yield displacements of the impact times along the eigenvector whose multiplier ranks highest."""
     values, vectors = np.linalg.eig(monodromy(base.jacobians).astype(complex))
-    vector = np.real(vectors)[:, int(np.argmin(np.abs(values + 1)))]
-    moved = [vector]
+    moved = [np.real(vectors)[:, int(np.argmax(rank(values)))]]
     for J in base.jacobians[:-1]:
         moved.append(J @ moved[-1])
     along = np.array(moved)[:, 3]
@@ -94,7 +105,7 @@ def doubled_times(base: Orbit) -> Iterator[Floats]:
         return
     along *= base.flight_times.min() / np.abs(along).max()
     for size in _KICKS:
-        yield np.concatenate([base.t + size * along, base.t + base.period - size * along])
+        yield size * along
 
 
 def random_times(word: Word, p: Any, count: int) -> Iterator[Floats]:

@@ -23,7 +23,7 @@ from vines.dynamics.kernels import (
 )
 from vines.dynamics.kernels import rows as col
 from vines.kernels import linked_njit, new_vector, njit
-from vines.orbits._sticking_map import CHATTER, LONGEST, put_at_release, round_slopes
+from vines.orbits._sticking_map import CHATTER, LONGEST, next_event, put_at_release, round_slopes
 
 __all__ = ["LIMIT", "NOTHING", "PRESSED", "TOUCH", "Bound", "bound_kernel"]
 
@@ -226,10 +226,9 @@ def bound_kernel(c, side, wanted, span, phase, v1, bound, tau, rows, out):
                 count = _leap(c, bound, state, tau, rows, count, out)
                 leaps = False
                 continue
-        after, status = advance(c, state, stop, rows.shape[0], rows[: count + 1], count)
-        if status != col.BUFFER_FULL or after != count + 1:
+        kind, wall = next_event(c, state, stop, rows, count)
+        if kind < 0:
             return 0
-        kind, wall = rows[count, col.KIND], int(rows[count, col.SIDE])
         count += 1
         want = wanted[reached]
         if kind == col.IMPACT:

@@ -19,9 +19,10 @@ from vines.dynamics.impact_pair import PairConstants
 from vines.dynamics.kernels import constants, open_window, run_window, segment_state, tangent_product, window_totals
 from vines.dynamics.kernels import rows as col
 from vines.dynamics.runs import EVENTS_PER_PERIOD, measures_from
-from vines.errors import OrbitNotFound, ParameterError
+from vines.errors import OrbitNotFound
 from vines.model import Word
 from vines.orbits._assemble import asymmetry
+from vines.orbits._moved import moved
 from vines.orbits._orbit import SPELL, Orbit
 from vines.orbits._survey import NO_TURNING, inspect_flight
 
@@ -269,10 +270,7 @@ class CapsuleSticking:
 
     def equations(self, y: Floats) -> tuple[Floats, Floats]:
         """Return the force, shape (1,), and its derivatives, shape (1, 2); nan where the word does not follow."""
-        try:
-            p = self._fixed.replace(**{self.parameter: float(y[-1])})
-        except ParameterError:
-            p = None
+        p = moved(self._fixed, {self.parameter: y[-1]})
         if p is None or not len(_Round(self.word, p).places):
             return np.full(1, math.nan), np.full((1, 2), math.nan)
         slopes = {"B": math.sin(y[0]), "G": -1.0, "r": 0.0}

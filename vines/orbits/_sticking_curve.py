@@ -12,10 +12,11 @@ import numpy.typing as npt
 
 from vines.dynamics.kernels import constants
 from vines.dynamics.kernels import rows as col
-from vines.errors import OrbitNotFound, ParameterError
+from vines.errors import OrbitNotFound
 from vines.model import PARAMETER_NAMES, Params
 from vines.orbits._assemble import asymmetry
 from vines.orbits._curve_equations import CurveEquations
+from vines.orbits._moved import moved
 from vines.orbits._orbit import Orbit
 from vines.orbits._problem import Point, ZeroSet
 from vines.orbits._special import BOUNDS
@@ -171,10 +172,7 @@ class StickingCurve(CurveEquations):
             yield _Place(row, before, (reached, hits), chatters)
 
     def _params(self, y: Floats) -> Params | None:
-        try:
-            return self._fixed.replace(**dict(zip(self.names, map(float, y[-2:]), strict=True)))
-        except ParameterError:
-            return None
+        return moved(self._fixed, dict(zip(self.names, y[-2:], strict=True)))
 
     def _run(self, y: Floats) -> tuple[Params, Floats, Floats] | None:
         """Return parameters, events and what `bound_kernel` says of the round from the release of y."""

@@ -7,9 +7,9 @@ import math
 import numpy as np
 import numpy.typing as npt
 
-from vines.errors import ParameterError
 from vines.model import Params, Word
 from vines.orbits._family import DIFFERENCE
+from vines.orbits._moved import moved
 from vines.orbits._orbit import Orbit
 from vines.orbits._sticking_orbit import Release, Round, release_of, sticking_orbit
 
@@ -70,14 +70,8 @@ class StickingProblem:
         begin = release_of(orbit)
         self.start = np.array([begin.phase, begin.v1, orbit.params.as_dict()[parameter]])
 
-    def _params(self, value: float) -> Params | None:
-        try:
-            return self._fixed.replace(**{self.parameter: value})
-        except ParameterError:
-            return None
-
     def _closing(self, y: Floats) -> tuple[Floats, Floats]:
-        p = self._params(float(y[-1]))
+        p = moved(self._fixed, {self.parameter: y[-1]})
         if p is None:
             return np.full(2, math.nan), np.full((2, 2), math.nan)
         return closing_of_round(self._round, p, float(y[0]), float(y[1]))

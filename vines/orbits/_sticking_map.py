@@ -20,6 +20,7 @@ __all__ = [
     "ROOM",
     "force_slope",
     "newton_round",
+    "next_event",
     "put_at_release",
     "round_kernel",
     "round_slopes",
@@ -60,6 +61,15 @@ def put_at_release(c, side, phase, v1, state):
     state[col.S_X1], state[col.S_V1], state[col.S_X2], state[col.S_V2] = x1, v1, x1 - side, v1
     state[col.S_PHASE] = phase % (2.0 * math.pi)
     return side * (force_slope(c, phase) - v1) < 0.0
+
+
+@njit
+def next_event(c, state, stop, rows, count):
+    """Go on to the next event, which row `count` is filled with; return its kind and wall, kind -1 if there is none."""
+    after, status = advance(c, state, stop, rows.shape[0], rows[: count + 1], count)
+    if status != col.BUFFER_FULL or after != count + 1:
+        return -1, 0
+    return int(rows[count, col.KIND]), int(rows[count, col.SIDE])
 
 
 @linked_njit
@@ -119,10 +129,9 @@ def round_kernel(c, side, wanted, span, phase, v1, rows, out):
     while True:
         if count == rows.shape[0]:
             return 0
-        after, status = advance(c, state, stop, rows.shape[0], rows[: count + 1], count)
-        if status != col.BUFFER_FULL or after != count + 1:
+        kind, wall = next_event(c, state, stop, rows, count)
+        if kind < 0:
             return 0
-        kind, wall = rows[count, col.KIND], int(rows[count, col.SIDE])
         count += 1
         want = wanted[reached]
         if kind == col.IMPACT:

@@ -7,7 +7,6 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from vines.catalogue import Deposit
 from vines.errors import DeclarationError, nearest
 from vines.pipeline._deposit import read_deposit
 from vines.pipeline._files import available, find
@@ -32,8 +31,6 @@ class Collection:
         The file that declares it.
     members : tuple of str
         Names of its pipelines, in the order in which they run.
-    deposit : Deposit, optional
-        What it tells a data repository.
     """
 
     name: str
@@ -41,7 +38,6 @@ class Collection:
     source: str
     path: Path
     members: tuple[str, ...]
-    deposit: Deposit | None = None
 
 
 def load_collection(path: Path, root: Path) -> Collection | None:
@@ -71,13 +67,13 @@ def load_collection(path: Path, root: Path) -> Collection | None:
     if not NAME.fullmatch(path.stem) or path.stem in RESERVED:
         rule = "a name is [a-z][a-z0-9_]* and no reserved word of SQL"
         raise DeclarationError(f"{path}: a collection cannot be called {path.stem!r}; {rule}; rename the file")
+    read_deposit(form.get("study"), f"{path}: study")  # refuses what a repository would
     return Collection(
         path.stem,
         _text(form, "title", path),
         _text(form, "source", path),
         path,
         _names(form, path, root),
-        read_deposit(form.get("study"), f"{path}: study"),
     )
 
 

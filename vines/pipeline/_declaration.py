@@ -14,7 +14,6 @@ from vines.errors import DeclarationError, UnknownNameError, nearest
 if TYPE_CHECKING:
     import msgspec
 
-    from vines.catalogue import Deposit
     from vines.model import Expression
     from vines.pipeline._axes import Axis
     from vines.pipeline._kinds import Kind
@@ -149,8 +148,6 @@ class Pipeline:
         The root of the project that it was loaded for.
     stages : dict of str to Stage
         In the order declared.
-    deposit : Deposit, optional
-        What it tells a data repository.
     """
 
     name: str
@@ -159,7 +156,6 @@ class Pipeline:
     path: Path
     root: Path
     stages: dict[str, Stage]
-    deposit: Deposit | None = None
 
     @cached_property
     def order(self) -> tuple[str, ...]:

@@ -101,8 +101,8 @@ def read_form(
     common.check(kinds.values())
     stages = {stage: _stage(stage, tables[stage], kinds[stage], common, path) for stage in tables}
     title, source = (_text(form.get(key, ""), f"{path}: {key}") for key in ("title", "source"))
-    deposit = read_deposit(form.get("study"), f"{path}: study")
-    pipeline = Pipeline(name, title, source, path, root or find_root(), stages, deposit)
+    read_deposit(form.get("study"), f"{path}: study")  # refuses what a repository would
+    pipeline = Pipeline(name, title, source, path, root or find_root(), stages)
     for stage in stages.values():
         _check_needs(stage, stages, f"{path}: stages.{stage.name}")
     assert pipeline.order  # finds circles

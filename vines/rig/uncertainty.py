@@ -10,7 +10,15 @@ from scipy.special import stdtrit
 
 from vines.rig.recording import Uncertain
 
-__all__ = ["block_length", "combined", "error_ratio", "mean_over_periods", "robust_deviation", "standard_error"]
+__all__ = [
+    "block_length",
+    "block_variance",
+    "combined",
+    "error_ratio",
+    "mean_over_periods",
+    "robust_deviation",
+    "standard_error",
+]
 
 Floats = npt.NDArray[np.float64]
 
@@ -56,6 +64,22 @@ def block_length(series: Floats) -> int:
     return max(1, min(2 * math.ceil(min(best, n)), n // 4))
 
 
+def block_variance(away: Floats, length: int) -> float:
+    """Return the variance of the mean of a series by the circular block bootstrap, as of infinitely many draws.
+
+    Parameters
+    ----------
+    away : ndarray, shape (n,)
+        The series less its mean.
+    length : int
+        Of the blocks, less than n: n/l of them, each drawn from all circular ones.
+    """
+    n = len(away)
+    total = np.concatenate([[0.0], np.cumsum(np.concatenate([away, away[:length]]))])
+    blocks = total[length : length + n] - total[:n]
+    return float(np.mean(blocks**2)) / (length * n * (1 - length / n))
+
+
 def standard_error(series: Floats) -> float:
     """Return the standard uncertainty of the mean of a series by the circular block bootstrap.
 
@@ -66,9 +90,9 @@ def standard_error(series: Floats) -> float:
 
     Notes
     -----
-    In closed form, as of infinitely many draws: n/l blocks of length l, each drawn from all circular ones. Where blocks
-    are few it is widened by Student's factor, so that 1.96 standard uncertainties are an interval of 95 % (the variance
-    of overlapping blocks has about 1.5 n/l degrees of freedom).
+    In closed form, see :func:`block_variance`. Where blocks are few it is widened by Student's factor, so that 1.96
+    standard uncertainties are an interval of 95 % (the variance of overlapping blocks has about 1.5 n/l degrees of
+    freedom).
 
     Examples
     --------
@@ -76,10 +100,7 @@ def standard_error(series: Floats) -> float:
     0.01
     """
     n, length = len(series), block_length(series)
-    away = series - series.mean()
-    total = np.concatenate([[0.0], np.cumsum(np.concatenate([away, away[:length]]))])
-    blocks = total[length : length + n] - total[:n]
-    variance = float(np.mean(blocks**2)) / (length * n * (1 - length / n))
+    variance = block_variance(series - series.mean(), length)
     return math.sqrt(variance) * float(stdtrit(max(1.5 * n / length, 2.0), 0.975)) / _NORMAL
 
 

@@ -19,7 +19,7 @@ from vines.rig.quantities._forcing import Base, Tuning
 from vines.rig.quantities._reconstruction import Finding
 from vines.rig.quantities._ring_down import STIFFNESS_DRIFT
 from vines.rig.recording import Recording, Uncertain
-from vines.rig.uncertainty import block_length
+from vines.rig.uncertainty import block_length, block_variance
 
 __all__ = ["FALSE_ALARM", "MATTERS", "BaseCourse", "base_course", "run_trends", "trend", "trend_findings"]
 
@@ -27,6 +27,8 @@ Floats = npt.NDArray[np.float64]
 
 FALSE_ALARM = 1e-3
 """Chance to find a trend where there is none, of each quantity."""
+_NORMAL = float(stdtrit(1e9, 1 - FALSE_ALARM / 2))
+"""Standard uncertainties that a normal deviation passes by that chance."""
 
 MATTERS = {"drift_E": 0.006, "drift_f": 1e-4, "drift_r": 0.02, "drift_omega0": 1e-4}
 """Changes over a record that move the model's max|x1| by a per cent from its begin to its end (docs/rig.md)."""
@@ -89,15 +91,16 @@ def trend(t: Floats, values: Floats) -> Uncertain:
     slope = float(np.sum(away * values) / spread)
     left = values - values.mean() - slope * away
     span = float(t[-1] - t[0])
-    # What neighbours share is read from the residuals, too; Student's factor is that of the chance that is stated.
+    # What neighbours share is read from the residuals, too.
     parts = len(t) * away * left / spread
     length = max(block_length(left), block_length(parts))
     freedom = max(1.5 * len(t) / length - 1.5, 2.0)
-    total = np.concatenate([[0.0], np.cumsum(np.concatenate([parts, parts[:length]]))])
-    blocks = total[length : length + len(t)] - total[: len(t)]
-    variance = float(np.mean(blocks**2)) / (length * len(t) * max(1 - length / len(t), 0.1))
-    wider = float(stdtrit(freedom, 1 - FALSE_ALARM / 2)) / float(stdtrit(1e9, 1 - FALSE_ALARM / 2))
-    return Uncertain(slope * span, float(np.sqrt(variance)) * span * wider)
+    return Uncertain(slope * span, float(np.sqrt(block_variance(parts, length))) * span * _student(freedom))
+
+
+def _student(freedom: float) -> float:
+    """Return Student's factor at the chance that is stated, so that the normal one holds for all trends."""
+    return float(stdtrit(freedom, 1 - FALSE_ALARM / 2)) / _NORMAL
 
 
 def base_course(base: Base) -> BaseCourse:
@@ -184,9 +187,7 @@ def _natural(base: Base, response: Response, tuning: Tuning, model: JumpModel) -
     span = float(bins.t[-1] - bins.t[0])
     freedom = len(t) - 2
     u = float(np.sqrt(np.sum(left**2) / freedom / np.sum(away**2))) * span
-    # Student's factor at the chance that is stated, so that the normal one holds for all trends.
-    wider = float(stdtrit(freedom, 1 - FALSE_ALARM / 2)) / float(stdtrit(1e9, 1 - FALSE_ALARM / 2))
-    return Uncertain(steep * span, u * wider)
+    return Uncertain(steep * span, u * _student(freedom))
 
 
 def trend_findings(recording: Recording, course: BaseCourse, trends: Mapping[str, Uncertain]) -> tuple[Finding, ...]:
@@ -200,7 +201,6 @@ def trend_findings(recording: Recording, course: BaseCourse, trends: Mapping[str
     trends : mapping of str to Uncertain
         Changes over the record.
     """
-    most = float(stdtrit(1e9, 1 - FALSE_ALARM / 2))
     findings = []
     if len(course.levels) > 1:
         sizes = ", ".join(f"{level.size / course.levels[0].size:.3f}" for level in course.levels)
@@ -216,7 +216,7 @@ def trend_findings(recording: Recording, course: BaseCourse, trends: Mapping[str
         what, unit, scale = _NAMES[name]
         if name == "drift_E" and len(course.levels) > 1:
             continue
-        passed = abs(found.value) <= MATTERS[name] or abs(found.value) <= most * found.u
+        passed = abs(found.value) <= MATTERS[name] or abs(found.value) <= _NORMAL * found.u
         cause = ""
         if name == "drift_omega0":
             cause = _warmed(recording, found)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-__all__ = ["POLICY", "SCRIPT", "STYLE"]
+__all__ = ["POLICY", "SCRIPT", "STYLE", "html_page"]
 
 POLICY = "default-src 'none'; img-src data:; style-src 'unsafe-inline'; script-src 'unsafe-inline'"
 """What the page may load: nothing."""
@@ -129,3 +129,13 @@ for (const button of document.querySelectorAll('button[data-copy]'))
   button.addEventListener('click', () => navigator.clipboard.writeText(button.dataset.copy)
     .then(() => { button.textContent = 'copied'; }, () => { button.textContent = 'select and copy it'; }));
 """
+
+
+def html_page(title: str, policy: str, style: str, body: str) -> str:
+    """Return a whole page; title, policy and body are HTML, escaped where they have to be."""
+    return (
+        '<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
+        f'<meta http-equiv="Content-Security-Policy" content="{policy}">\n'
+        '<meta name="viewport" content="width=device-width, initial-scale=1">\n<link rel="icon" href="data:,">\n'
+        f"<title>{title}</title>\n<style>{style}</style>\n</head>\n<body>\n{body}\n</body>\n</html>\n"
+    )

@@ -12,6 +12,7 @@ from html import escape
 from pathlib import Path
 
 from vines.errors import FileMissingError, ParameterError
+from vines.stages.reports._assets import html_page
 from vines.store import write_text
 
 __all__ = ["FORMS", "Heading", "Picture", "Table", "write_document"]
@@ -110,14 +111,8 @@ def _print(path: Path, page: str) -> None:
 
 
 def _html(title: str, below: str, parts: Sequence[Heading | Table | Picture]) -> str:
-    body = "\n".join(map(_part, parts))
-    return (
-        '<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
-        f'<meta http-equiv="Content-Security-Policy" content="{_POLICY}">\n'
-        '<meta name="viewport" content="width=device-width, initial-scale=1">\n<link rel="icon" href="data:,">\n'
-        f"<title>{escape(title)}</title>\n<style>{_STYLE}</style>\n</head>\n<body>\n<h1>{escape(title)}</h1>\n"
-        f"<p>{escape(below)}</p>\n{body}\n</body>\n</html>\n"
-    )
+    body = "\n".join([f"<h1>{escape(title)}</h1>", f"<p>{escape(below)}</p>", *map(_part, parts)])
+    return html_page(escape(title), _POLICY, _STYLE, body)
 
 
 def _part(part: Heading | Table | Picture) -> str:

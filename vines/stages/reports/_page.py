@@ -13,7 +13,7 @@ from html import escape, unescape
 from typing import Any
 
 from vines import schema
-from vines.stages.reports._assets import POLICY, SCRIPT, STYLE
+from vines.stages.reports._assets import POLICY, SCRIPT, STYLE, html_page
 
 __all__ = ["Figure", "Head", "Run", "Section", "StageFacts", "page", "plain"]
 
@@ -114,14 +114,8 @@ def page(name: str, title: str, source: str, sections: Sequence[Section]) -> str
     if len(sections) > 1:
         parts.append(_contents(sections))
     parts += [_section(section, alone=len(sections) == 1) for section in sections]
-    return (
-        '<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
-        f'<meta http-equiv="Content-Security-Policy" content="{escape(POLICY)}">\n'
-        '<meta name="viewport" content="width=device-width, initial-scale=1">\n<link rel="icon" href="data:,">\n'
-        f"<title>{escape(title or name)}</title>\n<style>{STYLE}</style>\n</head>\n<body>\n<main>\n"
-        + "\n".join(parts)
-        + f"\n</main>\n<script>{SCRIPT}</script>\n</body>\n</html>\n"
-    )
+    body = f"<main>\n{chr(10).join(parts)}\n</main>\n<script>{SCRIPT}</script>"
+    return html_page(escape(title or name), escape(POLICY), STYLE, body)
 
 
 def _overview(sections: Sequence[Section]) -> str:
