@@ -17,7 +17,7 @@ from vines.attractors._contacts import (
     repetition,
 )
 from vines.attractors._multipliers import multipliers
-from vines.dynamics.kernels import directions, ringing, tangent_product
+from vines.dynamics.kernels import directions, drift, rate_alone, ringing, tangent_product
 from vines.dynamics.kernels import rows as col
 from vines.kernels import byte_vector, cold_njit, complex_vector, new_vector, njit, zero_integers
 
@@ -196,17 +196,20 @@ def _without_impact(c, rows, n, tolerance, verdict):
     verdict[v.REGIME], verdict[v.LYAPUNOV_ERROR] = v.NO_IMPACT, 0.0
     d = len(directions(c))
     for k in range(d):
-        # The balls keep what they are given, in position and in velocity; the oscillator, if it is one, does not.
-        verdict[v.EXPONENTS + k] = 0.0 if k < max(d - 2, 2) else -0.5 * c.lam
-    if not note_drift(verdict, period, abs(rows[last, col.A_V2]) if rows[last, col.MODE] == 0.0 else 0.0):
+        verdict[v.EXPONENTS + k] = rate_alone(c, d, k)
+    if not note_drift(verdict, period, drift(c, rows[last, col.A_V2]) if rows[last, col.MODE] == 0.0 else 0.0):
         verdict[v.REGIME] = v.UNSETTLED
         return
     verdict[v.REASON], verdict[v.REMAINING] = v.NOTHING, 0.0
-    excess = ringing(c, rows[last, col.X1], rows[last, col.V1], rows[last, col.PHASE])
+    excess = ringing(c, rows[last, col.X1], rows[last, col.V1], rows[last, col.V2], rows[last, col.PHASE])
     if excess > max(tolerance, 1e-15):
         verdict[v.REASON], verdict[v.VALUE] = v.RINGS, excess
         verdict[v.REMAINING] = math.inf
-        if c.lam > 0.0:
-            verdict[v.REMAINING] = math.log(excess / tolerance) / (0.5 * c.lam * period)
+        slowest = 0.0
+        for k in range(d):
+            rate = -rate_alone(c, d, k)
+            slowest = rate if slowest == 0.0 or 0.0 < rate < slowest else slowest
+        if slowest > 0.0:
+            verdict[v.REMAINING] = math.log(excess / tolerance) / (slowest * period)
         return
     verdict[v.SETTLED] = 1.0

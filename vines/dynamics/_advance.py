@@ -10,7 +10,7 @@ import numpy as np
 
 from vines.dynamics._constants import Constants
 from vines.dynamics._contact import CONTACT, NO_CONTACT, next_contact
-from vines.dynamics._flight import advance_phase, derivatives, flight, flown, free_ball
+from vines.dynamics._flight import advance_phase, ball_flown, derivatives, flown, launched, relative
 from vines.dynamics._impact_law import after_impact_kernel
 from vines.dynamics._sticking import merges, next_release
 from vines.kernels import by_type, fused_njit, linked_njit, loop_njit, njit
@@ -117,12 +117,12 @@ def state_now(c, state, t):
     tau = (t - state[S_T]) - state[S_T_LOW]
     side = state[S_MODE]
     o = c.stuck if side != 0.0 else c.free
-    motion = flown(c, o, flight(c, o, state[S_X1], state[S_V1], state[S_PHASE], state[S_T]), tau)
-    x1, v1, _, _, _ = derivatives(o, c.Omega, *motion)
+    motion = launched(c, o, state[S_X1], state[S_V1], state[S_V2], state[S_PHASE], state[S_T])
+    x1, v1, _, _, _ = derivatives(o, c.Omega, *flown(c, o, motion, tau))
     phase = advance_phase(state[S_PHASE], c.Omega * tau)
     if side != 0.0:
         return x1, v1, x1 - side, v1, phase, tau
-    way, v2 = free_ball(c, state[S_V2], tau)
+    way, v2 = ball_flown(c, motion, state[S_V2], tau)
     return x1, v1, state[S_X2] + way, v2, phase, tau
 
 
@@ -206,6 +206,7 @@ def advance(c, state, stop, cap, rows, first):
     count = first
     size = rows.shape[0]
     period = c.period
+    seen = relative(c)
     while True:
         if count >= size:
             return count, BUFFER_FULL
@@ -218,15 +219,15 @@ def advance(c, state, stop, cap, rows, first):
         x2 = state[S_X2]
         v2 = state[S_V2]
         o = c.stuck if side != 0 else c.free
-        motion = flight(c, o, x1, v1, state[S_PHASE], state[S_T])
+        motion = launched(c, o, x1, v1, v2, state[S_PHASE], state[S_T])
 
         if side != 0:
             code, tau, x, v = next_release(c, side, motion, state[S_CLEAR], min(left, AFRESH))
             if code == CONTACT:
                 move(c, state, tau)
                 _place(state, 0, side, 1.0, x, v, x - side, v)
-                after = flight(c, c.free, x, v, state[S_PHASE], state[S_T])
-                _, _, _, j, _ = derivatives(c.free, c.Omega, *after)
+                after = launched(c, c.free, x, v, v, state[S_PHASE], state[S_T])
+                _, _, _, j, _ = derivatives(seen.free, c.Omega, *after)
                 if side * j >= 0.0:
                     # Contact was lost at once, with a push away from the wall that is not zero.
                     state[S_RELEASED] = 0.0
@@ -239,7 +240,7 @@ def advance(c, state, stop, cap, rows, first):
             wall = int(state[S_WALL])
             if state[S_DECIDE] != 0.0:
                 state[S_DECIDE] = 0.0
-                if merges(c, c.free, c.r, c.correction, wall, max(wall * (v2 - v1), 0.0), motion, x2):
+                if merges(seen, seen.free, c.r, c.correction, wall, max(wall * (v2 - v1), 0.0), motion, x2):
                     common = (v1 + c.mu * v2) / (1.0 + c.mu)
                     run = state[S_RUN]
                     state[S_RUN] = 0.0
@@ -255,7 +256,7 @@ def advance(c, state, stop, cap, rows, first):
             )
             if code == CONTACT:
                 move(c, state, tau)
-                _, v2 = free_ball(c, v2, tau)
+                _, v2 = ball_flown(c, motion, v2, tau)
                 after1, after2 = after_impact_kernel(law_of(c, v - v2, state[S_IMPACTS]), v, v2)
                 state[S_IMPACTS] += 1.0
                 if hit != state[S_RUN_SIDE] or state[S_RELEASED] != 0.0:
@@ -280,7 +281,7 @@ def advance(c, state, stop, cap, rows, first):
         if side != 0:
             _place(state, side, side, 0.0, x, v, x - side, v)
         else:
-            way, v2 = free_ball(c, v2, tau)
+            way, v2 = ball_flown(c, motion, v2, tau)
             _place(state, 0, 0, 0.0, x, v, x2 + way, v2)
         _write(rows[count], state, START, 0, tau, x, v, state[S_X2], state[S_V2])
         count += 1

@@ -1,3 +1,4 @@
+from ._drag import Drag as Drag
 from ._harvest import Harvest as Harvest
 from ._impact_pair import ImpactPair as ImpactPair
 from ._parallel import Parallel as Parallel

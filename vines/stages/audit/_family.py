@@ -52,7 +52,7 @@ def _of_ball(rows: Rows, name: str, ball: Floats) -> Floats:
 
 def _mass(rows: Rows) -> Floats:
     """Return the mass of all balls over that of the frame."""
-    names = [name for name in rows.table.column_names if name.startswith("mu_")]
+    names = [name for name in rows.table.column_names if name == "mu" or name.startswith("mu_")]
     return np.nansum([rows[name] for name in names], axis=0)
 
 
@@ -81,6 +81,8 @@ def _balance(rows: Rows, where: np.ndarray, *more: str) -> Iterator[Defect]:
     """Yield the checks of energies: what the base gives is lost or stored."""
     lost = rows["impact_loss_left"] + rows["impact_loss_right"]
     damper = rows["damper_loss"] if rows.has("damper_loss") else np.zeros(len(rows))
+    if rows.has("electric_power"):
+        damper = damper + rows["electric_power"] * rows["duration"]
     change = sum((rows[name] for name in more), np.zeros(len(rows)))
     work = rows["base_work"]
     scale = np.max([np.abs(each) for each in (work, damper, lost, change)], axis=0)
@@ -189,7 +191,8 @@ def _log_determinant(rows: Rows) -> Floats:
             r = rows["r"] if rows.has("r") else rows[f"r_{max(ball, 1)}"]
             found[mine] += 2 * np.log(np.maximum(r[mine], 1e-300))
         if rows.has("lam"):
-            found[mine] -= (rows["lam"] * word.p * 2 * np.pi / rows["Omega"])[mine]
+            rate = rows["lam"] + ((1 + rows["mu"]) * rows["delta"] if rows.has("delta") else 0.0)
+            found[mine] -= (rate * word.p * 2 * np.pi / rows["Omega"])[mine]
     return found
 
 
@@ -198,4 +201,6 @@ def family_transient_defects(table: str, rows: Rows) -> Iterator[Defect]:
     yield _parameters(table, rows)
     done = rows.text("status") == "ok"
     shares = rows["impact_share"] + rows["damper_share"] + rows["left_share"]
-    yield Defect("shares", "impacts, damper and what is left make 1", 1e-9, np.where(done, np.abs(shares - 1), np.nan))
+    if rows.has("electric_share"):
+        shares = shares + rows["electric_share"]
+    yield Defect("shares", "all that is lost and what is left make 1", 1e-9, np.where(done, np.abs(shares - 1), np.nan))

@@ -140,7 +140,8 @@ def _powers(measures: Measures, hits: np.ndarray, duration: float, law: HarvestL
     ties = getattr(measures, "ties", 0)
     # a run that the cap on events ended has no window
     power = measures.impact_loss / measures.duration if measures.duration > 0 else None
-    found: dict[str, Any] = {"impact_power": power, "ties": ties}
+    travel = measures.travel_loss / measures.duration if measures.duration > 0 else None
+    found: dict[str, Any] = {"impact_power": power, "electric_power": travel, "ties": ties}
     if law is not None:
         energy = Harvest(law.threshold, law.coefficients).energy(hits["w_dot"])
         found["harvested_left"] = float(energy[hits["side"] > 0].sum()) / duration
