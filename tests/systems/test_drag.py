@@ -80,7 +80,9 @@ def test_flights_are_the_matrix_exponential(mu, delta, lam, Omega, seed):
 def test_no_contact_is_missed_beside_dop853(seed):
     rng = np.random.default_rng(seed)
     delta = 10.0 ** rng.uniform(-2, 0)
-    p = systems.Drag(mu=rng.uniform(0.005, 0.5), A=0.3, Omega=rng.uniform(0.6, 1.6), r=rng.uniform(0.3, 0.95), delta=delta)
+    p = systems.Drag(
+        mu=rng.uniform(0.005, 0.5), A=0.3, Omega=rng.uniform(0.6, 1.6), r=rng.uniform(0.3, 0.95), delta=delta
+    )
     run = vines.simulate(p, v1=rng.uniform(-3, 3), v2=rng.uniform(-2, 2), phi=rng.uniform(0, 6), periods=2)
     rows, M = run.events, matrix(p)
     for k in range(len(rows) - 1):
@@ -130,7 +132,9 @@ def test_tangent_map_is_the_derivative_of_the_run():
     columns = []
     for name, value in begin.items():
         ends = [
-            np.array([vines.simulate(p, **{**begin, name: value + step}, phi=0.3, periods=1.3).final[key] for key in begin])
+            np.array(
+                [vines.simulate(p, **{**begin, name: value + step}, phi=0.3, periods=1.3).final[key] for key in begin]
+            )
             for step in (h, -h)
         ]
         columns.append((ends[0] - ends[1]) / (2 * h))

@@ -178,8 +178,9 @@ def _repeats(c, rows, n, kept, p, lag, last, tolerance, verdict):
         # The oldest of them: what a chatter at the end of the window becomes may not be seen any more.
         i = kept[count - 1 - lag + k]
         sides[k] = mark(rows, i)
-        verdict[v.LEFT if sides[k] > 0 else v.RIGHT] += 1.0
-        if completes(rows, n, i):
+        if sides[k] != 0:
+            verdict[v.LEFT if sides[k] > 0 else v.RIGHT] += 1.0
+        if sides[k] != 0 and completes(rows, n, i):
             sides[k] += STUCK if sides[k] > 0 else -STUCK
     verdict[v.REGIME], verdict[v.SETTLED] = v.PERIODIC, 1.0
     verdict[v.P], verdict[v.LAG] = p, lag

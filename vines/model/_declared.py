@@ -120,6 +120,8 @@ def _system(form: Mapping[str, Any], balls: int) -> System:
         energies=Energies(**{key: tuple(names) for key, names in energies.items()}),
         met=tuple(_coordinate(each[key], 0) for each in form["bodies"] for key in ("position", "velocity")),
         without=tuple(form.get("without", ())),
+        stops=form.get("stops", False),
+        starred=form.get("starred", True),
     )
 
 

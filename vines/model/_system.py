@@ -210,6 +210,10 @@ class System(msgspec.Struct, frozen=True, dict=True):
         As `state`, of an impact: coordinates of the ball that hits, without a number.
     without : tuple of str
         Columns of the common tables that the tables of this system do not have.
+    stops : bool
+        Whether a ball may stop in mid-cavity.
+    starred : bool
+        Whether orbits that stick are computed, if balls have no numbers.
     """
 
     name: str
@@ -226,6 +230,8 @@ class System(msgspec.Struct, frozen=True, dict=True):
     energies: Energies
     met: tuple[Coordinate, ...]
     without: tuple[str, ...] = ()
+    stops: bool = False
+    starred: bool = True
 
     @property
     def state(self) -> tuple[Coordinate, ...]:

@@ -1,4 +1,5 @@
 from ._drag import Drag as Drag
+from ._friction import Friction as Friction
 from ._harvest import Harvest as Harvest
 from ._impact_pair import ImpactPair as ImpactPair
 from ._parallel import Parallel as Parallel

@@ -66,7 +66,7 @@ class GapConstants(NamedTuple):
 
 
 class DragConstants(NamedTuple):
-    """As `Constants`, of a ball that is dragged; ``gap`` is what is seen from the ball."""
+    """As `Constants`, of a ball that is dragged, without ``friction``; ``gap`` is what is seen from the ball."""
 
     mu: float
     A: float
@@ -74,6 +74,7 @@ class DragConstants(NamedTuple):
     r: float
     lam: float
     delta: float
+    friction: float
     Omega5: float
     period: float
     window: float
@@ -165,6 +166,7 @@ def drag_constants(mu: float, A: float, Omega: float, r: float, lam: float, delt
         r,
         lam,
         delta,
+        0.0,
         Omega**5,
         2.0 * math.pi / Omega,
         window,

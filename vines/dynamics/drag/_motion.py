@@ -99,7 +99,13 @@ def _derivatives(o, Omega, ur, ui, gr, gi, y, way):
     x, v, a, j, k = derivatives(o.own, Omega, ur, ui, gr, gi)
     part = o.kappa * y
     rho = o.rho
-    return x + part, v - rho * part, a + rho * rho * part, j - rho * rho * rho * part, k + (rho * rho) * (rho * rho) * part
+    return (
+        x + part,
+        v - rho * part,
+        a + rho * rho * part,
+        j - rho * rho * rho * part,
+        k + (rho * rho) * (rho * rho) * part,
+    )
 
 
 @fifth.register(DragFrame)

@@ -41,7 +41,20 @@ from vines.kernels import fused_njit, njit
 
 __all__: list[str] = []
 
-for _name in (advance, begin, write_end, law_of, next_contact, next_release, flown, launched, ball_flown, drift, rate_alone, relative):
+for _name in (
+    advance,
+    begin,
+    write_end,
+    law_of,
+    next_contact,
+    next_release,
+    flown,
+    launched,
+    ball_flown,
+    drift,
+    rate_alone,
+    relative,
+):
     _name.register(PairConstants)(_name.first)
 
 width_of.register(PairTable)(width_of.first)

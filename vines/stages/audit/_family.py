@@ -81,8 +81,9 @@ def _balance(rows: Rows, where: np.ndarray, *more: str) -> Iterator[Defect]:
     """Yield the checks of energies: what the base gives is lost or stored."""
     lost = rows["impact_loss_left"] + rows["impact_loss_right"]
     damper = rows["damper_loss"] if rows.has("damper_loss") else np.zeros(len(rows))
-    if rows.has("electric_power"):
-        damper = damper + rows["electric_power"] * rows["duration"]
+    for name in ("electric_power", "friction_power"):
+        if rows.has(name):
+            damper = damper + rows[name] * rows["duration"]
     change = sum((rows[name] for name in more), np.zeros(len(rows)))
     work = rows["base_work"]
     scale = np.max([np.abs(each) for each in (work, damper, lost, change)], axis=0)
@@ -201,6 +202,7 @@ def family_transient_defects(table: str, rows: Rows) -> Iterator[Defect]:
     yield _parameters(table, rows)
     done = rows.text("status") == "ok"
     shares = rows["impact_share"] + rows["damper_share"] + rows["left_share"]
-    if rows.has("electric_share"):
-        shares = shares + rows["electric_share"]
+    for name in ("electric_share", "friction_share"):
+        if rows.has(name):
+            shares = shares + rows[name]
     yield Defect("shares", "all that is lost and what is left make 1", 1e-9, np.where(done, np.abs(shares - 1), np.nan))

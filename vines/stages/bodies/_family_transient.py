@@ -28,5 +28,7 @@ def compute(job: Job[FamilyTransientOptions]) -> Batch:
         start: dict[str, Any] = {name: given[name] for name in at_rest} | {"v1": point.params["V"]}
         run = simulate(p, **start, periods=options.periods)
         row = transient_row(point, run)
-        rows.append(only_own(p, "transients", row | {"electric_share": run.measures().travel_loss / row["energy"]}))
+        lost = run.measures().travel_loss / row["energy"]
+        more = dict.fromkeys(("electric_share", "friction_share"), lost)
+        rows.append(only_own(p, "transients", row | more))
     return Batch(tables={system_table(options.system, "transients"): rows})

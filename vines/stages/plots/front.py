@@ -29,7 +29,9 @@ class FrontOptions(PlotOptions, frozen=True, tag="front"):
 
     least: Annotated[str, Meta(description="A column of numbers of which less is better")] = "reduction"
     most: Annotated[str, Meta(description="A column of numbers of which more is better")] = "impact_power"
-    colours: Annotated[tuple[str, ...], Meta(description="Varied parameters, a panel each; the varied ones if empty")] = ()
+    colours: Annotated[
+        tuple[str, ...], Meta(description="Varied parameters, a panel each; the varied ones if empty")
+    ] = ()
     columns: Annotated[int, Meta(ge=1, description="Panels in a row")] = 3
     height: Annotated[float, Meta(gt=0, description="Height of a row [inch]")] = 2.6
 
