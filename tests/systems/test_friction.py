@@ -220,3 +220,58 @@ def test_chatter_with_friction_ends_on_the_wall_or_beside_it():
         force = p.A * (math.sin(each["phase"]) + p.lam * p.Omega * math.cos(each["phase"]))
         a = (force - p.lam * each["v1"] - each["x1"]) / (1 + p.mu)
         assert each["side"] * a == pytest.approx(-p.f, abs=1e-10)
+
+
+def test_orbits_without_friction_are_those_of_the_vi_nes():
+    orbit = vines.find_orbit("LR", systems.Friction(mu=0.02, A=0.03))
+    model = vines.find_orbit("LR", vines.Params(mu=0.02, A=0.03))
+    assert orbit.states == pytest.approx(model.states, abs=1e-12)
+    assert orbit.multipliers == pytest.approx(model.multipliers, abs=1e-11)
+
+
+@pytest.mark.parametrize(("word", "A", "mu", "f"), [("LLsR", 0.2, 0.1, 0.3), ("LsR", 0.3, 0.3, 0.2)])
+def test_orbits_with_stops(word, A, mu, f):
+    p = systems.Friction(mu=mu, A=A, f=f, r=0.7)
+    orbit = vines.find_orbit(word, p)
+    assert (str(orbit.word), orbit.stable) == (word, True)
+    assert orbit.residual < 1e-11
+    assert abs(orbit.energy_imbalance) < 1e-12
+    # A stop forgets with which velocity the ball came.
+    assert abs(orbit.multipliers[-1]) < 1e-12
+    run = vines.simulate(p, **orbit.start(), periods=30)
+    kinds = run.rows[np.isin(run.rows[:, 0], (IMPACT, STOP))]
+    met = "".join("s" if row[0] == STOP else "L" if row[1] > 0 else "R" for row in kinds[: len(word)])
+    assert met == word[1:] + word[0]
+    ends = kinds[len(word) - 1 :: len(word)]
+    assert np.abs(ends[:, 5] - orbit.states[0, 0]).max() < 1e-9
+    late = vines.simulate(p, **{**orbit.start(), "v2": orbit.start()["v2"] + 1e-3}, periods=1 + orbit.word.p * 12)
+    assert "s" in word
+    assert late.measures(last=1).travel_loss == pytest.approx(orbit.measures.travel_loss, rel=0.05)
+
+
+def test_a_branch_through_its_symmetry_breaking_by_differences():
+    p = systems.Friction(mu=0.02, A=0.028, f=0.02)
+    branch = vines.continue_orbit(vines.find_orbit("LR", p), "A", 0.031)
+    (broken,) = branch.bifurcations
+    assert broken.type == "symmetry_breaking"
+    orbit = broken.orbit
+
+    def later(z):
+        """Return the mirror image of the state half a period later: the run, not its tangent map."""
+        names = ("x1", "v1", "x2", "v2")
+        at = dict(zip(names, z, strict=True))
+        end = vines.simulate(orbit.params, **at, phi=orbit.phase[0] + 0.7, periods=0.5).final
+        return -np.array([end[name] for name in names])
+
+    inside = vines.simulate(orbit.params, **orbit.start(), periods=0.7 / (2 * math.pi)).final
+    z = np.array([inside[name] for name in ("x1", "v1", "x2", "v2")])
+    assert later(z) == pytest.approx(z, abs=1e-10)
+    slope = np.column_stack([(later(z + e) - later(z - e)) / 2e-6 for e in 1e-6 * np.eye(4)])
+    assert np.linalg.eigvals(slope).real.min() == pytest.approx(-1, abs=1e-5)
+
+
+def test_stops_are_of_systems_with_friction():
+    with pytest.raises(ParameterError, match="never stops in mid-cavity"):
+        vines.find_orbit("LsR", vines.Params(mu=0.02, A=0.03))
+    with pytest.raises(ParameterError, match="no impact"):
+        vines.find_orbit("ss", systems.Friction(mu=0.02, A=0.03, f=0.3))

@@ -61,7 +61,7 @@ _VI_NES = Kind(
 
 KIND = of_systems(
     _VI_NES,
-    ("drag", "impact_pair", "parallel"),
+    ("drag", "friction", "impact_pair", "parallel"),
     FamilyBranchOptions,
     "vines.stages.bodies._family_branch:compute",
     ("orbits", "branches", "bifurcations"),
