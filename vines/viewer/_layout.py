@@ -97,7 +97,7 @@ class Shown:
         return self.kind != "rig" and bool(self.parts)
 
 
-def blueprint(runs: Sequence[Shown], *, still: bool = False) -> rrb.Blueprint:
+def blueprint(runs: Sequence[Shown], *, still: bool = False, playing: bool = False) -> rrb.Blueprint:
     """Return the layout for one run, or for several side by side with one time cursor.
 
     Parameters
@@ -106,6 +106,8 @@ def blueprint(runs: Sequence[Shown], *, still: bool = False) -> rrb.Blueprint:
         At least one.
     still : bool
         For a picture that nobody can pan: curves leave room for their legends, the top bar is hidden.
+    playing : bool
+        Whether it plays from the start on.
     """
     # A rig has seconds and no cycles that are known.
     timeline = SIM_TIME if any(run.kind == "rig" for run in runs) else CYCLE
@@ -116,7 +118,7 @@ def blueprint(runs: Sequence[Shown], *, still: bool = False) -> rrb.Blueprint:
         state="collapsed",
         timeline=timeline,
         fps=FPS,
-        play_state="playing" if looping else "paused",
+        play_state="playing" if looping or playing else "paused",
         loop_mode="all",
         playback_speed=0.5 if looping else 1.0,
     )
