@@ -159,7 +159,7 @@ def run(*, supervised: bool) -> None:
         click.echo(error.format_message())
         code = 0
     except click.ClickException as error:
-        click.echo(f"vines: {error.format_message()}", err=True)
+        click.echo(f"vines: {error.format_message()}{_how_to_call(error)}", err=True)
         code = error.exit_code
     except VinesError as error:
         click.echo(f"vines: {error}", err=True)
@@ -177,6 +177,13 @@ def run(*, supervised: bool) -> None:
         click.echo(f"vines: not enough memory{f': {error}' if str(error) else ''}", err=True)
         code = 2
     sys.exit((code if isinstance(code, int) else 0) or (INCOMPLETE if incomplete else 0))
+
+
+def _how_to_call(error: click.ClickException) -> str:
+    """Say where to read how a command is called, where something is missing."""
+    if isinstance(error, click.MissingParameter) and error.ctx is not None:
+        return f" Usage: {' '.join([error.ctx.command_path, *error.ctx.command.collect_usage_pieces(error.ctx)])}"
+    return ""
 
 
 def _show(incomplete: list[str], message: Warning | str, category: type[Warning], *place: Any) -> None:

@@ -42,8 +42,8 @@ def estimate(
 ) -> dict[str, float]:
     """Return how many seconds the points of each stage would take that a run would compute.
 
-    Points drawn from what is missing are computed until the clock tells them well; nothing is stored. Stages of the whole shape, and those whose points fail, are left out; what a refinement would add is not
-    counted.
+    Points drawn from what is missing are computed until the clock tells them well; nothing is stored. Stages of the
+    whole shape, and those whose points fail, are left out; what a refinement would add is not counted.
 
     Parameters
     ----------

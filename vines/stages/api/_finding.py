@@ -8,6 +8,7 @@ from pathlib import Path
 
 from vines.errors import DamageError, DamageWarning, FileMissingError, UnknownNameError, nearest
 from vines.stages.api._home import Home, current
+from vines.stages.api._uncomputed import uncomputed
 from vines.store import Store
 
 __all__ = ["all_logs", "find_logs", "recordings_folder"]
@@ -98,6 +99,8 @@ def find_logs(name: str, *, study: Home | None = None) -> list[Path]:
     for where in (stage, stage.partition(".")[0]):
         if where in absent:
             raise DamageError(f"log {name!r}: {absent[where]}")
+    if why := uncomputed(name, study or current()):
+        raise UnknownNameError(why)
     if absent:
         raise DamageError(f"no log {name!r} among those that can be read; {next(iter(absent.values()))}")
     if not logs:
