@@ -53,7 +53,8 @@ def test_web_viewer_in_chromium(settled, tmp_path, browser_program):
 
 def test_catalogue_has_parameters_and_attractors_as_columns(settled, chatter, tmp_path):
     client = pytest.importorskip("rerun.catalog").CatalogClient
-    with viewer.catalogue_of([settled, chatter], tmp_path / "cache") as address:
+    stages = {settled.resolve(): "quickstart.settled"}
+    with viewer.catalogue_of([settled, chatter], tmp_path / "cache", stages) as address:
         assert listening() == {"127.0.0.1"}
         root, _, entry = address.partition("/entry/")
         dataset = client(root).get_dataset(name="runs")
@@ -63,6 +64,11 @@ def test_catalogue_has_parameters_and_attractors_as_columns(settled, chatter, tm
     one = rows.set_index(rows["property:vines:log"].map(lambda value: value[0]))
     assert one.loc["chatter.mcap", "property:given:mu"] == [0.0084]
     assert one.loc["settled.mcap", "property:got:attractor"] == ["1:1"]
+    assert one.loc["settled.mcap", ["property:from:pipeline", "property:from:stage"]].tolist() == [
+        ["quickstart"],
+        ["settled"],
+    ]
+    assert one.loc["chatter.mcap", "property:from:stage"] == [""]
     assert one.loc["chatter.mcap", "property:got:sticks"][0] >= 1
     assert [path.suffix for path in (tmp_path / "cache").iterdir()] == [".rrd", ".rrd"]
 

@@ -44,6 +44,7 @@ def write_recording(
     overlay: bool = False,
     at: float | None = None,
     full: bool = False,
+    stages: Sequence[str] = (),
 ) -> None:
     """Write runs as one recording, side by side or laid over each other, with the layout that shows them.
 
@@ -61,6 +62,8 @@ def write_recording(
         Time around which a long run is drawn with all its states; the middle if left out.
     full : bool
         Whether every state is drawn, however long a run is.
+    stages : sequence of str
+        The ``<pipeline>.<stage>`` of each log, empty where there is none.
 
     Raises
     ------
@@ -79,7 +82,7 @@ def write_recording(
     parts = [drawn(log, at=at, full=full) for log in logs]
     rec = rr.RecordingStream(APPLICATION, recording_id=_identity(logs), send_properties=False)
     rec.save(out, default_blueprint=overlaid(shown, still=still) if overlay else blueprint(shown, still=still))
-    _send_all(rec, logs, roots, parts, full=full)
+    _send_all(rec, logs, roots, parts, full=full, stages=stages)
     if overlay:
         send_overlay(rec, parts, [_columns(part.log.states) for part in parts])
     rec.flush()
@@ -110,11 +113,17 @@ def send_run(log: Log, begin: Callable[[str, rrb.Blueprint], rr.RecordingStream]
 
 
 def _send_all(
-    rec: rr.RecordingStream, logs: Sequence[Log], roots: Sequence[str], parts: Sequence[Drawn], *, full: bool
+    rec: rr.RecordingStream,
+    logs: Sequence[Log],
+    roots: Sequence[str],
+    parts: Sequence[Drawn],
+    *,
+    full: bool,
+    stages: Sequence[str] = (),
 ) -> None:
     """Send what is known and what is drawn of runs."""
     rec.send_recording_name(", ".join(log.name for log in logs))
-    for group, values in _properties(logs).items():
+    for group, values in _properties(logs, stages or [""] * len(logs)).items():
         rec.send_property(group, values)
     for root, log, part in zip(roots, logs, parts, strict=True):
         told = about(log, "" if full else thinning(log))
@@ -196,18 +205,18 @@ def _identity(logs: Sequence[Log]) -> str:
     return digest.hexdigest()[:32]
 
 
-def _properties(logs: Sequence[Log]) -> dict[str, rr.AnyValues]:
+def _properties(logs: Sequence[Log], stages: Sequence[str]) -> dict[str, rr.AnyValues]:
     """Return what a catalogue of recordings shows as columns, in groups.
 
     The catalogue sorts columns by the names of their groups: these are named so that the run comes first, then its
     parameters, then its attractor and impacts, then the rest.
     """
-    stages = [log.name.partition("/")[0].partition(".") for log in logs]
+    parts = [stage.partition(".") for stage in stages]
     parameters = dict.fromkeys(key for log in logs for key in log.parameters)
     groups: dict[str, dict[str, Any]] = {
         "from": {
-            "pipeline": [pipeline if dot else "" for pipeline, dot, _ in stages],
-            "stage": [stage or pipeline for pipeline, _, stage in stages],
+            "pipeline": [pipeline for pipeline, _, _ in parts],
+            "stage": [stage for _, _, stage in parts],
         },
         "given": {key: [log.parameters.get(key, math.nan) for log in logs] for key in parameters},
         "got": {

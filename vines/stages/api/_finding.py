@@ -11,7 +11,7 @@ from vines.stages.api._home import Home, current
 from vines.stages.api._uncomputed import uncomputed
 from vines.store import Store
 
-__all__ = ["all_logs", "find_logs", "recordings_folder"]
+__all__ = ["all_logs", "find_logs", "recordings_folder", "stages_of_logs"]
 
 
 def recordings_folder(*, study: Home | None = None) -> Path:
@@ -34,6 +34,16 @@ def all_logs(*, study: Home | None = None) -> list[Path]:
     if not found:
         raise UnknownNameError("there are no logs: nothing with logs has been run here; try 'vines run quickstart'")
     return list(dict.fromkeys(found))
+
+
+def stages_of_logs(*, study: Home | None = None) -> dict[Path, str]:
+    """Return ``<pipeline>.<stage>`` of each log of the catalogue by its file; the first of several that share one."""
+    pinned, _ = _pinned((study or current()).store)
+    found: dict[Path, str] = {}
+    for stage, logs in pinned.items():
+        for path in logs.values():
+            found.setdefault(path.resolve(), stage)
+    return found
 
 
 def _pinned(store: Store) -> tuple[dict[str, dict[str, Path]], dict[str, str]]:
