@@ -259,7 +259,7 @@ def _series(
         )
     elif still:
         start = boundary.absolute(**_moment(run, 0.0))
-        end = boundary.absolute(**_moment(run, 1.0 + _LEGEND))
+        end = boundary.absolute(**_moment(run, 1.0 + (0.0 if run.beside else _LEGEND)))
     else:
         # Without numbers, since they would be those of one timeline only.
         start, end = boundary.infinite(), boundary.infinite()
