@@ -55,6 +55,8 @@ _APART = 4e-3
 """[s]"""
 _LOOSE = 1.5e-4
 """[s] Standard uncertainty of the times that prediction gives."""
+_BEFORE = 10.0
+"""So many usual jumps at once ring a mode as much as all that came before a record, at most."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,6 +71,8 @@ class Mode:
         [Hz] and damping ratio.
     s, size : complex
         After an impact with velocity jump dv the channel has Re(size dv exp(s t)) more.
+    since, before : float and complex
+        What rings on of impacts before the record is Re(before exp(s (t - since))).
     usual : float
         |size| times the usual |dv|, in the unit of the channel.
     """
@@ -79,7 +83,14 @@ class Mode:
     damping: float
     s: complex
     size: complex
+    since: float
+    before: complex
     usual: float
+
+    def signal(self, t: Floats, times: Floats, dv: Floats) -> Floats:
+        """Return what the channel has more at times on its clock, with impacts on that clock."""
+        own = times > self.since + _EDGE
+        return (self.size * rung(t, times[own], dv[own], self.s)[0] + self.before * np.exp(self.s * (t - self.since))).real
 
     @property
     def text(self) -> str:
@@ -131,9 +142,13 @@ def modes_seen(fitter: Fitter, channel: Sampled, train: Train, known: tuple[Mode
         poles, fit = tried, again
     if not poles or fit.residual > _BETTER * plain.residual:
         return ()
-    sizes = fit.extra[0::2] + 1j * fit.extra[1::2]
-    bare = [complex(size / model.bins.response(s)) for s, size in zip(poles, sizes, strict=True)]
-    return _told(channel, fit.jumps.dv, poles, bare)
+    # The whole record tells the sizes, and what rings at its begin.
+    whole = fitter.model
+    since = float(whole.bins.t[0])
+    part = train.between(since + _EDGE, float(whole.bins.t[-1]) - _EDGE)
+    fit = _with_modes(whole, part, part.dv, poles)
+    bare = [each / whole.bins.response(s) for s, each in zip([*poles, *poles], _complex(fit.extra), strict=True)]
+    return _told(channel, fit.jumps.dv, poles, bare, since)
 
 
 def _stretch(bins: Bins) -> Bins:
@@ -144,11 +159,17 @@ def _stretch(bins: Bins) -> Bins:
 
 
 def _with_modes(model: JumpModel, train: Train, dv: Floats, poles: list[complex], moved: bool = False) -> JumpFit:
-    """Fit the motion with modes beside it, and with their derivatives by the poles where these are to be moved."""
-    waves = [rung(model.bins.t, train.t, dv, s) for s in poles]
-    columns = np.vstack([_pair(each) for both in waves for each in (both if moved else both[:1])])
-    u = np.concatenate([_widths(s, moved) for s in poles])
-    return replace(model, extra=(columns, u)).fit(train, draws=0)
+    """Fit the motion with modes beside it, and with their derivatives by the poles where these are to be moved.
+
+    Sizes of what rings on from before the record come last.
+    """
+    t = model.bins.t
+    waves = [rung(t, train.t, dv, s) for s in poles]
+    columns = [_pair(each) for both in waves for each in (both if moved else both[:1])]
+    columns += [_pair(np.exp(s * (t - t[0]))) for s in poles]
+    u = [_widths(s, moved) for s in poles]
+    u += [np.full(2, _BEFORE * float(np.median(np.abs(dv))) / abs(s)) for s in poles]
+    return replace(model, extra=(np.vstack(columns), np.concatenate(u))).fit(train, draws=0)
 
 
 def _tuned(model: JumpModel, train: Train, fit: JumpFit, poles: list[complex]) -> tuple[list[complex], JumpFit]:
@@ -159,8 +180,7 @@ def _tuned(model: JumpModel, train: Train, fit: JumpFit, poles: list[complex]) -
     dv = fit.jumps.dv
     best = _with_modes(model, train, dv, poles)
     for _ in range(_TURNS):
-        free = _with_modes(model, train, dv, poles, moved=True).extra
-        sizes = free[0::2] + 1j * free[1::2]
+        sizes = _complex(_with_modes(model, train, dv, poles, moved=True).extra)
         for part in (1.0, 0.4, 0.15):
             moved = [_nearby(s, part * _step(sizes, k)) for k, s in enumerate(poles)]
             moved = _apart(moved)
@@ -220,12 +240,11 @@ def modes_heard(
 
     def tried(poles: list[complex], moved: bool) -> tuple[npt.NDArray[np.complex128], float]:
         waves = [rung(t, times, dv, s) for s in poles]
-        columns = np.vstack([_pair(each) for both in waves for each in (both if moved else both[:1])])
-        columns = np.vstack([columns, own])
+        parts = [_pair(each) for both in waves for each in (both if moved else both[:1])]
+        columns = np.vstack([*parts, *(_pair(np.exp(s * (t - t[0]))) for s in poles), own])
         scale = np.linalg.norm(columns, axis=1)
         linear = np.linalg.lstsq((columns / scale[:, None]).T, left, rcond=1e-10)[0] / scale
-        rung_by = linear[: -len(own)]
-        return rung_by[0::2] + 1j * rung_by[1::2], float(np.std(left - linear @ columns))
+        return _complex(linear[: -len(own)]), float(np.std(left - linear @ columns))
 
     sizes, size = tried(poles, False)
     for _ in range(_TURNS):
@@ -243,9 +262,10 @@ def modes_heard(
             break
     if size > _BETTER * before:
         return ()
-    bare = [complex(each) / np.exp(0.5 * (s * pulses.smooth) ** 2) for s, each in zip(poles, sizes, strict=True)]
-    kept = [k for k, each in enumerate(bare) if abs(each) > _HEARD]
-    return _told(channel, dv, [poles[k] for k in kept], [bare[k] for k in kept])
+    bare = [each / np.exp(0.5 * (s * pulses.smooth) ** 2) for s, each in zip([*poles, *poles], sizes, strict=True)]
+    kept = [k for k in range(len(poles)) if abs(bare[k]) > _HEARD]
+    bare = [bare[k] for k in (*kept, *(len(poles) + k for k in kept))]
+    return _told(channel, dv, [poles[k] for k in kept], bare, float(t[0]))
 
 
 def less_modes(channel: Sampled, modes: tuple[Mode, ...], times: Floats, dv: Floats) -> Sampled:
@@ -254,7 +274,7 @@ def less_modes(channel: Sampled, modes: tuple[Mode, ...], times: Floats, dv: Flo
     t = channel.times
     for mode in modes:
         if mode.name == channel.name:
-            values -= (mode.size * rung(t, times, dv, mode.s)[0]).real
+            values -= mode.signal(t, times, dv)
     return replace(channel, values=values)
 
 
@@ -304,12 +324,19 @@ def unpredicted(bins: Bins) -> Train:
     return Train.alike(t[_LAGS + which], height[which] * size / bins.width, _LOOSE)
 
 
-def _told(channel: Sampled, dv: Floats, poles: list[complex], sizes: list[complex]) -> tuple[Mode, ...]:
+def _told(
+    channel: Sampled, dv: Floats, poles: list[complex], sizes: list[complex], since: float
+) -> tuple[Mode, ...]:
+    """Return modes by their poles; their sizes come first, then what rings on from before the record."""
     usual = float(np.median(np.abs(dv))) if len(dv) else 0.0
+    own, before = sizes[: len(poles)], sizes[len(poles) :]
     return tuple(
-        Mode(channel.role, channel.name, abs(s) / (2 * np.pi), -s.real / abs(s), s, size, abs(size) * usual)
-        for s, size in sorted(zip(poles, sizes, strict=True), key=lambda each: abs(each[0]))
-    )
+        Mode(
+            channel.role, channel.name, abs(s) / (2 * np.pi), -s.real / abs(s), s, complex(size), since, complex(first),
+            abs(size) * usual,
+        )
+        for s, size, first in sorted(zip(poles, own, before, strict=True), key=lambda each: abs(each[0]))
+    )  # fmt: skip
 
 
 def mean_ringing(fit: JumpFit, width: float) -> tuple[float, tuple[float, ...]]:
@@ -419,6 +446,10 @@ def rung(t: Floats, times: Floats, dv: Floats, s: complex) -> tuple[npt.NDArray[
 
 def _pair(column: npt.NDArray[np.complex128]) -> Floats:
     return np.stack([column.real, -column.imag])
+
+
+def _complex(pairs: Floats) -> npt.NDArray[np.complex128]:
+    return pairs[0::2] + 1j * pairs[1::2]
 
 
 def _widths(s: complex, moved: bool) -> Floats:
