@@ -14,6 +14,7 @@ import numpy.typing as npt
 
 from vines.rig.fit import Bins, Fitter, JumpFit, JumpModel, Train
 from vines.rig.impacts._pulses import pulses_of
+from vines.rig.impacts._resonances import resonances
 from vines.rig.recording import ROLES, Sampled
 from vines.rig.uncertainty import robust_deviation
 
@@ -55,6 +56,12 @@ _APART = 4e-3
 """[s]"""
 _LOOSE = 1.5e-4
 """[s] Standard uncertainty of the times that prediction gives."""
+_UNDAMPED = 3e-3
+"""Damping ratio below which a sine may be a harmonic of the forcing, or hum."""
+_HARMONIC = 0.02
+"""How near to one, in parts of the forcing's frequency."""
+_SEEN = 0.2
+"""Least size of a mode after the usual impact, relative to the noise."""
 _BEFORE = 10.0
 """So many usual jumps at once ring a mode as much as all that came before a record, at most."""
 
@@ -123,6 +130,7 @@ def modes_seen(fitter: Fitter, channel: Sampled, train: Train, known: tuple[Mode
     poles = [mode.s for mode in known if mode.name == channel.name]
     if poles:
         poles, fit = _tuned(model, part, fit, poles)
+    free = [] if poles else _free(model, part.t)
     for _ in range(3):
         if fit.residual < _CLEAN * fit.noise:
             break
@@ -130,7 +138,8 @@ def modes_seen(fitter: Fitter, channel: Sampled, train: Train, known: tuple[Mode
         new = _apart([*poles, *new])[len(poles) : _MOST]
         # A slow mode is half taken up by the flights, so that what they leave does not tell its pole.
         slow = [[_begun(2 * np.pi * f * complex(-_USUAL, 1.0))] for f in _SLOW]
-        starts = [new, *slow] if poles else [new, *([*new, *one] for one in slow)]
+        starts = [free] if free else [new, *slow] if poles else [new, *([*new, *one] for one in slow)]
+        free = []
         begun = [_apart([*poles, *start]) for start in starts if start]
         fits = [_with_modes(model, part, fit.jumps.dv, start) for start in begun if len(start) > len(poles)]
         if not fits:
@@ -147,8 +156,27 @@ def modes_seen(fitter: Fitter, channel: Sampled, train: Train, known: tuple[Mode
     since = float(whole.bins.t[0])
     part = train.between(since + _EDGE, float(whole.bins.t[-1]) - _EDGE)
     fit = _with_modes(whole, part, part.dv, poles)
+    sizes = np.abs(_complex(fit.extra)[: len(poles)]) * np.median(np.abs(part.dv))
+    if np.any(sizes < _SEEN * fit.noise):
+        poles = [s for s, size in zip(poles, sizes, strict=True) if size >= _SEEN * fit.noise]
+        fit = _with_modes(whole, part, part.dv, poles)
     bare = [each / whole.bins.response(s) for s, each in zip([*poles, *poles], _complex(fit.extra), strict=True)]
     return _told(channel, fit.jumps.dv, poles, bare, since)
+
+
+def _free(model: JumpModel, times: Floats) -> list[complex]:
+    """Return poles by what the flights are made of: those that are neither the motion, its harmonics nor hum."""
+    own = []
+    for s in resonances(model.bins, times):
+        ratio, beside = -s.real / abs(s), abs(s) / model.omega - round(abs(s) / model.omega)
+        undamped = ratio < _UNDAMPED and (abs(beside) < _HARMONIC or _of_mains(abs(s) / (2 * np.pi)))
+        if 2 * np.pi * _LOWEST < abs(s) < 2 * np.pi * _HIGHEST and -_UNDAMPED < ratio < _MOST_DAMPED and not undamped:
+            own.append(_nearby(complex(s), 0j))
+    return _apart(own)[:_MOST]
+
+
+def _of_mains(frequency: float) -> bool:
+    return min(abs(frequency / f - round(frequency / f)) for f in (50.0, 60.0)) < 0.01
 
 
 def _stretch(bins: Bins) -> Bins:
