@@ -7,18 +7,19 @@ damped sines of whatever frequency can.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
 
-from vines.rig.fit import Bins, Fitter, JumpFit, JumpModel, Train
+from vines.rig.fit import Bins, Fitter, JumpFit, JumpModel, Train, bins_of
 from vines.rig.impacts._pulses import pulses_of
 from vines.rig.impacts._resonances import resonances
 from vines.rig.recording import ROLES, Sampled
 from vines.rig.uncertainty import robust_deviation
 
-__all__ = ["Mode", "less_modes", "mean_ringing", "modes_heard", "modes_seen", "rung", "unpredicted"]
+__all__ = ["Mode", "less_modes", "mean_ringing", "modes_felt", "modes_heard", "modes_seen", "rung", "unpredicted"]
 
 Floats = npt.NDArray[np.float64]
 
@@ -60,6 +61,8 @@ _UNDAMPED = 3e-3
 """Damping ratio below which a sine may be a harmonic of the forcing, or hum."""
 _HARMONIC = 0.02
 """How near to one, in parts of the forcing's frequency."""
+_HARMONICS = 24
+"""Of the forcing, in a channel of the base."""
 _SEEN = 0.2
 """Least size of a mode after the usual impact, relative to the noise."""
 _BEFORE = 10.0
@@ -97,7 +100,9 @@ class Mode:
     def signal(self, t: Floats, times: Floats, dv: Floats) -> Floats:
         """Return what the channel has more at times on its clock, with impacts on that clock."""
         own = times > self.since + _EDGE
-        return (self.size * rung(t, times[own], dv[own], self.s)[0] + self.before * np.exp(self.s * (t - self.since))).real
+        return (
+            self.size * rung(t, times[own], dv[own], self.s)[0] + self.before * np.exp(self.s * (t - self.since))
+        ).real
 
     @property
     def text(self) -> str:
@@ -296,6 +301,42 @@ def modes_heard(
     return _told(channel, dv, [poles[k] for k in kept], bare, float(t[0]))
 
 
+def modes_felt(channel: Sampled, omega: float, poles: Sequence[complex], times: Floats, dv: Floats) -> tuple[Mode, ...]:
+    """Return the modes that ring in a channel of the base, beside harmonics of the forcing; none if they are little.
+
+    Parameters
+    ----------
+    channel : Sampled
+        On the base.
+    omega : float
+        Of the forcing [rad/s].
+    poles : sequence of complex
+        Of the modes, as the oscillator's channels tell them.
+    times, dv : ndarray, shape (n,)
+        Impacts on the channel's clock.
+    """
+    bins = bins_of(channel)
+    t = bins.t
+    turn = np.exp(1j * omega * t)
+    own = np.vstack([np.ones(len(t)), *(_pair(turn**n) for n in range(1, _HARMONICS + 1))])
+    waves = np.vstack(
+        [*(_pair(rung(t, times, dv, s)[0]) for s in poles), *(_pair(np.exp(s * (t - t[0]))) for s in poles)]
+    )
+
+    def left(columns: Floats) -> tuple[Floats, float]:
+        scale = np.linalg.norm(columns, axis=1)
+        columns = columns / scale[:, None]
+        linear = np.linalg.solve(columns @ columns.T, columns @ bins.mean)
+        return linear / scale, float(np.std(bins.mean - linear @ columns))
+
+    linear, size = left(np.vstack([waves, own]))
+    if size > _BETTER * left(own)[1]:
+        return ()
+    sizes = _complex(linear[: len(waves)])
+    bare = [each / bins.response(s) for s, each in zip([*poles, *poles], sizes, strict=True)]
+    return _told(channel, dv, list(poles), bare, float(t[0]))
+
+
 def less_modes(channel: Sampled, modes: tuple[Mode, ...], times: Floats, dv: Floats) -> Sampled:
     """Return a channel without what its modes ring after given impacts on its clock."""
     values = channel.values.copy()
@@ -352,9 +393,7 @@ def unpredicted(bins: Bins) -> Train:
     return Train.alike(t[_LAGS + which], height[which] * size / bins.width, _LOOSE)
 
 
-def _told(
-    channel: Sampled, dv: Floats, poles: list[complex], sizes: list[complex], since: float
-) -> tuple[Mode, ...]:
+def _told(channel: Sampled, dv: Floats, poles: list[complex], sizes: list[complex], since: float) -> tuple[Mode, ...]:
     """Return modes by their poles; their sizes come first, then what rings on from before the record."""
     usual = float(np.median(np.abs(dv))) if len(dv) else 0.0
     own, before = sizes[: len(poles)], sizes[len(poles) :]
