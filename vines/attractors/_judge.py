@@ -7,19 +7,12 @@ import math
 from vines.attractors import _verdict as v
 from vines.attractors._approach import nearest_orbit
 from vines.attractors._coming import comes
-from vines.attractors._contacts import (
-    STUCK,
-    completes,
-    contacts,
-    difference,
-    mark,
-    mirror_difference,
-    repetition,
-)
+from vines.attractors._contacts import difference, mirror_difference, repetition
 from vines.attractors._multipliers import multipliers
 from vines.dynamics.kernels import directions, ringing, tangent_product
 from vines.dynamics.kernels import rows as col
 from vines.kernels import byte_vector, cold_njit, complex_vector, new_vector, njit, zero_integers
+from vines.orbits.kernels import STUCK, completes, contacts, mark
 
 __all__ = ["NEAR", "clear", "judge_window", "note_drift"]
 
