@@ -172,7 +172,11 @@ def _repeats(c, rows, n, kept, p, lag, last, tolerance, verdict):
         i = kept[count - 1 - lag + k]
         sides[k] = mark(rows, i)
         verdict[v.LEFT if sides[k] > 0 else v.RIGHT] += 1.0
-        if completes(rows, n, i):
+        completed = completes(rows, n, i)
+        if rows.shape[1] > col.ROW and not completed and count - 1 - 2 * lag + k >= 0:
+            # Other balls may have hit since.
+            completed = completes(rows, n, kept[count - 1 - 2 * lag + k])
+        if completed:
             sides[k] += STUCK if sides[k] > 0 else -STUCK
     verdict[v.REGIME], verdict[v.SETTLED] = v.PERIODIC, 1.0
     verdict[v.P], verdict[v.LAG] = p, lag

@@ -213,7 +213,9 @@ def parted(p: Any, begin: tuple[Any, Any, Any, Any, float], apart: float) -> tup
     return x1, v1, x2, v2, phase
 
 
-def _begin(room: Room, c: Any, state: npt.NDArray[np.float64], at: tuple[Any, ...], how: Patience) -> None:
+def _begin(
+    room: Room, c: Any, state: npt.NDArray[np.float64], at: tuple[Any, Any, Any, Any, float], how: Patience
+) -> None:
     """Put a run at its start, at time 0."""
     room.begin(c, state, *at, 0.0)
     if how.ties == IN_TURN:

@@ -76,7 +76,7 @@ def _without_chatter(rows, keep, count, i):
     left = run - 1
     for j in range(i - 1, 0, -1):
         if rows[j, col.ROW] == rows[i, col.ROW] and _ends(rows, j, rows[i, col.SIDE]):
-            left = run if rows[j, col.KIND] == col.STICK else left
+            left = run if _rode(rows, j, rows[i, col.SIDE]) else left
             break
     own = 0
     for k in range(count - 1, -1, -1):
@@ -106,6 +106,12 @@ def _ends(rows, j, side):
 
 
 @njit
+def _rode(rows, j, side):
+    """Say whether a ball came to ride on a wall at a row."""
+    return rows[j, col.KIND] == col.STICK and rows[j, col.SIDE] == side
+
+
+@njit
 def _without_what_goes_on(rows, n, keep, count):
     """Leave out contacts at the end that may belong to a chatter that goes on, and those after them."""
     for ball in range(1, (rows.shape[1] - col.ROW - 3) // 2 + 1):
@@ -117,7 +123,7 @@ def _without_what_goes_on(rows, n, keep, count):
             if own == 0:
                 side = rows[j, col.SIDE]
             if _ends(rows, j, side):
-                merged = kind == col.STICK
+                merged = _rode(rows, j, side)
                 break
             if kind == col.IMPACT:
                 first, own = j, own + 1
