@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from vines.attractors import _verdict as v
-from vines.attractors._contacts import difference, mark, repetition
+from vines.attractors._contacts import difference, repetition
 from vines.attractors._multipliers import carry_on, multipliers, square_of
 from vines.dynamics.kernels import directions, flow_basis, jump_basis, offset
 from vines.dynamics.kernels import rows as col
@@ -19,7 +19,7 @@ from vines.kernels import (
     njit,
     zero_vector,
 )
-from vines.orbits.kernels import newton_kernel
+from vines.orbits.kernels import mark, newton_kernel
 
 __all__ = ["LARGEST_P", "NO_ORBIT", "STABLE", "UNSTABLE", "comes_to_orbit", "nearest_orbit", "note_coming"]
 

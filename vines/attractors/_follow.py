@@ -7,7 +7,7 @@ import math
 from vines.attractors import _verdict as v
 from vines.attractors._approach import LARGEST_P, STABLE, comes_to_orbit, nearest_orbit, note_coming
 from vines.attractors._coming import note_decay
-from vines.attractors._contacts import contacts, difference, repetition
+from vines.attractors._contacts import difference, repetition
 from vines.attractors._judge import NEAR, note_drift
 from vines.dynamics.kernels import (
     KNOWN_CORRELATION,
@@ -21,6 +21,7 @@ from vines.dynamics.kernels import (
 )
 from vines.dynamics.kernels import rows as col
 from vines.kernels import cold_njit, identity, new_matrix, new_vector, njit
+from vines.orbits.kernels import contacts
 
 __all__ = ["follow"]
 

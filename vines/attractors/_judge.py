@@ -7,19 +7,12 @@ import math
 from vines.attractors import _verdict as v
 from vines.attractors._approach import nearest_orbit
 from vines.attractors._coming import comes
-from vines.attractors._contacts import (
-    STUCK,
-    completes,
-    contacts,
-    difference,
-    mark,
-    mirror_difference,
-    repetition,
-)
+from vines.attractors._contacts import difference, mirror_difference, repetition
 from vines.attractors._multipliers import multipliers
 from vines.dynamics.kernels import directions, drift, rate_alone, ringing, tangent_product
 from vines.dynamics.kernels import rows as col
 from vines.kernels import byte_vector, cold_njit, complex_vector, new_vector, njit, zero_integers
+from vines.orbits.kernels import STUCK, completes, contacts, mark
 
 __all__ = ["NEAR", "clear", "judge_window", "note_drift"]
 
@@ -180,7 +173,11 @@ def _repeats(c, rows, n, kept, p, lag, last, tolerance, verdict):
         sides[k] = mark(rows, i)
         if sides[k] != 0:
             verdict[v.LEFT if sides[k] > 0 else v.RIGHT] += 1.0
-        if sides[k] != 0 and completes(rows, n, i):
+        completed = sides[k] != 0 and completes(rows, n, i)
+        if rows.shape[1] > col.ROW and not completed and count - 1 - 2 * lag + k >= 0:
+            # Other balls may have hit since.
+            completed = completes(rows, n, kept[count - 1 - 2 * lag + k])
+        if completed:
             sides[k] += STUCK if sides[k] > 0 else -STUCK
     verdict[v.REGIME], verdict[v.SETTLED] = v.PERIODIC, 1.0
     verdict[v.P], verdict[v.LAG] = p, lag

@@ -10,11 +10,11 @@ import numpy.typing as npt
 
 from vines.attractors import _verdict as v
 from vines.attractors._attractor import Attractor
-from vines.attractors._contacts import STUCK
 from vines.dynamics.kernels import room_of
 from vines.dynamics.runs import STATUS, measures_from
 from vines.model import STOPS, VI_NES, Word
 from vines.orbits import own_word
+from vines.orbits.kernels import STUCK
 
 __all__ = ["attractor_from", "word_of"]
 

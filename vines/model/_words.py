@@ -293,8 +293,7 @@ def word_for(text: str | Word, system: System, *, sticking: bool = True) -> Word
     Raises
     ------
     ParameterError
-        If the text is no word, has impacts that the system does not have, or a star where none may be: balls with
-        numbers have no orbits that stick.
+        If the text is no word, has impacts that the system does not have, or a star where none may be.
 
     Examples
     --------
@@ -318,11 +317,6 @@ def word_for(text: str | Word, system: System, *, sticking: bool = True) -> Word
         raise ParameterError(
             f"{str(text)!r} sticks, and orbits that stick are not computed for {system.name!r}; give a word without a "
             "star, or follow it by simulation"
-        )
-    if word.sticking and system.balls:
-        raise ParameterError(
-            f"{str(text)!r} sticks, and orbits that stick are those of systems whose ball has no number, not of "
-            f"{system.name!r}; give a word without a star, or follow it by simulation"
         )
     return word
 

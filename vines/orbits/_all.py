@@ -19,11 +19,13 @@ from vines.orbits._equations import newton_kernel
 from vines.orbits._general import ITERATIONS, proper, same
 from vines.orbits._joined import mirror_image
 from vines.orbits._orbit import Orbit
-from vines.orbits._own_word import sticking_word, whole_word
+from vines.orbits._own_word import whole_word
 from vines.orbits._seeds import base_word, doubled_times, harvested_times, random_times, simplex_times
 from vines.orbits._slid import slid_orbits, slides
 from vines.orbits._sticking_capsule import capsule_orbits, rides_capsule
+from vines.orbits._sticking_of_balls import rides_in_parallel
 from vines.orbits._sticking_search import search_sticking
+from vines.orbits._sticking_search_of_balls import search_balls
 from vines.orbits._values import marks_of, unit_of
 
 __all__ = ["Orbits", "all_orbits"]
@@ -109,10 +111,12 @@ def all_orbits(word: str | Word, p: Any, *, proof: bool = False) -> Orbits:
     """
     word = whole_word(word, p)
     if word.sticking:
-        word = sticking_word(word, p)
         if rides_capsule(p):
             found, how = capsule_orbits(word, p)
             return Orbits(found, complete=True, remark=how, nearest=np.inf)
+        if rides_in_parallel(p):
+            found, how = search_balls(word, p)
+            return Orbits(_in_order(found), complete=False, remark=how, nearest=np.inf)
         found, how = search_sticking(word, p)
         return Orbits(_in_order(found), complete=word.n == 0 or word.m == 0, remark=how, nearest=np.inf)
     if slides(p):

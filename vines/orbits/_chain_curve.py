@@ -16,7 +16,7 @@ from vines.orbits._orbit import Orbit
 from vines.orbits._survey import survey_kernel
 from vines.orbits._turnings_of_balls import gap_kernel, turnings_kernel
 
-__all__ = ["ChainCurve"]
+__all__ = ["ChainCurve", "second_compound"]
 
 Floats = npt.NDArray[np.float64]
 
@@ -100,16 +100,16 @@ class ChainCurve(CurveEquations):
             return np.nan
         size = 1.0 + float(np.linalg.norm(M))
         if self.kind == "neimark_sacker":
-            return float(np.linalg.det(np.eye(len(M) * (len(M) - 1) // 2) - _second_compound(M))) / size**2
+            return float(np.linalg.det(np.eye(len(M) * (len(M) - 1) // 2) - second_compound(M))) / size**2
         return float(np.linalg.det(np.eye(len(M)) + (-M if self.kind == "fold" else M))) / size
 
 
-def _second_compound(M: Floats) -> Floats:
+def second_compound(M: Floats) -> Floats:
     """Return the matrix whose eigenvalues are the products of pairs of those of M.
 
     Examples
     --------
-    >>> _second_compound(np.diag([2.0, 3.0, 5.0])).diagonal()
+    >>> second_compound(np.diag([2.0, 3.0, 5.0])).diagonal()
     array([ 6., 10., 15.])
     """
     i, j = np.array(list(combinations(range(len(M)), 2))).T

@@ -34,6 +34,8 @@ from vines.orbits._sticking_capsule import CapsuleSticking, rides_capsule
 from vines.orbits._sticking_curve import bound_beside
 from vines.orbits._sticking_ends import end_of
 from vines.orbits._sticking_family import StickingProblem
+from vines.orbits._sticking_family_of_balls import BallsProblem
+from vines.orbits._sticking_of_balls import rides_in_parallel
 from vines.orbits._symmetric import SymmetricProblem
 
 __all__ = ["continue_orbit"]
@@ -147,6 +149,8 @@ def _problem(orbit: Orbit, parameter: str) -> Problem:
         return CapsuleSticking(orbit, parameter)
     if slides(orbit.params):
         return SlidProblem(orbit, parameter)
+    if orbit.word.sticking and rides_in_parallel(orbit.params):
+        return BallsProblem(orbit, parameter)
     if not isinstance(orbit.params, Params):
         return ChainProblem(orbit, parameter)
     if orbit.word.sticking:

@@ -13,10 +13,12 @@ from vines.model import Params, Word
 from vines.orbits._all import Orbits, all_orbits
 from vines.orbits._general import refine, search
 from vines.orbits._orbit import Orbit
-from vines.orbits._own_word import sticking_word, whole_word
+from vines.orbits._own_word import whole_word
 from vines.orbits._slid import refine_slid, slides
 from vines.orbits._sticking_capsule import capsule_sticks, rides_capsule
+from vines.orbits._sticking_of_balls import rides_in_parallel
 from vines.orbits._sticking_search import no_sticking_orbit, refine_sticking
+from vines.orbits._sticking_search_of_balls import refine_balls
 from vines.orbits._symmetric import no_symmetric_orbit
 
 __all__ = ["find_orbit"]
@@ -73,7 +75,9 @@ def find_orbit(word: str | Word, p: Any, guess: Orbit | npt.ArrayLike | None = N
             return refine_slid(word, p, guess)
         if word.sticking and rides_capsule(p):
             return capsule_sticks(word, p)
-        return refine_sticking(sticking_word(word, p), p, guess) if word.sticking else refine(word, p, guess)
+        if word.sticking and rides_in_parallel(p):
+            return refine_balls(word, p, guess)
+        return refine_sticking(word, p, guess) if word.sticking else refine(word, p, guess)
     found = all_orbits(word, p)
     if found:
         return choose(found)

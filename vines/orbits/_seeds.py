@@ -15,7 +15,7 @@ from vines.orbits._flights import start_kernel
 from vines.orbits._floquet import monodromy
 from vines.orbits._orbit import Orbit
 
-__all__ = ["STARTS", "base_word", "doubled_times", "harvested_times", "random_times", "simplex_times"]
+__all__ = ["STARTS", "base_word", "doubled_times", "harvested_times", "random_times", "simplex_times", "starts_of"]
 
 Floats = npt.NDArray[np.float64]
 
@@ -39,7 +39,7 @@ _KICKS = (0.01, 0.05, 0.2)
 def harvested_times(word: Word, p: Any) -> Iterator[Floats]:
     """Yield the times of stretches of simulations that read as the word and almost come back."""
     duration, N = word.p * p.period, len(word)
-    for start in _starts(p):
+    for start in starts_of(p):
         hits = simulate(p, **start, periods=_PERIODS, max_impacts_per_period=200).impacts
         if len(hits) <= N:
             continue
@@ -58,7 +58,7 @@ def harvested_times(word: Word, p: Any) -> Iterator[Floats]:
             yield t[k] % p.period + np.concatenate([[0.0], np.cumsum(flights[:-1])]) * duration / flights.sum()
 
 
-def _starts(p: Any) -> Iterator[dict[str, float]]:
+def starts_of(p: Any) -> Iterator[dict[str, Any]]:
     """Yield the starts of simulations: of another system with all in the middle, at several speeds of the balls."""
     if isinstance(p, Params):
         yield from (dict(zip(STATE_NAMES, start, strict=True)) for start in STARTS)

@@ -41,7 +41,7 @@ from vines.dynamics._impact_law import (
     reversing_kernel,
 )
 from vines.dynamics._integrals import largest_displacement, segment_integrals
-from vines.dynamics._room import constants, room_of, table_of
+from vines.dynamics._room import Room, constants, room_of, table_of
 from vines.dynamics._saltation import jacobian_kernel
 from vines.dynamics._sticking import next_release
 from vines.dynamics._tangent import directions, flow_basis, jump_basis, lyapunov_blocks, offset, tangent_product
@@ -53,6 +53,7 @@ __all__ = [
     "KNOWN_CORRELATION",
     "Constants",
     "ParameterTable",
+    "Room",
     "advance",
     "after_impact",
     "after_impact_kernel",
