@@ -37,7 +37,7 @@ from vines.orbits._moved import moved
 from vines.orbits._orbit import Orbit
 from vines.orbits._survey import NO_TURNING
 
-__all__ = ["SlidProblem", "refine_slid", "slid_image", "slides", "slid_orbits"]
+__all__ = ["SlidProblem", "refine_slid", "slid_image", "slid_orbits", "slides"]
 
 Floats = npt.NDArray[np.float64]
 
@@ -282,7 +282,8 @@ def slid_orbits(word: Word, p: Any) -> tuple[list[Orbit], str]:
     rng, room = np.random.default_rng(len(word)), room_of(p)
     found: list[Orbit] = []
     for _ in range(_STARTS):
-        run = simulate(p, **room.draw(p, rng), periods=_PERIODS, max_impacts_per_period=2000)
+        start: dict[str, Any] = room.draw(p, rng)
+        run = simulate(p, **start, periods=_PERIODS, max_impacts_per_period=2000)
         for guess in _guesses(word, p, run)[:2]:
             z = _solved(word, p, guess)
             orbit = None if z is None else _assembled(word, p, z, REMARK)
