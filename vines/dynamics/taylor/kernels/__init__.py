@@ -4,13 +4,14 @@ from vines.dynamics.taylor._advance import set_mass
 from vines.dynamics.taylor._contacts import flown_from
 from vines.dynamics.taylor._energies import TAYLOR_TOTALS, VISCOUS_LOSS
 from vines.dynamics.taylor._layout import TAYLOR_STATE
-from vines.dynamics.taylor._series import W, at, bounds, coefficients, derivatives_at, expand, slopes
+from vines.dynamics.taylor._series import W, X, at, bounds, coefficients, derivatives_at, expand, slopes
 
 __all__ = [
     "TAYLOR_STATE",
     "TAYLOR_TOTALS",
     "VISCOUS_LOSS",
     "W",
+    "X",
     "at",
     "bounds",
     "coefficients",
