@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from vines.domains import Number, Numbers, Of, stated
+from vines.dynamics._measures import Measures
 from vines.dynamics._trajectory import Trajectory
 from vines.errors import StateError
 
@@ -24,7 +25,7 @@ class Decay:
         and the oscillator below its place without them.
     impact_share, damper_share, frame_share, ball_share : float
         Shares of it that were lost in impacts and in the damper, and that oscillator and ball have at the end; their
-        sum is 1 to rounding.
+        sum is 1 to rounding. A spring that holds the ball counts with it, a damper beside that spring with the other.
     times : tuple of float
         When no more than each of the shares asked for is left for the first time, nan where that is not in the run.
     impacts : int
@@ -81,7 +82,7 @@ def decay(run: Trajectory, shares: Sequence[float] = (0.1, 0.01)) -> Decay:
     return Decay(
         energy=start,
         impact_share=whole.impact_loss / start,
-        damper_share=whole.damper_loss / start,
+        damper_share=_damped(whole) / start,
         frame_share=frame / start,
         ball_share=ball / start,
         times=tuple(_reaches(run, frame + ball, share * start) for share in shares),
@@ -105,7 +106,15 @@ def _above_rest(values: dict[str, float], state: dict[str, float]) -> tuple[floa
     for ball, mass in masses.items():
         way = values.get(f"beta{ball}", 1.0) + math.copysign(1.0, pull) * (state[f"x2{ball}"] - state["x1"])
         balls += mass * (0.5 * state[f"v2{ball}"] ** 2 + abs(pull) * way)
+    if "k3" in values:
+        square = (state["x1"] - state["x2"]) ** 2
+        balls += values["mu"] * square * (0.5 * values["k1"] + 0.25 * values["k3"] * square)
     return frame, balls
+
+
+def _damped(m: Measures) -> float:
+    """Return what all dampers took."""
+    return m.damper_loss + getattr(m, "viscous_loss", 0.0)
 
 
 def _reaches(run: Trajectory, left: float, level: float) -> float:
@@ -121,7 +130,7 @@ def _reaches(run: Trajectory, left: float, level: float) -> float:
         if not low < middle < high:
             return high
         after = run.measures(last=(run.t_end - middle) / run.params.period)
-        if left + after.damper_loss + after.impact_loss > level:
+        if left + _damped(after) + after.impact_loss > level:
             low = middle
         else:
             high = middle

@@ -8,9 +8,10 @@ from vines.dynamics.kernels import after_impact_kernel, carry_basis, segment_sta
 from vines.dynamics.kernels import rows as col
 from vines.dynamics.taylor import TaylorConstants
 from vines.dynamics.taylor.kernels import W, X, at, bounds, coefficients, derivatives_at, expand, slopes
-from vines.kernels import copy_values, entry_njit, identity, linked_njit, new_cube, njit, zero_vector
+from vines.kernels import copy_values, entry_njit, identity, linked_njit, new_cube, new_matrix, njit, zero_vector
 from vines.orbits._budget import orbit_rows
 from vines.orbits._survey import NO_TURNING, survey_kernel
+from vines.orbits._turnings_of_balls import gap_kernel, turnings_kernel
 
 __all__ = ["shots_kernel"]
 
@@ -120,18 +121,15 @@ def _turning(a, order, low, high):
 
 
 @linked_njit
-def _inspect(c, row, tau):
-    """Return (clearance, violation, wall) of the flight after a row; see `vines.orbits._survey.inspect_flight`."""
+def _turnings(c, row, tau):
+    """Return the turning points of the gap in the flight after a row: time since then, w, w''."""
     f = c.field
     a = coefficients(f)
     order = f.order
-    clearance, violation, wall = NO_TURNING, math.nan, 0
+    found = []
     x, v = row[col.X1], row[col.A_V1]
-    side = row[col.SIDE]
-    w, u = side, v - row[col.A_V2]
-    if side * u > 0.0:
-        violation, wall = 0.0, int(side)
-    done, before = 0.0, 0.0
+    w, u = row[col.SIDE], v - row[col.A_V2]
+    done = 0.0
     while done < tau:
         h = min(expand(f, x, v, w, u, row[col.PHASE] + f.Omega * done), tau - done)
         _, third, _ = bounds(a, W, order, h)
@@ -140,35 +138,75 @@ def _inspect(c, row, tau):
             width = min(width, h - s)
             half = 0.5 * width
             _, speed, curve, _, _, _, _ = derivatives_at(a, W, order, s + half)
-            place = -1.0
             if abs(speed) <= half * (abs(curve) + half * third):
                 if abs(curve) <= third * half and width > THIN * h:
                     width = half
                     continue
                 place = _turning(a, order, s, s + width)
-            if place > 0.0 or (place == 0.0 and done > 0.0):
-                here = at(a, W, order, place)[0]
-                towards = 1 if derivatives_at(a, W, order, place)[2] < 0.0 else -1
-                distance = 1.0 - towards * here
-                clearance = min(clearance, distance)
-                if distance <= 0.0 and wall == 0:
-                    wall = towards
-                    violation = _crossing(c, row, towards, before, done + place)
-                before = done + place
+                if done + place > 0.0 and place >= 0.0:
+                    here, _, bend, _, _, _, _ = derivatives_at(a, W, order, place)
+                    found.append((done + place, here, bend))
             s += width
             width *= 2.0
         x, v = at(a, X, order, h)
         w, u = at(a, W, order, h)
         done += h
+    return found
+
+
+@linked_njit
+def _inspect(c, row, tau):
+    """Return (clearance, violation, wall) of the flight after a row; see `vines.orbits._survey.inspect_flight`."""
+    clearance, violation, wall = NO_TURNING, math.nan, 0
+    if row[col.SIDE] * (row[col.A_V1] - row[col.A_V2]) > 0.0:
+        violation, wall = 0.0, int(row[col.SIDE])
+    before = 0.0
+    for when, w, bend in _turnings(c, row, tau):
+        towards = 1 if bend < 0.0 else -1
+        clearance = min(clearance, 1.0 - towards * w)
+        if towards * w >= 1.0 and wall == 0:
+            wall, violation = towards, _crossing(c, row, towards, before, when)
+        before = when
     return clearance, violation, wall
+
+
+@linked_njit
+def _rows(c, duration, side, t, states):
+    """Return the rows of an orbit, each with its wall."""
+    rows = orbit_rows(c, duration, side, t, states)
+    rows[0, col.SIDE] = side[0]
+    return rows
+
+
+@gap_kernel.register(TaylorConstants)
+@entry_njit
+def _gap_kernel(c, duration, side, t, states, place, number, tau):
+    x1, v1, x2, v2, phase = segment_state(c, _rows(c, duration, side, t, states)[place], tau)
+    a1, a2 = slopes(c.field, x1, v1, x1 - x2, v1 - v2, phase)
+    return x1 - x2, v1 - v2, a1 - a2
+
+
+@turnings_kernel.register(TaylorConstants)
+@entry_njit
+def _turnings_kernel(c, duration, side, t, states):
+    rows = _rows(c, duration, side, t, states)
+    found = []
+    for j in range(side.size):
+        for when, w, bend in _turnings(c, rows[j], rows[j + 1, col.TAU]):
+            wall = 1.0 if bend < 0.0 else -1.0
+            found.append((float(j), when, wall, 1.0 - wall * w, bend, 1.0))
+    out = new_matrix(len(found), 6)
+    for i in range(len(found)):
+        for k in range(6):
+            out[i, k] = found[i][k]
+    return out
 
 
 @survey_kernel.register(TaylorConstants)
 @linked_njit
 def _survey(c, duration, side, t, states):
-    rows = orbit_rows(c, duration, side, t, states)
+    rows = _rows(c, duration, side, t, states)
     N = side.size
-    rows[0, col.SIDE] = side[0]
     jacobians = new_cube(N, 4, 4)
     residual, clearance, violation, wall = 0.0, NO_TURNING, math.nan, 0
     for j in range(N):

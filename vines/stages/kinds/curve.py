@@ -98,7 +98,7 @@ _VI_NES = Kind(
 
 KIND = of_systems(
     _VI_NES,
-    ("impact_pair", "parallel"),
+    ("impact_pair", "parallel", "cubic_barriers"),
     FamilyCurveOptions,
     "vines.stages.bodies._family_curve:compute",
     ("curves",),
