@@ -81,5 +81,4 @@ def _without_impact(c, rows, n, tolerance, verdict):
         verdict[v.REASON], verdict[v.VALUE], verdict[v.OTHER] = v.CREEPS, distance, largest
         verdict[v.REMAINING] = best * math.log(distance / tolerance) / -math.log(largest) if largest < 1.0 else math.inf
         return
-    verdict[v.SETTLED] = 1.0
-    verdict[v.REMAINING] = 0.0
+    verdict[v.SETTLED], verdict[v.P], verdict[v.REMAINING] = 1.0, best, 0.0

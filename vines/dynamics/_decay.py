@@ -7,7 +7,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from vines.domains import Number, Numbers, Of, stated
-from vines.dynamics._measures import Measures
 from vines.dynamics._trajectory import Trajectory
 from vines.errors import StateError
 
@@ -82,7 +81,7 @@ def decay(run: Trajectory, shares: Sequence[float] = (0.1, 0.01)) -> Decay:
     return Decay(
         energy=start,
         impact_share=whole.impact_loss / start,
-        damper_share=_damped(whole) / start,
+        damper_share=whole.damper_loss / start,
         frame_share=frame / start,
         ball_share=ball / start,
         times=tuple(_reaches(run, frame + ball, share * start) for share in shares),
@@ -112,11 +111,6 @@ def _above_rest(values: dict[str, float], state: dict[str, float]) -> tuple[floa
     return frame, balls
 
 
-def _damped(m: Measures) -> float:
-    """Return what all dampers took."""
-    return m.damper_loss + getattr(m, "viscous_loss", 0.0)
-
-
 def _reaches(run: Trajectory, left: float, level: float) -> float:
     """Return when the energy, which never grows, has fallen to a level: at an impact or inside a flight.
 
@@ -130,7 +124,7 @@ def _reaches(run: Trajectory, left: float, level: float) -> float:
         if not low < middle < high:
             return high
         after = run.measures(last=(run.t_end - middle) / run.params.period)
-        if left + _damped(after) + after.impact_loss > level:
+        if left + after.damper_loss + after.impact_loss > level:
             low = middle
         else:
             high = middle

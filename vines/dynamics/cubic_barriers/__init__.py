@@ -14,6 +14,7 @@ from vines.dynamics.taylor import (
     TaylorMeasures,
     TaylorRun,
     TaylorTable,
+    spring_energy,
     taylor_constants,
     taylor_measures,
 )
@@ -25,6 +26,7 @@ __all__ = ["ROOM", "TaylorMeasures", "TaylorRun"]
 class _CubicBarriers(Room):
     trajectory = TaylorRun
     measures = staticmethod(taylor_measures)
+    unstruck = "0:0"
 
     def constants(self, values: Sequence[float]) -> TaylorConstants:
         return taylor_constants(*values)
@@ -44,6 +46,10 @@ class _CubicBarriers(Room):
         self, c: Any, state: np.ndarray, x1: float, v1: float, x2: Any, v2: Any, phase: float, t: float
     ) -> None:
         set_mass(c, state, float(x1), float(v1), float(x2), float(v2), phase, t)
+
+    def stored(self, p: Any, at: Any) -> tuple[Any, Any, Any]:
+        frame, mass, potential = super().stored(p, at)
+        return frame, mass, potential + spring_energy(p, at["w"])
 
 
 ROOM = _CubicBarriers()

@@ -6,7 +6,7 @@ docs/dynamics.md, "Taylor series".
 from vines.dynamics.taylor import _energies as _energies
 from vines.dynamics.taylor import _tangent as _tangent
 from vines.dynamics.taylor._constants import ORDER, TaylorConstants, TaylorTable, taylor_constants
-from vines.dynamics.taylor._run import TaylorMeasures, TaylorRun, taylor_measures
+from vines.dynamics.taylor._run import TaylorMeasures, TaylorRun, spring_energy, taylor_measures
 
 __all__ = [
     "ORDER",
@@ -14,6 +14,7 @@ __all__ = [
     "TaylorMeasures",
     "TaylorRun",
     "TaylorTable",
+    "spring_energy",
     "taylor_constants",
     "taylor_measures",
 ]

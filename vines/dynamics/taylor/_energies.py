@@ -37,7 +37,7 @@ from vines.kernels import linked_njit, loop_njit, zero_vector
 __all__ = ["TAYLOR_TOTALS", "VISCOUS_LOSS"]
 
 VISCOUS_LOSS = TOTALS
-"""Entry of the totals of a window behind those of one ball: what the damper of the spring takes."""
+"""Entry of the totals of a window behind those of one ball: what of the damper loss the damper of the spring takes."""
 
 TAYLOR_TOTALS = TOTALS + 1
 
@@ -155,8 +155,9 @@ def _add_segment(c, out, mode, begins, x1, v1, x2, v2, phase, length):
             x1, v1 = at(a, X, f.order, h)
             w, u = at(a, W, f.order, h)
             done += h
-        loss *= f.lam
-        out[VISCOUS_LOSS] += f.mu * f.l2 * viscous
+        viscous *= f.mu * f.l2
+        loss = f.lam * loss + viscous
+        out[VISCOUS_LOSS] += viscous
     out[entry.DURATION] += length
     out[entry.X1_SQUARE] += xx
     out[entry.V1_SQUARE] += vv

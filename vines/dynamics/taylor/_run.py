@@ -17,25 +17,20 @@ from vines.dynamics._trajectory import SAMPLE, Table, Trajectory
 from vines.dynamics.taylor._energies import VISCOUS_LOSS
 from vines.dynamics.taylor._samples import sample_flights
 
-__all__ = ["TaylorMeasures", "TaylorRun", "taylor_measures"]
+__all__ = ["TaylorMeasures", "TaylorRun", "spring_energy", "taylor_measures"]
 
 
 @dataclass(frozen=True, slots=True)
 class TaylorMeasures(Measures):
-    """Measures of a window with a spring beside the barriers.
+    """Measures of a window with a spring beside the barriers; `damper_loss` is that of both dampers.
 
     Attributes
     ----------
     viscous_loss : float
-        Energy lost in the damper of the spring.
+        What of it the damper of the spring took.
     """
 
     viscous_loss: float = 0.0
-
-    @property
-    def balance(self) -> float:
-        """Base work less losses less change of energy: zero up to rounding."""
-        return self.base_work - self.damper_loss - self.impact_loss - self.viscous_loss - self.energy_change
 
 
 def taylor_measures(p: Any, totals: npt.NDArray[np.float64]) -> TaylorMeasures:
@@ -53,10 +48,16 @@ def taylor_measures(p: Any, totals: npt.NDArray[np.float64]) -> TaylorMeasures:
 TAYLOR_SAMPLE = np.dtype([*SAMPLE.descr, ("spring", "f8"), ("viscous_loss", "f8")])
 
 
+def spring_energy(p: Any, w: Any) -> Any:
+    """Return the energy of the spring at a gap."""
+    return p.mu * w**2 * (0.5 * p.k1 + 0.25 * p.k3 * w**2)
+
+
 class TaylorRun(Trajectory):
     """One run on a cubic spring; see `Trajectory`.
 
-    Samples have `spring`, the energy mu (k1 w²/2 + k3 w⁴/4), and since the start of the run `viscous_loss`.
+    Samples have `spring`, the part mu (k1 w²/2 + k3 w⁴/4) of the potential energy, and `viscous_loss`, the part of the
+    damper loss since the start of the run that the damper beside it took.
     """
 
     def _rest_of_chatter(self, begins: npt.NDArray[np.int64]) -> npt.NDArray[np.float64]:
@@ -91,5 +92,5 @@ class TaylorRun(Trajectory):
         out["w_dot"] = out["v1"] - out["v2"]
         out["base"] = room.base(p, out["phase"])
         out["kinetic_1"], out["kinetic_2"], out["potential"] = room.stored(p, out)
-        out["spring"] = p.mu * out["w"] ** 2 * (0.5 * p.k1 + 0.25 * p.k3 * out["w"] ** 2)
+        out["spring"] = spring_energy(p, out["w"])
         return out
