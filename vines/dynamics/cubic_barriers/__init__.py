@@ -19,8 +19,12 @@ from vines.dynamics.taylor import (
     taylor_measures,
 )
 from vines.dynamics.taylor.kernels import TAYLOR_STATE, TAYLOR_TOTALS, set_mass
+from vines.model import read_system
 
 __all__ = ["ROOM", "TaylorMeasures", "TaylorRun"]
+
+
+_ORDER = read_system("cubic_barriers").order
 
 
 class _CubicBarriers(Room):
@@ -29,7 +33,7 @@ class _CubicBarriers(Room):
     unstruck = "0:0"
 
     def constants(self, values: Sequence[float]) -> TaylorConstants:
-        return taylor_constants(*values)
+        return taylor_constants(*values, order=_ORDER)
 
     def table(self, points: list[list[float]]) -> TaylorTable:
         return TaylorTable(self.constants(points[0]))

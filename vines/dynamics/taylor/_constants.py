@@ -14,7 +14,7 @@ from vines.kernels import njit
 __all__ = ["LENGTH", "ORDER", "ROOM", "Field", "TaylorConstants", "TaylorTable", "taylor_constants"]
 
 ORDER = 20
-"""Order of the series of every run."""
+"""Order for which the length of a step is chosen."""
 
 LENGTH = 41
 """Most coefficients of a series."""
@@ -75,7 +75,7 @@ class TaylorTable(NamedTuple):
 
 def taylor_constants(
     mu: float, A: float, Omega: float, r: float, lam: float, k1: float, k3: float, l2: float, walls: float,
-    order: int = ORDER,
+    order: int,
 ) -> TaylorConstants:  # fmt: skip
     """Return the `TaylorConstants` at bare parameter values.
 
