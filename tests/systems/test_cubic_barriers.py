@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -140,7 +141,7 @@ def test_a_linear_spring_has_a_closed_form():
     M[4, 5], M[5, 4] = p.Omega, -p.Omega
     rows = vines.simulate(p, v2=0.4, periods=8).events
     assert np.count_nonzero(rows["kind"] == 1) > 6
-    for now, after in zip(rows[:-1], rows[1:], strict=True):
+    for now, after in pairwise(rows):
         if now["kind"] == 2:
             continue
         y = [now["x1"], now["v1_after"], now["x2"], now["v2_after"], math.sin(now["phase"]), math.cos(now["phase"])]

@@ -1,4 +1,4 @@
-"""What a run on a cubic spring comes to: a stroboscope where it meets no barrier, and no closing equations beside it."""
+"""What a run on a cubic spring comes to: a stroboscope where it meets no barrier, no closing equations beside it."""
 
 from __future__ import annotations
 

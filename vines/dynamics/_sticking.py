@@ -28,9 +28,7 @@ def merges(c, o, r, correction, side, speed, motion, x2):
     """
     _, _, a, j, k = derivatives(o, c.Omega, *motion)
     height = UNRESOLVED * (terms(o, *motion) + abs(x2))
-    return ends_chatter(
-        r, correction, speed, side * pull(c, a), side * j, abs(k), height, holds_for(c, *motion)
-    )
+    return ends_chatter(r, correction, speed, side * pull(c, a), side * j, abs(k), height, holds_for(c, *motion))
 
 
 @fused_njit

@@ -9,10 +9,10 @@ import numpy as np
 import numpy.typing as npt
 
 from vines.model import PARAMETER_NAMES, Params, Word
-from vines.orbits._shooting import closing_of
 from vines.orbits._family import closing_at
 from vines.orbits._joined import unfolded
 from vines.orbits._orbit import Orbit
+from vines.orbits._shooting import closing_of
 from vines.orbits._sticking_family import closing_of_round
 from vines.orbits._sticking_orbit import Round, release_of
 from vines.orbits._values import frequency_of, values_of

@@ -29,9 +29,9 @@ def gather_shots(word: Word, p: Any, likes: list[Orbit]) -> tuple[list[Orbit], i
     """Return the orbits that simulations, and those of the VI-NES in `likes`, lead to, and from how many starts."""
     found: list[Orbit] = []
     tried = 0
-    for t, states in _starts(word, p, likes):
+    for start in _starts(word, p, likes):
         tried += 1
-        converged, t, _, states = shot(word, p, t, states)
+        converged, t, _, states = shot(word, p, *start)
         if not (converged and proper(word, word.p * p.period, t, states)):
             continue
         if not any(same(known, t, states) for known in found):

@@ -46,9 +46,7 @@ class _CubicBarriers(Room):
             check_gap(start["x1"] - start["x2"])
         return start["x1"], start["v1"], start["x2"], start["v2"]
 
-    def begin(
-        self, c: Any, state: np.ndarray, x1: float, v1: float, x2: Any, v2: Any, phase: float, t: float
-    ) -> None:
+    def begin(self, c: Any, state: np.ndarray, x1: float, v1: float, x2: Any, v2: Any, phase: float, t: float) -> None:
         set_mass(c, state, float(x1), float(v1), float(x2), float(v2), phase, t)
 
     def stored(self, p: Any, at: Any) -> tuple[Any, Any, Any]:

@@ -3,6 +3,7 @@
 docs/dynamics.md, "Taylor series".
 """
 
+from vines.dynamics.taylor import _advance as _advance
 from vines.dynamics.taylor import _energies as _energies
 from vines.dynamics.taylor import _tangent as _tangent
 from vines.dynamics.taylor._constants import ORDER, TaylorConstants, TaylorTable, taylor_constants

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 
+from vines.dynamics import _advance as col
 from vines.dynamics._advance import (
     BUFFER_FULL,
     COMPLETE,
@@ -35,7 +36,6 @@ from vines.dynamics._advance import (
     too_many,
     write_row,
 )
-from vines.dynamics import _advance as col
 from vines.dynamics._contact import CONTACT, NO_CONTACT
 from vines.dynamics._flight import advance_phase
 from vines.dynamics._impact_law import after_impact_kernel
@@ -132,10 +132,6 @@ def _advance(c, state, stop, cap, rows, first):
                         return count, EVENT_CAP
                     continue
             code, tau, hit = fly(c, state, until)
-            if code != CONTACT and left > period:
-                s = until - state[SINCE]
-                x, v = at(a, X, order, s)
-                w, u = at(a, W, order, s)
             if code == CONTACT:
                 s = tau - state[SINCE]
                 x, v = at(a, X, order, s)
@@ -166,6 +162,10 @@ def _advance(c, state, stop, cap, rows, first):
             move(c, state, until)
             place(state, side, side, 0.0, x, v, x - side, v)
         else:
+            # The room still holds the step in which the search ended.
+            s = until - state[SINCE]
+            x, v = at(a, X, order, s)
+            w, u = at(a, W, order, s)
             move(c, state, until)
             place(state, 0, 0, 0.0, x, v, x - w, v - u)
             begin_step(state, 0.0, x, v, w, u)

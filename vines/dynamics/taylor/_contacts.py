@@ -1,4 +1,4 @@
-"""The next contact of a flight with a barrier, certified on the polynomial of each step: only the remainder is left out."""
+"""The next contact of a flight with a barrier, certified on the polynomial of each step."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from vines.dynamics.taylor._layout import CLEAR, SINCE, STEP_U, STEP_V, STEP_W, 
 from vines.dynamics.taylor._series import W, X, at, bounds, coefficients, derivatives_at, expand
 from vines.kernels import fused_njit, loop_njit, njit
 
-__all__ = ["fly", "flown_from", "open_step"]
+__all__ = ["flown_from", "fly", "open_step"]
 
 CLOSE = 1e-8
 """Step of Newton's method after which its square is rounding."""
@@ -135,8 +135,7 @@ def flown_from(f, x, v, w, u, phase, tau):
     while True:
         h = expand(f, x, v, w, u, advance_phase(phase, f.Omega * done))
         left = tau - done
-        if left <= h:
-            h = left
+        h = min(h, left)
         x, v = at(a, X, f.order, h)
         w, u = at(a, W, f.order, h)
         if h == left:

@@ -6,8 +6,6 @@ leave out is e^-40 of it.
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 
 from vines.dynamics import _totals as entry

@@ -8,7 +8,7 @@ from vines.kernels import fused_njit
 __all__ = ["CLEAR", "SINCE", "STEP_U", "STEP_V", "STEP_W", "STEP_X", "TAYLOR_STATE", "begin_step"]
 
 SINCE, STEP_X, STEP_V, STEP_W, STEP_U, CLEAR = range(STATE, STATE + 6)
-"""Time from the last event to the begin of the step, the state there, and how far into the step is known to be clear."""
+"""Time from the last event to the begin of the step, the state there, and how far into it is known to be clear."""
 
 TAYLOR_STATE = STATE + 6
 """Length of a state."""

@@ -27,7 +27,7 @@ __all__ = [
 ]
 
 X, W, SQUARE, DISTURBED = 0, LENGTH, 2 * LENGTH, 3 * LENGTH
-"""Where the series of x1, w and w² stand in the room, and those of the disturbances of x1 and w, one after the other."""
+"""Where the series of x1, w and w² stand in the room, and those of disturbances of x1 and w, one after the other."""
 
 DIRECTIONS = 4
 
@@ -86,7 +86,7 @@ def expand(f, x, v, w, u, phase):
         a[X + k + 2] = share * own
         a[W + k + 2] = share * (own - spring)
         force, later = later, -share * turn * force
-    return reach(a, f.order, max(max(abs(x), abs(v)), max(abs(w), abs(u)), f.A), f.longest)
+    return reach(a, f.order, max(abs(x), abs(v), abs(w), abs(u), f.A), f.longest)
 
 
 @njit

@@ -7,7 +7,6 @@ from vines.dynamics._flight import advance_phase, decay
 from vines.dynamics._impact_law import after_impact_kernel
 from vines.dynamics._sincos import sincos
 from vines.dynamics._tangent import carry_basis, directions, jump_basis, offset
-from vines.dynamics.taylor import _advance as _advance
 from vines.dynamics.taylor._constants import TaylorConstants
 from vines.dynamics.taylor._series import W, X, at, coefficients, expand, expand_disturbances, slopes
 from vines.kernels import fused_njit, linked_njit, loop_njit, njit
