@@ -18,7 +18,6 @@ from typing import Any
 import llvmlite.binding
 from numba import types
 from numba.core import cgutils
-from numba.core.errors import NumbaError
 from numba.core.typing.templates import signature
 from numba.extending import lower_builtin, type_callable
 
@@ -123,14 +122,7 @@ def load_symbols(symbols: list[tuple[str, str, str, tuple[Any, ...]]]) -> bool:
         return False
     for symbol, module, name, arguments in symbols:
         kernel = kernel_of(module, name)
-        if not isinstance(kernel, Linked):
-            return False
-        try:
-            now, _ = kernel.load(arguments)
-        except (TypeError, NumbaError):
-            # It no longer takes what its caller gave; sources that are wrong say so once the caller is compiled.
-            return False
-        if now != symbol:
+        if not isinstance(kernel, Linked) or kernel.load(arguments)[0] != symbol:
             return False
     return True
 
