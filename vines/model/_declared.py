@@ -121,6 +121,8 @@ def _system(form: Mapping[str, Any], balls: int) -> System:
         met=tuple(_coordinate(each[key], 0) for each in form["bodies"] for key in ("position", "velocity")),
         without=tuple(form.get("without", ())),
         order=form.get("order", 0),
+        stops=form.get("stops", False),
+        starred=form.get("starred", True),
     )
 
 
