@@ -14,6 +14,7 @@ ALL = [
     read_system(name, balls)
     for name, balls in (
         ("vi_nes", 0),
+        ("cubic_barriers", 0),
         ("drag", 0),
         ("friction", 0),
         ("impact_pair", 0),

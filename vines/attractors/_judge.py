@@ -9,12 +9,16 @@ from vines.attractors._approach import nearest_orbit
 from vines.attractors._coming import comes
 from vines.attractors._contacts import difference, mirror_difference, repetition
 from vines.attractors._multipliers import multipliers
-from vines.dynamics.kernels import directions, drift, rate_alone, ringing, tangent_product
+from vines.dynamics.drag import DragConstants
+from vines.dynamics.friction import FrictionConstants
+from vines.dynamics.impact_pair import PairConstants
+from vines.dynamics.kernels import Constants, directions, drift, rate_alone, ringing, tangent_product
 from vines.dynamics.kernels import rows as col
-from vines.kernels import byte_vector, cold_njit, complex_vector, new_vector, njit, zero_integers
+from vines.dynamics.parallel import ParallelConstants
+from vines.kernels import by_type, byte_vector, cold_njit, complex_vector, new_vector, njit, zero_integers
 from vines.orbits.kernels import STUCK, completes, contacts, mark
 
-__all__ = ["NEAR", "clear", "judge_window", "note_drift"]
+__all__ = ["NEAR", "ROUNDING", "UNSTABLE", "clear", "judge_window", "note_drift", "without_impact"]
 
 UNSTABLE = 1e-5
 """How far the largest multiplier must lie outside the unit circle for a repeating orbit to be called unstable."""
@@ -73,7 +77,7 @@ def judge_window(c, rows, n, periods, tolerance, longest, verdict):
     clear(verdict)
     kept = contacts(rows, n, 0.0)
     if kept.shape[0] == 0:
-        _without_impact(c, rows, n, tolerance, verdict)
+        without_impact(c, rows, n, tolerance, verdict)
         return byte_vector(0)
     period = 2.0 * math.pi / c.Omega
     scale = _largest_speed(rows, n)
@@ -186,8 +190,9 @@ def _repeats(c, rows, n, kept, p, lag, last, tolerance, verdict):
     return sides
 
 
+@by_type(Constants)
 @cold_njit
-def _without_impact(c, rows, n, tolerance, verdict):
+def without_impact(c, rows, n, tolerance, verdict):
     """Judge a run without impacts: a drifting ball will hit a wall one day; the oscillator's start must die out."""
     last = n - 1
     period = 2.0 * math.pi / c.Omega
@@ -211,3 +216,7 @@ def _without_impact(c, rows, n, tolerance, verdict):
             verdict[v.REMAINING] = math.log(excess / tolerance) / (slowest * period)
         return
     verdict[v.SETTLED] = 1.0
+
+
+for _kind in (DragConstants, FrictionConstants, PairConstants, ParallelConstants):
+    without_impact.register(_kind)(without_impact.first)

@@ -51,7 +51,7 @@ __all__ = [
     "shift_time",
     "state_now",
     "too_many",
-    "write",
+    "write_row",
 ]
 
 # Kinds of rows. START is also written inside a very long flight, where the closed form is started afresh. With friction
@@ -145,7 +145,7 @@ def move(c, state, tau):
 
 
 @fused_njit
-def write(row, state, kind, side, tau, x1, v1, x2, v2):
+def write_row(row, state, kind, side, tau, x1, v1, x2, v2):
     """Write an event that has come to the state as it is now: x1, v1, x2, v2 are those just before."""
     row[KIND] = kind
     row[SIDE] = side
@@ -185,7 +185,7 @@ def law_of(c, closing, number):
 @njit
 def begin(c, state, rows):
     """Write the row of the start."""
-    write(rows[0], state, START, int(state[S_WALL]), 0.0, state[S_X1], state[S_V1], state[S_X2], state[S_V2])
+    write_row(rows[0], state, START, int(state[S_WALL]), 0.0, state[S_X1], state[S_V1], state[S_X2], state[S_V2])
 
 
 @by_type(Constants)
@@ -238,7 +238,7 @@ def advance(c, state, stop, cap, rows, first):
                 if side * j >= 0.0:
                     # Contact was lost at once, with a push away from the wall that is not zero.
                     state[S_RELEASED] = 0.0
-                write(rows[count], state, RELEASE, side, tau, x, v, x - side, v)
+                write_row(rows[count], state, RELEASE, side, tau, x, v, x - side, v)
                 count += 1
                 if too_many(state, cap, period):
                     return count, EVENT_CAP
@@ -252,7 +252,7 @@ def advance(c, state, stop, cap, rows, first):
                     run = state[S_RUN]
                     state[S_RUN] = 0.0
                     place(state, wall, wall, 0.0, x1, common, x1 - wall, common)
-                    write(rows[count], state, STICK, wall, 0.0, x1, v1, x2, v2)
+                    write_row(rows[count], state, STICK, wall, 0.0, x1, v1, x2, v2)
                     rows[count, RUN] = run
                     count += 1
                     if too_many(state, cap, period):
@@ -272,7 +272,7 @@ def advance(c, state, stop, cap, rows, first):
                 state[S_RUN_SIDE] = hit
                 place(state, 0, hit, 0.0, x, after1, x - hit, after2)
                 state[S_DECIDE] = 1.0
-                write(rows[count], state, IMPACT, hit, tau, x, v, x - hit, v2)
+                write_row(rows[count], state, IMPACT, hit, tau, x, v, x - hit, v2)
                 count += 1
                 if too_many(state, cap, period):
                     return count, EVENT_CAP
@@ -290,7 +290,7 @@ def advance(c, state, stop, cap, rows, first):
         else:
             way, v2 = ball_flown(c, motion, v2, tau)
             place(state, 0, 0, 0.0, x, v, x2 + way, v2)
-        write(rows[count], state, START, 0, tau, x, v, state[S_X2], state[S_V2])
+        write_row(rows[count], state, START, 0, tau, x, v, state[S_X2], state[S_V2])
         count += 1
 
 

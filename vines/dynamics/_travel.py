@@ -64,7 +64,7 @@ def travel_integrals(c, mode, x1, v1, v2, phase, length):
 
 
 @linked_njit
-def add_travel(c, out, mode, begins, x1, v1, v2, phase, length):
+def add_travel(c, out, mode, begins, x1, v1, x2, v2, phase, length):
     """Do what `add_segment` does."""
     motion = _start(c, mode, x1, v1, v2, phase)
     x_square, v_square, ball, square, way, work, damped = _integrals(c, mode, motion, phase, length)

@@ -147,10 +147,10 @@ def continue_orbit(
 def _problem(orbit: Orbit, parameter: str) -> Problem:
     if orbit.word.sticking and rides_capsule(orbit.params):
         return CapsuleSticking(orbit, parameter)
-    if slides(orbit.params):
-        return SlidProblem(orbit, parameter)
     if orbit.word.sticking and rides_in_parallel(orbit.params):
         return BallsProblem(orbit, parameter)
+    if slides(orbit.params):
+        return SlidProblem(orbit, parameter)
     if not isinstance(orbit.params, Params):
         return ChainProblem(orbit, parameter)
     if orbit.word.sticking:

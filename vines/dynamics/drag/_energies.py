@@ -9,6 +9,7 @@ from vines.dynamics._totals import (
     base_at,
     event_loss,
     event_work,
+    segment_state,
     stored_energy,
     window_totals,
 )
@@ -17,7 +18,7 @@ from vines.dynamics.drag._constants import DragConstants
 
 __all__: list[str] = []
 
-for _name in (window_totals, ball_mass, base_at, event_loss, event_work, stored_energy):
+for _name in (window_totals, ball_mass, base_at, event_loss, event_work, segment_state, stored_energy):
     _name.register(DragConstants)(_name.first)
 
 segment_integrals.register(DragConstants)(travel_integrals)

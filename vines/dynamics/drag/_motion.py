@@ -31,13 +31,14 @@ from vines.dynamics._flight import (
 )
 from vines.dynamics._integrals import stays_below
 from vines.dynamics._sticking import holds_for, next_release
+from vines.dynamics._tangent import carry_basis
 from vines.dynamics._window import width_of, write_end
 from vines.dynamics.drag._constants import DragConstants, DragFrame, DragTable, Gap, GapConstants
 from vines.kernels import fused_njit, loop_njit, njit
 
 __all__ = ["ball_velocity", "set_out"]
 
-for _name in (advance, begin, write_end, law_of, next_release, flown, free_ball, pull):
+for _name in (advance, begin, carry_basis, write_end, law_of, next_release, flown, free_ball, pull):
     _name.register(DragConstants)(_name.first)
 
 pull.register(GapConstants)(pull.first)

@@ -42,7 +42,7 @@ from vines.dynamics._advance import (
     move,
     place,
     too_many,
-    write,
+    write_row,
 )
 from vines.dynamics._contact import CONTACT, NO_CONTACT, STEP_CAP, contact_within
 from vines.dynamics._flight import derivatives, fifth, launched, modulus, turn
@@ -123,12 +123,12 @@ def _halt(c, state, tau, sense, row, starts):
         w = x - state[S_X2]
         w = math.copysign(min(abs(w), LAST_INSIDE), w) if w != 0.0 else CENTRE
         place(state, w, 0.0, 0.0, x, v, x - w, v)
-        write(row, state, STOP, sense, tau, x, v, x - w, v)
+        write_row(row, state, STOP, sense, tau, x, v, x - w, v)
         return True
     if starts:
         return False
     place(state, 0.0, 0.0, 0.0, x, v, state[S_X2], v)
-    write(row, state, SLIDE, -sense, tau, x, v, state[S_X2], v)
+    write_row(row, state, SLIDE, -sense, tau, x, v, state[S_X2], v)
     return True
 
 
@@ -160,7 +160,7 @@ def _advance(c, state, stop, cap, rows, first):
                 place(state, 0.0, wall, 1.0, x, v, x - mode, v)
                 sense = 1.0 if draws(c, x, v, state[S_PHASE]) > 0.0 else -1.0
                 kind, side = (RELEASE, wall) if wall != 0.0 else (SLIDE, sense)
-                write(rows[count], state, kind, side, tau, x, v, x - mode, v)
+                write_row(rows[count], state, kind, side, tau, x, v, x - mode, v)
                 rows[count, RUN] = 1.0
                 count += 1
                 continue
@@ -173,7 +173,7 @@ def _advance(c, state, stop, cap, rows, first):
                     run = state[S_RUN]
                     state[S_RUN] = 0.0
                     place(state, wall, wall, 0.0, x1, common, x1 - wall, common)
-                    write(rows[count], state, STICK, wall, 0.0, x1, v1, x2, v2)
+                    write_row(rows[count], state, STICK, wall, 0.0, x1, v1, x2, v2)
                     rows[count, RUN] = run
                     count += 1
                     continue
@@ -202,7 +202,7 @@ def _advance(c, state, stop, cap, rows, first):
                 state[S_RUN_SIDE] = hit
                 place(state, 0.0, hit, 0.0, x, after1, x - hit, after2)
                 state[S_DECIDE] = 1.0
-                write(rows[count], state, IMPACT, hit, tau, x, v, x - hit, v2)
+                write_row(rows[count], state, IMPACT, hit, tau, x, v, x - hit, v2)
                 count += 1
                 continue
             if code == NO_CONTACT and rest == CONTACT:
@@ -233,7 +233,7 @@ def _advance(c, state, stop, cap, rows, first):
             place(state, mode, state[S_WALL], 0.0, x, v, x - mode, v)
         else:
             place(state, 0.0, 0.0, 0.0, x, v, x2 + now[WAY], now[SPEED])
-        write(rows[count], state, START, 0, tau, x, v, state[S_X2], state[S_V2])
+        write_row(rows[count], state, START, 0, tau, x, v, state[S_X2], state[S_V2])
         count += 1
 
 

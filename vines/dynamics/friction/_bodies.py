@@ -6,13 +6,14 @@ from vines.dynamics._advance import IMPACT, KIND, PHASE, RUN, SIDE, SLIDE, STICK
 from vines.dynamics._flight import decay, derivatives, launched
 from vines.dynamics._integrals import segment_integrals
 from vines.dynamics._sincos import sincos
-from vines.dynamics._tangent import directions, flow_basis, jump_basis, offset
+from vines.dynamics._tangent import carry_basis, directions, flow_basis, jump_basis, offset
 from vines.dynamics._totals import (
     add_segment,
     ball_mass,
     base_at,
     event_loss,
     event_work,
+    segment_state,
     state_energy,
     stored_energy,
     window_totals,
@@ -24,7 +25,7 @@ from vines.kernels import fused_njit, linked_njit, njit
 
 __all__: list[str] = []
 
-for _name in (window_totals, ball_mass, base_at, event_loss, event_work, directions):
+for _name in (window_totals, ball_mass, base_at, carry_basis, directions, event_loss, event_work, segment_state):
     _name.register(FrictionConstants)(_name.first)
 
 segment_integrals.register(FrictionConstants)(travel_integrals)

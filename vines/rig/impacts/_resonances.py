@@ -83,5 +83,5 @@ def resonances(bins: Bins, times: Floats) -> npt.NDArray[np.complex128]:
     span = directions[:, ::-1][:, :order]
     roots = np.linalg.eigvals(np.linalg.lstsq(span[:-1], span[1:], rcond=None)[0]).astype(complex)
     s = np.log(roots[np.abs(roots) > 1e-9]) / bins.width
-    s = s[s.imag > 0]
-    return s[np.argsort(s.imag)]
+    above: npt.NDArray[np.complex128] = s[s.imag > 0].astype(np.complex128)
+    return above[np.argsort(above.imag)]

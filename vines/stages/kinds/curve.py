@@ -79,7 +79,7 @@ def _fits(stage: Stage, pipeline: Pipeline) -> None:
         )
     if sticking and not (system == VI_NES.name or read_system(system, min(most_balls(system), 1)).balls):
         raise DeclarationError(
-            f"orbits of the system {system!r} that stick have multipliers of zero, so that they have no {options.type}; "
+            f"orbits of the system {system!r} that stick have multipliers of zero and no {options.type}; "
             "give a word without a star"
         )
     varied = [axis.name for axis in stage.axes]
@@ -104,7 +104,7 @@ _VI_NES = Kind(
 
 KIND = of_systems(
     _VI_NES,
-    ("drag", "impact_pair", "parallel"),
+    ("cubic_barriers", "drag", "impact_pair", "parallel"),
     FamilyCurveOptions,
     "vines.stages.bodies._family_curve:compute",
     ("curves",),
