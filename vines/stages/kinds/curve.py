@@ -77,10 +77,11 @@ def _fits(stage: Stage, pipeline: Pipeline) -> None:
             f"type is {options.type!r}: where orbits that stick end is followed for the system {VI_NES.name!r} only; "
             "give another word or type, or branches, which end there"
         )
-    if sticking and not (system == VI_NES.name or read_system(system, min(most_balls(system), 1)).balls):
+    numbered = read_system(system, min(most_balls(system), 1)).balls > 0
+    if sticking and system != VI_NES.name and not numbered:
         raise DeclarationError(
-            f"orbits of the system {system!r} that stick have multipliers of zero, so that they have no {options.type}; "
-            "give a word without a star"
+            f"orbits of the system {system!r} that stick have multipliers of zero, and so no {options.type}; give a "
+            "word without a star"
         )
     varied = [axis.name for axis in stage.axes]
     for name in read_system(system, min(most_balls(system), 1)).mirror.broken_by:
