@@ -10,9 +10,8 @@ from vines import systems
 from vines.errors import ParameterError, SchemaError, UnknownNameError
 from vines.model import LAM_TABLE_1, VI_NES, Params, PhysicalParams, dimensionless, read_system, system_names
 
-ALL = [
-    read_system(name, balls) for name, balls in (("vi_nes", 0), ("impact_pair", 0), ("parallel", 1), ("parallel", 8))
-]
+SYSTEMS = (("vi_nes", 0), ("impact_pair", 0), ("parallel", 1), ("parallel", 8), ("cubic_barriers", 0))
+ALL = [read_system(name, balls) for name, balls in SYSTEMS]
 
 
 def test_the_files_are_the_systems():

@@ -9,12 +9,14 @@ from vines.attractors._approach import nearest_orbit
 from vines.attractors._coming import comes
 from vines.attractors._contacts import difference, mirror_difference, repetition
 from vines.attractors._multipliers import multipliers
-from vines.dynamics.kernels import directions, ringing, tangent_product
+from vines.dynamics.impact_pair import PairConstants
+from vines.dynamics.kernels import Constants, directions, ringing, tangent_product
 from vines.dynamics.kernels import rows as col
-from vines.kernels import byte_vector, cold_njit, complex_vector, new_vector, njit, zero_integers
+from vines.dynamics.parallel import ParallelConstants
+from vines.kernels import by_type, byte_vector, cold_njit, complex_vector, new_vector, njit, zero_integers
 from vines.orbits.kernels import STUCK, completes, contacts, mark
 
-__all__ = ["NEAR", "clear", "judge_window", "note_drift"]
+__all__ = ["NEAR", "ROUNDING", "UNSTABLE", "clear", "judge_window", "note_drift", "without_impact"]
 
 UNSTABLE = 1e-5
 """How far the largest multiplier must lie outside the unit circle for a repeating orbit to be called unstable."""
@@ -73,7 +75,7 @@ def judge_window(c, rows, n, periods, tolerance, longest, verdict):
     clear(verdict)
     kept = contacts(rows, n, 0.0)
     if kept.shape[0] == 0:
-        _without_impact(c, rows, n, tolerance, verdict)
+        without_impact(c, rows, n, tolerance, verdict)
         return byte_vector(0)
     period = 2.0 * math.pi / c.Omega
     scale = _largest_speed(rows, n)
@@ -185,8 +187,9 @@ def _repeats(c, rows, n, kept, p, lag, last, tolerance, verdict):
     return sides
 
 
+@by_type(Constants)
 @cold_njit
-def _without_impact(c, rows, n, tolerance, verdict):
+def without_impact(c, rows, n, tolerance, verdict):
     """Judge a run without impacts: a drifting ball will hit a wall one day; the oscillator's start must die out."""
     last = n - 1
     period = 2.0 * math.pi / c.Omega
@@ -207,3 +210,7 @@ def _without_impact(c, rows, n, tolerance, verdict):
             verdict[v.REMAINING] = math.log(excess / tolerance) / (0.5 * c.lam * period)
         return
     verdict[v.SETTLED] = 1.0
+
+
+for _kind in (PairConstants, ParallelConstants):
+    without_impact.register(_kind)(without_impact.first)

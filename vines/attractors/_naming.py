@@ -88,7 +88,7 @@ def attractor_from(
         regime=v.REGIMES[regime],
         settled=bool(value[v.SETTLED]),
         word=str(word) if word else None,
-        name=word.named(balls if balls > 1 else 0) if word else None,
+        name=word.named(balls if balls > 1 else 0) if word else _unstruck(room.unstruck, value),
         n=word.n if word else None,
         m=word.m if word else None,
         p=word.p if word else None,
@@ -113,3 +113,11 @@ def attractor_from(
         status=STATUS[int(value[v.STATUS])],
         reason=v.reason_text(verdict),
     )
+
+
+def _unstruck(name: str | None, verdict: list[float]) -> str | None:
+    """Return the name of a motion without impacts, if it has settled and has one."""
+    if name is None or verdict[v.REGIME] != v.NO_IMPACT or not verdict[v.SETTLED]:
+        return None
+    periods = int(verdict[v.P])
+    return name if periods == 1 else f"{name}/{periods}T"

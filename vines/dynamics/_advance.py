@@ -44,10 +44,12 @@ __all__ = [
     "move",
     "new_state",
     "pass_over",
+    "place",
     "set_state",
     "shift_time",
     "state_now",
     "too_many",
+    "write_row",
 ]
 
 # Kinds of rows. START is also written inside a very long flight, where the closed form is started afresh.
@@ -140,7 +142,7 @@ def move(c, state, tau):
 
 
 @fused_njit
-def _write(row, state, kind, side, tau, x1, v1, x2, v2):
+def write_row(row, state, kind, side, tau, x1, v1, x2, v2):
     row[KIND] = kind
     row[SIDE] = side
     row[TIME] = state[S_T]
@@ -157,7 +159,7 @@ def _write(row, state, kind, side, tau, x1, v1, x2, v2):
 
 
 @fused_njit
-def _place(state, mode, wall, released, x1, v1, x2, v2):
+def place(state, mode, wall, released, x1, v1, x2, v2):
     state[S_MODE] = mode
     state[S_WALL] = wall
     state[S_RELEASED] = released
@@ -178,7 +180,7 @@ def law_of(c, closing, number):
 @njit
 def begin(c, state, rows):
     """Write the row of the start."""
-    _write(rows[0], state, START, int(state[S_WALL]), 0.0, state[S_X1], state[S_V1], state[S_X2], state[S_V2])
+    write_row(rows[0], state, START, int(state[S_WALL]), 0.0, state[S_X1], state[S_V1], state[S_X2], state[S_V2])
 
 
 @by_type(Constants)
@@ -224,13 +226,13 @@ def advance(c, state, stop, cap, rows, first):
             code, tau, x, v = next_release(c, side, motion, state[S_CLEAR], min(left, AFRESH))
             if code == CONTACT:
                 move(c, state, tau)
-                _place(state, 0, side, 1.0, x, v, x - side, v)
+                place(state, 0, side, 1.0, x, v, x - side, v)
                 after = flight(c, c.free, x, v, state[S_PHASE], state[S_T])
                 _, _, _, j, _ = derivatives(c.free, c.Omega, *after)
                 if side * j >= 0.0:
                     # Contact was lost at once, with a push away from the wall that is not zero.
                     state[S_RELEASED] = 0.0
-                _write(rows[count], state, RELEASE, side, tau, x, v, x - side, v)
+                write_row(rows[count], state, RELEASE, side, tau, x, v, x - side, v)
                 count += 1
                 if too_many(state, cap, period):
                     return count, EVENT_CAP
@@ -243,8 +245,8 @@ def advance(c, state, stop, cap, rows, first):
                     common = (v1 + c.mu * v2) / (1.0 + c.mu)
                     run = state[S_RUN]
                     state[S_RUN] = 0.0
-                    _place(state, wall, wall, 0.0, x1, common, x1 - wall, common)
-                    _write(rows[count], state, STICK, wall, 0.0, x1, v1, x2, v2)
+                    place(state, wall, wall, 0.0, x1, common, x1 - wall, common)
+                    write_row(rows[count], state, STICK, wall, 0.0, x1, v1, x2, v2)
                     rows[count, RUN] = run
                     count += 1
                     if too_many(state, cap, period):
@@ -262,9 +264,9 @@ def advance(c, state, stop, cap, rows, first):
                     state[S_RUN] = 0.0
                 state[S_RUN] += 1.0
                 state[S_RUN_SIDE] = hit
-                _place(state, 0, hit, 0.0, x, after1, x - hit, after2)
+                place(state, 0, hit, 0.0, x, after1, x - hit, after2)
                 state[S_DECIDE] = 1.0
-                _write(rows[count], state, IMPACT, hit, tau, x, v, x - hit, v2)
+                write_row(rows[count], state, IMPACT, hit, tau, x, v, x - hit, v2)
                 count += 1
                 if too_many(state, cap, period):
                     return count, EVENT_CAP
@@ -278,11 +280,11 @@ def advance(c, state, stop, cap, rows, first):
         x, v, _, _, _ = derivatives(o, c.Omega, *flown(c, o, motion, tau))
         move(c, state, tau)
         if side != 0:
-            _place(state, side, side, 0.0, x, v, x - side, v)
+            place(state, side, side, 0.0, x, v, x - side, v)
         else:
             way, v2 = free_ball(c, v2, tau)
-            _place(state, 0, 0, 0.0, x, v, x2 + way, v2)
-        _write(rows[count], state, START, 0, tau, x, v, state[S_X2], state[S_V2])
+            place(state, 0, 0, 0.0, x, v, x2 + way, v2)
+        write_row(rows[count], state, START, 0, tau, x, v, state[S_X2], state[S_V2])
         count += 1
 
 

@@ -24,7 +24,7 @@ class Decay:
         and the oscillator below its place without them.
     impact_share, damper_share, frame_share, ball_share : float
         Shares of it that were lost in impacts and in the damper, and that oscillator and ball have at the end; their
-        sum is 1 to rounding.
+        sum is 1 to rounding. A spring that holds the ball counts with it, a damper beside that spring with the other.
     times : tuple of float
         When no more than each of the shares asked for is left for the first time, nan where that is not in the run.
     impacts : int
@@ -105,6 +105,9 @@ def _above_rest(values: dict[str, float], state: dict[str, float]) -> tuple[floa
     for ball, mass in masses.items():
         way = values.get(f"beta{ball}", 1.0) + math.copysign(1.0, pull) * (state[f"x2{ball}"] - state["x1"])
         balls += mass * (0.5 * state[f"v2{ball}"] ** 2 + abs(pull) * way)
+    if "k3" in values:
+        square = (state["x1"] - state["x2"]) ** 2
+        balls += values["mu"] * square * (0.5 * values["k1"] + 0.25 * values["k3"] * square)
     return frame, balls
 
 

@@ -48,10 +48,13 @@ class Room:
     ----------
     trajectory, measures : callable or None
         What makes a run of its rows, and measures of its totals, where one ball is not enough for that.
+    unstruck : str or None
+        Name of a settled motion without impacts, where such a one repeats of itself.
     """
 
     trajectory: Callable[..., Any] | None = None
     measures: Callable[..., Any] | None = None
+    unstruck: str | None = None
 
     def constants(self, values: Sequence[float]) -> Any:
         """Return the constants of the kernels from the values of the parameters, in the order of the declaration."""

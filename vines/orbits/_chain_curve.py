@@ -9,10 +9,11 @@ import numpy.typing as npt
 
 from vines.dynamics.kernels import constants
 from vines.orbits._assemble import assemble
-from vines.orbits._closing import Closed, Closing
+from vines.orbits._closing import Closed
 from vines.orbits._curve_equations import CurveEquations
 from vines.orbits._floquet import FIXED_TIME, half_map, monodromy
 from vines.orbits._orbit import Orbit
+from vines.orbits._shooting import closing_of
 from vines.orbits._survey import survey_kernel
 from vines.orbits._turnings_of_balls import gap_kernel, turnings_kernel
 
@@ -39,7 +40,7 @@ class ChainCurve(CurveEquations):
 
     def __init__(self, kind: str, orbit: Orbit, parameters: tuple[str, str], spans: tuple[float, float]) -> None:
         super().__init__(kind, orbit, parameters, spans)
-        self._closing = Closing(orbit, parameters, self.symmetric)
+        self._closing = closing_of(orbit, parameters, self.symmetric)
         self._n = len(self._closing.start) - 2
         self._wall = 0
         self.start = self._closing.start

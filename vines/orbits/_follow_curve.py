@@ -20,6 +20,7 @@ from vines.orbits._curve import Curve, SpecialPoint
 from vines.orbits._curve_equations import CurveEquations
 from vines.orbits._curve_problem import CurveProblem
 from vines.orbits._joined import is_joint, left_family
+from vines.orbits._own_word import sticking_word
 from vines.orbits._problem import Point, ZeroSet
 from vines.orbits._special import END, Special, special_functions
 from vines.orbits._sticking_curve import StickingCurve
@@ -189,6 +190,7 @@ def _problem(bifurcation: Bifurcation, parameters: tuple[str, str], spans: Float
         )
     form = CurveProblem if isinstance(orbit.params, Params) else ChainCurve
     if orbit.word.sticking:
+        sticking_word(orbit.word, orbit.params)
         form = BallsCurve if rides_in_parallel(orbit.params) else StickingCurve
     return form(bifurcation.type, orbit, parameters, tuple(spans.tolist()))
 

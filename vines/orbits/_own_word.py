@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from typing import Any
 
-from vines.errors import ParameterError
-from vines.model import Word, of_moderate_length
+from vines.errors import OrbitNotFound, ParameterError
+from vines.model import Params, Word, of_moderate_length
+from vines.orbits._sticking_capsule import rides_capsule
 
-__all__ = ["own_word", "whole_word"]
+__all__ = ["own_word", "sticking_word", "whole_word"]
 
 
 def own_word(word: str | Word, p: Any) -> Word:
@@ -53,4 +54,20 @@ def whole_word(word: str | Word, p: Any) -> Word:
         who = ", ".join(f"ball {number}" for number in numbers if number) or "a ball without number"
         has = f"balls 1 … {balls}" if balls > 1 else "one ball"
         raise ParameterError(f"{word} has impacts of {who}, the system has {has}; give a word in which each hits")
+    return word
+
+
+def sticking_word(word: Word, p: Any) -> Word:
+    """Return a word with a star if its orbits can be computed: those of balls in cavities and of the impact pair.
+
+    Raises
+    ------
+    OrbitNotFound
+        For another system.
+    """
+    if not (isinstance(p, Params) or rides_capsule(p) or hasattr(p, "balls")):
+        raise OrbitNotFound(
+            f"{word} sticks, and orbits that stick are computed for the VI-NES, the impact pair and balls in parallel, "
+            f"not for {p.system.name!r}; follow it by simulation"
+        )
     return word

@@ -39,6 +39,7 @@ def _gap(c, motion, x2, v2, tau):
     return x - (x2 + way), v - speed, pull(c, a)
 
 
+@by_type(Constants)
 @entry_njit
 def gap_kernel(c, duration, side, t, states, place, number, tau):
     """Return w over half the length of the cavity, w' and w'' of a ball at time tau since the impact of a place.
@@ -63,6 +64,7 @@ def gap_kernel(c, duration, side, t, states, place, number, tau):
     return w / ball_of(c, number)[3], speed, bend
 
 
+@by_type(Constants)
 @entry_njit
 def turnings_kernel(c, duration, side, t, states):
     """Return all turning points of all gaps, rows of flight, time since its start, wall, clearance, w'', ball.
@@ -92,3 +94,8 @@ def turnings_kernel(c, duration, side, t, states):
         for k in range(6):
             out[i, k] = found[i][k]
     return out
+
+
+for _kind in (PairConstants, ParallelConstants):
+    gap_kernel.register(_kind)(gap_kernel.first)
+    turnings_kernel.register(_kind)(turnings_kernel.first)

@@ -1,3 +1,4 @@
+from ._cubic_barriers import CubicBarriers as CubicBarriers
 from ._harvest import Harvest as Harvest
 from ._impact_pair import ImpactPair as ImpactPair
 from ._parallel import Parallel as Parallel

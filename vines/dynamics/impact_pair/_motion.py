@@ -28,7 +28,7 @@ from vines.dynamics._flight import (
 from vines.dynamics._impact_law import after_impact_kernel
 from vines.dynamics._sincos import sincos
 from vines.dynamics._sticking import holds_for, next_release
-from vines.dynamics._tangent import directions, flow_basis, jump_basis, offset
+from vines.dynamics._tangent import carry_basis, directions, flow_basis, jump_basis, offset
 from vines.dynamics._tilt import falling_ball, pull_of_tilt
 from vines.dynamics._window import width_of, write_end
 from vines.dynamics.impact_pair._constants import Capsule, PairConstants, PairTable
@@ -36,7 +36,7 @@ from vines.kernels import fused_njit, njit
 
 __all__: list[str] = []
 
-for _name in (advance, begin, write_end, law_of, next_contact, next_release, flown):
+for _name in (advance, begin, carry_basis, write_end, law_of, next_contact, next_release, flown):
     _name.register(PairConstants)(_name.first)
 
 width_of.register(PairTable)(width_of.first)

@@ -39,7 +39,15 @@ from vines.dynamics._integrals import largest_displacement, segment_integrals
 from vines.dynamics._room import Room, constants, room_of, table_of
 from vines.dynamics._saltation import jacobian_kernel
 from vines.dynamics._sticking import next_release
-from vines.dynamics._tangent import directions, flow_basis, jump_basis, lyapunov_blocks, offset, tangent_product
+from vines.dynamics._tangent import (
+    carry_basis,
+    directions,
+    flow_basis,
+    jump_basis,
+    lyapunov_blocks,
+    offset,
+    tangent_product,
+)
 from vines.dynamics._totals import ball_mass, segment_state, window_totals
 from vines.dynamics._window import open_window, run_window, width_of, with_room
 
@@ -54,6 +62,7 @@ __all__ = [
     "after_impact_kernel",
     "ball_mass",
     "begin",
+    "carry_basis",
     "constants",
     "constants_at",
     "constants_kernel",

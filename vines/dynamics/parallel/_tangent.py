@@ -11,7 +11,7 @@ from vines.dynamics._advance import A_V1, A_V2, IMPACT, KIND, PHASE, RUN, SIDE, 
 from vines.dynamics._flight import decay, derivatives, flight
 from vines.dynamics._impact_law import after_impact_kernel
 from vines.dynamics._sincos import sincos
-from vines.dynamics._tangent import directions, flow_basis, jump_basis, offset
+from vines.dynamics._tangent import carry_basis, directions, flow_basis, jump_basis, offset
 from vines.dynamics.parallel._constants import (
     BETA,
     MU,
@@ -26,6 +26,8 @@ from vines.dynamics.parallel._layout import BALL, BEFORE, R_V2
 from vines.kernels import fused_njit, linked_njit, njit
 
 __all__: list[str] = []
+
+carry_basis.register(ParallelConstants)(carry_basis.first)
 
 
 @directions.register(ParallelConstants)

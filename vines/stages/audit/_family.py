@@ -41,10 +41,13 @@ def _parameters(table: str, rows: Rows) -> Defect:
 
 
 def _of_ball(rows: Rows, name: str, ball: Floats) -> Floats:
-    """Return what the ball of each row has of a parameter: ``name_k`` of ball k, `name` where balls have no number."""
+    """Return what the ball of each row has of a parameter: ``name_k`` of ball k, `name` where balls have no number.
+
+    A cavity whose length no parameter tells is the unit of lengths.
+    """
     if rows.has(name):
         return rows[name]
-    found = np.full(len(rows), np.nan)
+    found = np.full(len(rows), np.nan if rows.has(f"{name}_1") else 1.0)
     for number in np.unique(ball[ball > 0]).astype(int):
         found = np.where(ball == number, rows[f"{name}_{number}"], found)
     return found
@@ -52,7 +55,7 @@ def _of_ball(rows: Rows, name: str, ball: Floats) -> Floats:
 
 def _mass(rows: Rows) -> Floats:
     """Return the mass of all balls over that of the frame."""
-    names = [name for name in rows.table.column_names if name.startswith("mu_")]
+    names = [name for name in rows.table.column_names if name.partition("_")[0] == "mu"]
     return np.nansum([rows[name] for name in names], axis=0)
 
 
@@ -125,6 +128,8 @@ def family_attractor_defects(table: str, rows: Rows) -> Iterator[Defect]:
     gap = np.zeros(len(rows))
     if rows.has("end_w"):
         gap = np.abs(rows["end_w"]) - 1
+    if rows.has("end_x1", "end_x2", "walls"):
+        gap = np.where(rows["walls"] > 0, np.abs(rows["end_x1"] - rows["end_x2"]) - 1, 0.0)
     for ball in range(1, most_balls(schema.table(table).system) + 1):
         off = np.abs(rows["end_x1"] - rows[f"end_x2_{ball}"]) / rows[f"beta_{ball}"] - 1
         gap = np.fmax(gap, off)
@@ -174,7 +179,7 @@ def _product(rows: Rows) -> Defect:
         # the small ones carry the rounding error of the largest
         slack = _EPSILON * size.max(axis=1) / size.min(axis=1)
     off = np.where(slack < 1e-2, off / (1 + slack / _PRODUCT), np.nan)
-    return Defect("multiplier product", "the determinant: r² for each impact, exp(-lam p T)", _PRODUCT, off)
+    return Defect("multiplier product", "the determinant: r² for each impact, and the dampers", _PRODUCT, off)
 
 
 def _log_determinant(rows: Rows) -> Floats:
@@ -189,7 +194,8 @@ def _log_determinant(rows: Rows) -> Floats:
             r = rows["r"] if rows.has("r") else rows[f"r_{max(ball, 1)}"]
             found[mine] += 2 * np.log(np.maximum(r[mine], 1e-300))
         if rows.has("lam"):
-            found[mine] -= (rows["lam"] * word.p * 2 * np.pi / rows["Omega"])[mine]
+            rate = rows["lam"] + (rows["l2"] * (1 + rows["mu"]) if rows.has("l2") else 0.0)
+            found[mine] -= (rate * word.p * 2 * np.pi / rows["Omega"])[mine]
     return found
 
 

@@ -77,11 +77,10 @@ def _fits(stage: Stage, pipeline: Pipeline) -> None:
             f"type is {options.type!r}: where orbits that stick end is followed for the system {VI_NES.name!r} only; "
             "give another word or type, or branches, which end there"
         )
-    numbered = read_system(system, min(most_balls(system), 1)).balls > 0
-    if sticking and system != VI_NES.name and not numbered:
+    if sticking and not (system == VI_NES.name or read_system(system, min(most_balls(system), 1)).balls):
         raise DeclarationError(
-            f"orbits of the system {system!r} that stick have multipliers of zero, and so no {options.type}; give a "
-            "word without a star"
+            f"orbits of the system {system!r} that stick have multipliers of zero and no {options.type}; "
+            "give a word without a star"
         )
     varied = [axis.name for axis in stage.axes]
     for name in read_system(system, min(most_balls(system), 1)).mirror.broken_by:
@@ -105,7 +104,7 @@ _VI_NES = Kind(
 
 KIND = of_systems(
     _VI_NES,
-    ("impact_pair", "parallel"),
+    ("impact_pair", "parallel", "cubic_barriers"),
     FamilyCurveOptions,
     "vines.stages.bodies._family_curve:compute",
     ("curves",),

@@ -56,7 +56,7 @@ _VI_NES = Kind(
 
 KIND = of_systems(
     _VI_NES,
-    ("impact_pair", "parallel"),
+    ("impact_pair", "parallel", "cubic_barriers"),
     FamilySweepOptions,
     "vines.stages.bodies._family_sweep:compute",
     ("points", "impacts", "attractors"),
