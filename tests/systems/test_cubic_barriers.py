@@ -238,6 +238,8 @@ def test_an_orbit_and_its_branch():
     assert abs(orbit.energy_imbalance) < 1e-13
     early, late = (vines.simulate(p, **orbit.start(), periods=periods).final for periods in (0.2, 1.2))
     assert [late[name] for name in STATE] == pytest.approx([early[name] for name in STATE], abs=1e-12)
+    rough = np.column_stack([orbit.t, orbit.states]) + 1e-4
+    assert vines.find_orbit("LR", p, guess=rough).states == pytest.approx(orbit.states, abs=1e-13)
     settled = vines.settle(p)
     assert sorted(np.abs(settled.multipliers)) == pytest.approx(sorted(np.abs(orbit.multipliers)), abs=1e-8)
     assert settled.measures.kinetic_ratio == pytest.approx(orbit.measures.kinetic_ratio, abs=1e-9)
