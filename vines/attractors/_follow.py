@@ -12,6 +12,7 @@ from vines.attractors._judge import NEAR, note_drift
 from vines.dynamics.kernels import (
     KNOWN_CORRELATION,
     directions,
+    drift,
     lyapunov_blocks,
     open_window,
     run_window,
@@ -130,7 +131,7 @@ def follow(c, state, elapsed, watch, cap, tolerance, longest, rows, verdict):
         event -= 1
     quiet = length - rows[event, col.TIME]
     if quiet > 0.25 * length and rows[count, col.MODE] == 0.0:
-        note_drift(verdict, period, abs(rows[count, col.A_V2]))
+        note_drift(verdict, period, drift(c, rows[count, col.A_V2]))
         verdict[v.REMAINING] += passed
         verdict[v.REASON], verdict[v.VALUE] = v.RESTS, quiet / period
     elif _note_longer(c, rows, count + 1, length, longest, verdict):

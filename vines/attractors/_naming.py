@@ -12,7 +12,7 @@ from vines.attractors import _verdict as v
 from vines.attractors._attractor import Attractor
 from vines.dynamics.kernels import room_of
 from vines.dynamics.runs import STATUS, measures_from
-from vines.model import VI_NES, Word
+from vines.model import STOPS, VI_NES, Word
 from vines.orbits import own_word
 from vines.orbits.kernels import STUCK
 
@@ -35,7 +35,7 @@ def word_of(sides: npt.NDArray[np.int8], p: int, of: Any = None) -> Word:
         stuck = numbers > STUCK
         numbers = np.where(stuck, numbers - STUCK, numbers).tolist()
         each = [
-            of.system.letters([side], [ball]) if balls else VI_NES.letters([side])
+            STOPS if not side else of.system.letters([side], [ball]) if balls else VI_NES.letters([side])
             for side, ball in zip(sides.tolist(), numbers, strict=True)
         ]
         letters = "".join(name + "*" * sticks for name, sticks in zip(each, stuck.tolist(), strict=True))

@@ -21,7 +21,7 @@ from vines.dynamics._advance import (
     X2,
 )
 from vines.dynamics._constants import Constants
-from vines.dynamics._flight import advance_phase, derivatives, flight, flown, free_ball, phasors, turn
+from vines.dynamics._flight import advance_phase, ball_flown, derivatives, flown, launched, phasors, turn
 from vines.dynamics._integrals import energies_between, peak_between, segment_integrals
 from vines.kernels import by_type, entry_njit, linked_njit, njit, zero_matrix, zero_vector
 
@@ -57,8 +57,9 @@ __all__ = [
     MAX_ABS_X1,
     T_MAX_ABS_X1,
     ENERGY_CHANGE,
-) = range(15)
-TOTALS = 15
+    TRAVEL_LOSS,
+) = range(16)
+TOTALS = 16
 
 
 @by_type(Constants)
@@ -67,12 +68,12 @@ def segment_state(c, row, tau):
     """Return (x1, v1, x2, v2, phase) at time tau after a row, before the next one."""
     mode = row[MODE]
     o = c.stuck if mode != 0.0 else c.free
-    motion = flown(c, o, flight(c, o, row[X1], row[A_V1], row[PHASE], row[TIME]), tau)
-    x1, v1, _, _, _ = derivatives(o, c.Omega, *motion)
+    motion = launched(c, o, row[X1], row[A_V1], row[A_V2], row[PHASE], row[TIME])
+    x1, v1, _, _, _ = derivatives(o, c.Omega, *flown(c, o, motion, tau))
     phase = advance_phase(row[PHASE], c.Omega * tau)
     if mode != 0.0:
         return x1, v1, x1 - mode, v1, phase
-    way, v2 = free_ball(c, row[A_V2], tau)
+    way, v2 = ball_flown(c, motion, row[A_V2], tau)
     return x1, v1, row[X2] + way, v2, phase
 
 

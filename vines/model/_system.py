@@ -212,6 +212,10 @@ class System(msgspec.Struct, frozen=True, dict=True):
         Columns of the common tables that the tables of this system do not have.
     order : int
         Of the Taylor series by which it moves between events; 0 where closed forms are exact.
+    stops : bool
+        Whether a ball may stop in mid-cavity.
+    starred : bool
+        Whether orbits that stick are computed.
     """
 
     name: str
@@ -229,6 +233,8 @@ class System(msgspec.Struct, frozen=True, dict=True):
     met: tuple[Coordinate, ...]
     without: tuple[str, ...] = ()
     order: int = 0
+    stops: bool = False
+    starred: bool = True
 
     @property
     def state(self) -> tuple[Coordinate, ...]:

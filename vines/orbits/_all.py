@@ -23,6 +23,7 @@ from vines.orbits._own_word import sticking_word, whole_word
 from vines.orbits._seeds import base_word, doubled_times, harvested_times, random_times, simplex_times
 from vines.orbits._shooting import shoots
 from vines.orbits._shooting_search import gather_shots, of_the_vi_nes
+from vines.orbits._slid import slid_orbits, slides
 from vines.orbits._sticking_capsule import capsule_orbits, rides_capsule
 from vines.orbits._sticking_of_balls import rides_in_parallel
 from vines.orbits._sticking_search import search_sticking
@@ -121,6 +122,9 @@ def all_orbits(word: str | Word, p: Any, *, proof: bool = False) -> Orbits:
             return Orbits(_in_order(found), complete=False, remark=how, nearest=np.inf)
         found, how = search_sticking(word, p)
         return Orbits(_in_order(found), complete=word.n == 0 or word.m == 0, remark=how, nearest=np.inf)
+    if slides(p):
+        found, how = slid_orbits(word, p)
+        return Orbits(_in_order(found), complete=False, remark=how, nearest=np.inf)
     refuse_resonance(p)
     if len(word) > LONGEST:
         raise ParameterError(

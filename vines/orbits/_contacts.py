@@ -13,7 +13,9 @@ STUCK = 64
 
 @njit
 def mark(rows, i):
-    """Return the wall of a contact, times the number of the ball where there are several."""
+    """Return the wall of a contact, times the number of the ball where there are several; 0 of a stop."""
+    if rows[i, col.KIND] == col.STOP:
+        return 0
     side = 1 if rows[i, col.SIDE] > 0.0 else -1
     return side * int(rows[i, col.ROW]) if rows.shape[1] > col.ROW else side
 
@@ -27,14 +29,14 @@ def completes(rows, n, i):
             continue
         if rows[j, col.KIND] == col.STICK:
             return True
-        if rows[j, col.KIND] == col.IMPACT and mark(rows, j) != mark(rows, i):
+        if rows[j, col.KIND] in (col.IMPACT, col.STOP) and mark(rows, j) != mark(rows, i):
             return False
     return False
 
 
 @linked_njit
 def contacts(rows, n, start):
-    """Return the rows that count as contacts after `start`: impacts, but of a complete chatter only the first.
+    """Return the rows that count as contacts after `start`: stops and impacts, of a complete chatter the first alone.
 
     A run of impacts on one wall that goes on at the end may be a chatter not yet complete, and one that began before
     `start` may have its first impact there: neither gives more than it is sure of.
@@ -46,7 +48,7 @@ def contacts(rows, n, start):
     sticks = False
     for i in range(1, n):
         kind = rows[i, col.KIND]
-        if kind == col.IMPACT and rows[i, col.TIME] > start:
+        if kind in (col.IMPACT, col.STOP) and rows[i, col.TIME] > start:
             keep[count] = i
             count += 1
         elif kind == col.STICK and rows.shape[1] > col.ROW:
@@ -94,7 +96,8 @@ def _without_chatter(rows, keep, count, i):
 @njit
 def _same_run(rows, i, j):
     """Say whether rows i and j are neighbouring impacts on the same wall, with no other event between."""
-    return j == i + 1 and mark(rows, i) == mark(rows, j)
+    near = j == i + 1 or (j == i + 2 and rows[i + 1, col.KIND] == col.SLIDE)
+    return near and mark(rows, i) == mark(rows, j) != 0
 
 
 @njit

@@ -29,6 +29,7 @@ from vines.orbits._family import GeneralProblem
 from vines.orbits._general import origin
 from vines.orbits._orbit import Orbit
 from vines.orbits._problem import Point, Problem, ZeroSet
+from vines.orbits._slid import SlidProblem, slides
 from vines.orbits._sticking_capsule import CapsuleSticking, rides_capsule
 from vines.orbits._sticking_curve import bound_beside
 from vines.orbits._sticking_ends import end_of
@@ -148,6 +149,8 @@ def _problem(orbit: Orbit, parameter: str) -> Problem:
         return CapsuleSticking(orbit, parameter)
     if orbit.word.sticking and rides_in_parallel(orbit.params):
         return BallsProblem(orbit, parameter)
+    if slides(orbit.params):
+        return SlidProblem(orbit, parameter)
     if not isinstance(orbit.params, Params):
         return ChainProblem(orbit, parameter)
     if orbit.word.sticking:

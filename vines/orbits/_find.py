@@ -15,6 +15,7 @@ from vines.orbits._general import refine, search
 from vines.orbits._orbit import Orbit
 from vines.orbits._own_word import sticking_word, whole_word
 from vines.orbits._shooting import shoots
+from vines.orbits._slid import refine_slid, slides
 from vines.orbits._sticking_capsule import capsule_sticks, rides_capsule
 from vines.orbits._sticking_of_balls import rides_in_parallel
 from vines.orbits._sticking_search import no_sticking_orbit, refine_sticking
@@ -48,7 +49,8 @@ def find_orbit(word: str | Word, p: Any, guess: Orbit | npt.ArrayLike | None = N
         An orbit of the word at nearby parameters, or times of the impacts in the canonical order of the word, for a
         forcing of phase zero at t = 0; for a word with a star time and v1 of the release after the first one, two
         numbers; where flights have no closed form (`systems.CubicBarriers`) an orbit, or an (N, 5) array of t, x1, v1,
-        x2, v2 just before each impact. The solution that Newton's method finds from there is returned.
+        x2, v2 just before each impact; where a ball slides with friction x1, v1, v2 and t just before the first impact,
+        four. The solution that Newton's method finds from there is returned.
 
     Returns
     -------
@@ -72,6 +74,8 @@ def find_orbit(word: str | Word, p: Any, guess: Orbit | npt.ArrayLike | None = N
     """
     word = whole_word(word, p)
     if guess is not None:
+        if slides(p) and not word.sticking:
+            return refine_slid(word, p, guess)
         if word.sticking and rides_capsule(p):
             return capsule_sticks(word, p)
         if word.sticking and rides_in_parallel(p):
@@ -90,6 +94,8 @@ def find_orbit(word: str | Word, p: Any, guess: Orbit | npt.ArrayLike | None = N
         raise OrbitNotFound(f"no {word} orbit at any parameters: {found.remark}; give a word with both L and R")
     if shoots(p):
         raise OrbitNotFound(f"no {word} orbit at {p}: {found.remark}; give one at nearby parameters as guess")
+    if slides(p):
+        raise OrbitNotFound(f"no {word} orbit at {p} ({found.remark}); vines.settle says what one settles to")
     nearest = search(word, p)[1] if found.complete else found.nearest
     how = "there is none that never sticks (all flight times were searched); " if found.complete else ""
     raise OrbitNotFound(

@@ -17,6 +17,7 @@ from vines.orbits._general import origin, refine
 from vines.orbits._orbit import Orbit
 from vines.orbits._problem import ZeroSet
 from vines.orbits._shooting import shoots
+from vines.orbits._slid import SlidProblem, slid_image, slides
 from vines.orbits._sticking_capsule import capsule_sticks, rides_capsule
 from vines.orbits._sticking_of_balls import mirrored_balls, rides_in_parallel
 from vines.orbits._sticking_orbit import mirrored_sticking
@@ -43,6 +44,8 @@ def mirror_image(orbit: Orbit) -> Orbit:
         return capsule_sticks(orbit.word.mirror, orbit.params)
     if orbit.word.sticking:
         return (mirrored_balls if rides_in_parallel(orbit.params) else mirrored_sticking)(orbit)
+    if slides(orbit.params):
+        return slid_image(orbit)
     word, t, states = orbit.word.mirror, orbit.t + orbit.params.period / 2, -orbit.states
     if any(word.balls):
         word, names = word.relabelled(getattr(orbit.params, "alike", ()))
@@ -54,8 +57,10 @@ def mirror_image(orbit: Orbit) -> Orbit:
     return assemble(word, orbit.params, t, states, orbit.remark)
 
 
-def family_through(orbit: Orbit, parameter: str, *, symmetric: bool) -> GeneralProblem | ChainProblem:
+def family_through(orbit: Orbit, parameter: str, *, symmetric: bool) -> GeneralProblem | ChainProblem | SlidProblem:
     """Return the family of an orbit in a parameter, by the closing equations that hold for any word."""
+    if slides(orbit.params):
+        return SlidProblem(orbit, parameter, symmetric)
     form = GeneralProblem if isinstance(orbit.params, Params) else ChainProblem
     return form(orbit, parameter, symmetric=symmetric)
 

@@ -162,7 +162,7 @@ class Orbit:
     def energy_imbalance(self) -> float:
         """What base work less damper and impact losses leaves over, relative to the base work: rounding."""
         m = self.measures
-        lost = m.damper_loss + m.impact_loss
+        lost = m.damper_loss + m.impact_loss + m.travel_loss
         return (m.base_work - lost) / max(abs(m.base_work), lost)
 
     @cached_property

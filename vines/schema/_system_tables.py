@@ -51,6 +51,8 @@ def of_system(name: str) -> Table:
     form = tomllib.loads((folder / f"{base}.toml").read_text("utf-8"))
     more = folder / "systems" / "columns" / f"{base}.toml"
     entries = [*form["columns"], *(tomllib.loads(more.read_text("utf-8"))["columns"] if more.exists() else ())]
+    # what only some systems have says which
+    entries = [each for each in entries if called in each.pop("only", (called,))]
     # a coordinate may be called as a column that the common table has anyhow
     expanded = [each for entry in entries for own in _of_balls(entry, system) for each in expand(own, system)]
     columns = {each["name"]: each for each in reversed(expanded)}

@@ -11,14 +11,19 @@ import math
 from vines.dynamics._advance import A_V2, IMPACT, KIND, SIDE, STICK, V1, V2, X1, X2, advance, begin, law_of
 from vines.dynamics._contact import next_contact
 from vines.dynamics._flight import (
+    ball_flown,
     derivatives,
+    drift,
     fifth,
     flight,
     flown,
     forced_fifth,
     fourth_bound,
     free_ball,
+    launched,
     pull,
+    rate_alone,
+    relative,
     ringing,
     sixth,
     speed_terms,
@@ -36,7 +41,21 @@ from vines.kernels import fused_njit, njit
 
 __all__: list[str] = []
 
-for _name in (advance, begin, carry_basis, write_end, law_of, next_contact, next_release, flown):
+for _name in (
+    advance,
+    begin,
+    carry_basis,
+    write_end,
+    law_of,
+    next_contact,
+    next_release,
+    flown,
+    launched,
+    ball_flown,
+    drift,
+    rate_alone,
+    relative,
+):
     _name.register(PairConstants)(_name.first)
 
 width_of.register(PairTable)(width_of.first)
@@ -110,7 +129,7 @@ pull.register(PairConstants)(pull_of_tilt)
 
 @ringing.register(PairConstants)
 @njit
-def _ringing(c, x1, v1, phase):
+def _ringing(c, x1, v1, v2, phase):
     return 0.0
 
 
