@@ -21,7 +21,7 @@ from vines.dynamics._advance import (
     X2,
 )
 from vines.dynamics._constants import Constants
-from vines.dynamics._flight import advance_phase, derivatives, flight, flown, free_ball, phasors, turn
+from vines.dynamics._flight import derivatives, flight, flown, free_ball, phase_after, phasors, turn
 from vines.dynamics._integrals import energies_between, peak_between, segment_integrals
 from vines.kernels import by_type, entry_njit, linked_njit, njit, zero_matrix, zero_vector
 
@@ -67,7 +67,7 @@ def segment_state(c, row, tau):
     o = c.stuck if mode != 0.0 else c.free
     motion = flown(c, o, flight(c, o, row[X1], row[A_V1], row[PHASE], row[TIME]), tau)
     x1, v1, _, _, _ = derivatives(o, c.Omega, *motion)
-    phase = advance_phase(row[PHASE], c.Omega * tau)
+    phase = phase_after(c, row[PHASE], c.Omega * tau, row[TIME], row[TIME] + tau)
     if mode != 0.0:
         return x1, v1, x1 - mode, v1, phase
     way, v2 = free_ball(c, row[A_V2], tau)

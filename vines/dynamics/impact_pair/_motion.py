@@ -18,6 +18,7 @@ from vines.dynamics._flight import (
     forced_fifth,
     fourth_bound,
     free_ball,
+    phase_after,
     pull,
     ringing,
     sixth,
@@ -36,7 +37,7 @@ from vines.kernels import fused_njit, njit
 
 __all__: list[str] = []
 
-for _name in (advance, begin, write_end, law_of, next_contact, next_release, flown):
+for _name in (advance, begin, write_end, law_of, next_contact, next_release, flown, phase_after):
     _name.register(PairConstants)(_name.first)
 
 width_of.register(PairTable)(width_of.first)

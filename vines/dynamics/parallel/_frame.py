@@ -13,6 +13,7 @@ from vines.dynamics._flight import (
     fourth_bound,
     free_ball,
     modulus,
+    phase_after,
     phasors,
     pull,
     ringing,
@@ -101,6 +102,7 @@ def _speed_terms(c, ur, ui, gr, gi):
 
 
 holds_for.register(ParallelConstants)(holds_for.first)
+phase_after.register(ParallelConstants)(phase_after.first)
 free_ball.register(ParallelConstants)(falling_ball)
 pull.register(ParallelConstants)(pull_of_tilt)
 
