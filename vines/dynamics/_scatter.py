@@ -15,7 +15,7 @@ from vines.dynamics._random import normal
 from vines.errors import ParameterError, nearest
 from vines.model import DAMPING, FREQUENCY, Range, System
 
-__all__ = ["OrnsteinUhlenbeck", "Scatter"]
+__all__ = ["BEGUN", "OrnsteinUhlenbeck", "Scatter"]
 
 Floats = npt.NDArray[np.float64]
 
@@ -130,6 +130,20 @@ class Scatter:
     def coloured(self) -> OrnsteinUhlenbeck | None:
         """The coloured force, if there is one."""
         return self.ou if isinstance(self.ou, OrnsteinUhlenbeck) and self.ou.sigma > 0.0 else None
+
+    @property
+    def parts(self) -> tuple[str, ...]:
+        """What of it is not left out, by name.
+
+        Examples
+        --------
+        >>> Scatter(sigma_r=0.1, ou={"sigma": 0.0, "correlation_time": 1.0}, spread={"r": 0.01}).parts
+        ('sigma_r', 'spread')
+        """
+        numbers = ("sigma_r", "r_speed", "noise", "second", "phase_diffusion")
+        found = [name for name in numbers if getattr(self, name) != 0.0]
+        found += ["ou"] if self.coloured is not None else []
+        return (*found, *(["spread"] if any(self.spread.values()) else []))
 
     def seeded(self, seed: int) -> Scatter:
         """Return the same with another seed."""

@@ -47,7 +47,7 @@ from vines.dynamics._sticking import UNRESOLVED, holds_for, next_release, releas
 from vines.dynamics._window import write_end
 from vines.kernels import doubles_at, fused_njit, linked_njit, loop_njit
 
-__all__ = ["HELD", "INDEX", "LEFT", "end_of", "piece_at", "redraw", "sagging", "under"]
+__all__ = ["HELD", "INDEX", "LEFT", "end_of", "piece_at", "place_of", "redraw", "sagging", "under"]
 
 HELD, LEFT, INDEX = 6, 7, 8
 
@@ -59,7 +59,7 @@ APART = 1.0 - 1e-12
 
 
 @fused_njit
-def _place(c, index):
+def place_of(c, index):
     """Return the place of a draw in the room, where it is by then."""
     drawn = doubles_at(c.room, DRAWS)
     place = index - drawn[FIRST]
@@ -83,7 +83,7 @@ def _phase_after(c, phase, angle, before, after):
         index, last = piece_at(c, before), piece_at(c, after)
         while index < last:
             index += 1.0
-            angle += turns[_place(c, index)]
+            angle += turns[place_of(c, index)]
     return advance_phase(phase, angle)
 
 
@@ -100,7 +100,7 @@ def _flight(c, o, x, v, phase, t):
     if c.drawn:
         index = piece_at(c, t)
         left = (index + 1.0) * c.grid - (t - c.origin)
-        held = doubles_at(c.room + 8 * DRAWS, AHEAD)[_place(c, index)]
+        held = doubles_at(c.room + 8 * DRAWS, AHEAD)[place_of(c, index)]
     ur = x - held
     return ur, (pr + qr - o.first.half * ur - v) * o.first.inverse, pr, pi, qr, qi, held, left, index
 
@@ -174,7 +174,7 @@ def under(c, o, motion, place):
 @fused_njit
 def redraw(c, o, motion):
     """Return the motion after the next draw."""
-    return under(c, o, motion, _place(c, motion[INDEX] + 1.0))
+    return under(c, o, motion, place_of(c, motion[INDEX] + 1.0))
 
 
 for _name in (advance, begin, free_ball, pull, write_end):

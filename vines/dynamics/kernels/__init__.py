@@ -38,6 +38,7 @@ from vines.dynamics._impact_law import (
 from vines.dynamics._integrals import largest_displacement, segment_integrals
 from vines.dynamics._room import constants, room_of, table_of
 from vines.dynamics._saltation import jacobian_kernel
+from vines.dynamics._scatter_table import colour_at
 from vines.dynamics._sticking import next_release
 from vines.dynamics._tangent import directions, flow_basis, jump_basis, lyapunov_blocks, offset, tangent_product
 from vines.dynamics._totals import ball_mass, segment_state, window_totals
@@ -53,6 +54,7 @@ __all__ = [
     "after_impact_kernel",
     "ball_mass",
     "begin",
+    "colour_at",
     "constants",
     "constants_at",
     "constants_kernel",
