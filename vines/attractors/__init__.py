@@ -7,7 +7,8 @@ from vines.attractors._basins import Basins, basins
 from vines.attractors._classified import Classified
 from vines.attractors._classify import classify_many
 from vines.attractors._coexisting import coexisting, random_starts
-from vines.attractors._exit_times import EXIT, Exits, exits
+from vines.attractors._exit_times import Exits, exits
+from vines.attractors._exit_work import EXIT
 from vines.attractors._holding import Holding, mean_interval, stationary_law
 from vines.attractors._orbit_of import orbit_of, orbit_through
 from vines.attractors._search import Lifetime

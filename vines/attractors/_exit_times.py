@@ -3,32 +3,20 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from functools import cached_property, partial
+from functools import cached_property
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
-from vines.attractors._alike import SAME, Motion, apart
+from vines.attractors._alike import Motion
 from vines.attractors._attractor import Attractor
-from vines.attractors._classified import Classified
-from vines.attractors._classify import classify_many
 from vines.attractors._coexisting import coexisting
-from vines.attractors._exit_watch import (
-    CAPPED,
-    GOES_ON,
-    LEFT_IT,
-    M_COUNT,
-    M_DONE,
-    M_STATUS,
-    MARKS,
-    places_block,
-    watch_block,
-)
-from vines.attractors._holding import Holding, mean_interval, stationary_law
-from vines.attractors._regime import Regime, begun, named_states
+from vines.attractors._exit_splitting import split
+from vines.attractors._exit_work import EACH, Work
+from vines.attractors._holding import Holding, stationary_law
 from vines.attractors._settle import settle as settle_run
 from vines.attractors._settle import settle_from
 from vines.attractors._shares import share_error
@@ -36,23 +24,12 @@ from vines.bounds import check_periods
 from vines.domains import Named, Number, Of, Parameters, Whole, stated
 from vines.dynamics import Scatter
 from vines.dynamics.kernels import room_of
-from vines.dynamics.runs import EVENTS_PER_PERIOD, each_thread, threads_allowed
-from vines.errors import ParameterError
-from vines.model import Params
+from vines.errors import ParameterError, StateError
 from vines.orbits import all_orbits
 
-__all__ = ["EXIT", "Exits", "exits"]
+__all__ = ["Exits", "exits"]
 
 Floats = npt.NDArray[np.float64]
-
-EXIT = np.dtype(
-    [("regime", "i8"), ("seed", "i8"), ("T_exit", "f8"), ("to", "i8"), ("censored", "?"), ("excursions", "i8")]
-)
-"""A run: the regime that it began in, the number of its stream, the forcing periods until it left it or the watch
-ended, the regime that it went to (-1: none, or not known), and how often it came back after the pattern had differed."""
-
-EACH = 1 << 24
-"""Streams of a regime; those of its runs come first."""
 
 SYSTEMS = ("vi_nes", "impact_pair")
 """Systems that can have scatter."""
@@ -60,8 +37,11 @@ SYSTEMS = ("vi_nes", "impact_pair")
 SKELETON = ("r_speed", "second")
 """What would change the attractors themselves."""
 
-CHUNK = 64
-"""Forcing periods after which runs are looked at where patterns alone do not tell two regimes apart."""
+NOT_SPLIT, LEAST_SPLIT = ("phase_diffusion", "spread"), 16
+"""What a splitting cannot do, and the fewest runs of it."""
+
+FEW = 10
+"""Exits from which on the rate of plain runs is taken, whatever a splitting says."""
 
 
 @dataclass(frozen=True)
@@ -83,8 +63,12 @@ class Exits:
     found : list of int
     runs : structured ndarray, dtype EXIT
         The runs, in the order of their regimes and streams.
+    wait : int
+        Forcing periods that a run had to hold before it counted.
     holdings : list of Holding
-        Of each regime.
+        Of each regime, by its runs.
+    split : list of Holding
+        Of periodic regimes, by splitting, where it was asked for and could be done.
     """
 
     params: Any
@@ -95,12 +79,19 @@ class Exits:
     starts: int
     found: list[int]
     runs: npt.NDArray[np.void] = field(repr=False)
+    wait: int
     holdings: list[Holding]
+    split: list[Holding]
 
     @cached_property
     def law(self) -> tuple[Floats, Floats, Floats]:
-        """Share of the time in each regime in the long run, and the ends of its interval; see `stationary_law`."""
-        return stationary_law(self.holdings, self.scatter.seed)
+        """Share of the time in each regime in the long run, and the ends of its interval; see `stationary_law`.
+
+        Where runs saw fewer than `FEW` exits from a regime, and a splitting saw some, its rate is taken.
+        """
+        rare = {each.regime: each for each in self.split}
+        used = [rare.get(each.regime, each) if each.exits < FEW else each for each in self.holdings]
+        return stationary_law(used, self.scatter.seed)
 
     def basin(self, k: int) -> tuple[float, float]:
         """Return the share of the random starts that came to regime k without noise, and its standard error."""
@@ -112,19 +103,19 @@ class Exits:
     def __str__(self) -> str:
         share, low, high = self.law
         lines = [f"exits at {self.params}"]
-        for k, (attractor, each) in enumerate(zip(self.attractors, self.holdings, strict=True)):
-            name = attractor.name or attractor.regime
+        for each in (*self.holdings, *self.split):
+            k = each.regime
             basin, error = self.basin(k)
             to = ", ".join(f"{n} to {self._name(j)}" for j, n in sorted(each.to.items())) or "none seen"
             lines.append(
-                f"  {k} {name}: mean {each.mean:.4g} periods ({each.low:.4g} to {each.high:.4g}), exits {to} of "
-                f"{each.runs} runs; {share[k]:.3f} ({low[k]:.3f} to {high[k]:.3f}) of the time, "
-                f"{basin:.3f} ± {error:.3f} of the starts"
+                f"  {self._name(k)} by {each.runs} {'runs' if each.method == 'runs' else 'splittings'}: mean "
+                f"{each.mean:.4g} periods ({each.low:.4g} to {each.high:.4g}), exits {to}; {share[k]:.3f} "
+                f"({low[k]:.3f} to {high[k]:.3f}) of the time, {basin:.3f} ± {error:.3f} of the starts"
             )
         return "\n".join(lines)
 
     def _name(self, k: int) -> str:
-        return "elsewhere" if k < 0 else f"{k} {self.attractors[k].name or self.attractors[k].regime}"
+        return f"{k} {self.attractors[k].name or self.attractors[k].regime}"
 
 
 @stated(
@@ -134,6 +125,8 @@ class Exits:
     runs=Whole(most=EACH // 2),
     periods=Whole(),
     confirm=Whole(most=4096),
+    wait=Whole(least=0),
+    splitting=Whole(least=0, most=100_000),
     random=Whole(least=0, most=1_000_000),
     seed=Whole(least=0),
     settle=Number(least=0),
@@ -150,6 +143,8 @@ def exits(
     runs: int = 64,
     periods: int = 2000,
     confirm: int = 8,
+    wait: int = 0,
+    splitting: int = 0,
     random: int = 64,
     seed: int = 0,
     settle: float = 400,
@@ -159,18 +154,18 @@ def exits(
 ) -> Exits:
     """Find how long regimes hold under noise.
 
-    The regimes are the attractors that the start and random starts come to without noise, and those that runs with noise
-    go to. From each of them `runs` runs begin. A run has left its regime when its pattern of impacts, period by period,
-    has differed for `confirm` periods and it would, if the noise ended there, settle to another regime: the time is
-    that of the first of these periods. A run that would come back goes on.
+    The regimes are the attractors that the start and random starts come to without noise, and those that runs with
+    noise go to. From each of them `runs` runs begin. A run has left its regime when its pattern of impacts, period by
+    period, has differed for `confirm` periods and it would, if the noise ended there, settle to another regime: the
+    time is that of the first of these periods. A run that would come back goes on.
 
     Parameters
     ----------
     p : Params, or the parameters of the impact pair
         Parameters. The pair can have a scatter of its restitution.
     scatter : Scatter
-        The noise; without r_speed and second, which would change the regimes themselves. With a spread each run is a unit
-        of its own, and regimes are told apart by their type alone.
+        The noise; without r_speed and second, which would change the regimes themselves. With a spread each run is a
+        unit of its own, and regimes are told apart by their type alone.
     start : mapping, optional
         The first start by the names of the system, and phase.
     words : sequence of str
@@ -182,6 +177,12 @@ def exits(
     confirm : int
         Periods in a row over which the pattern has to differ. Of an irregular regime a period differs that shows the
         pattern of another regime, the same one each time.
+    wait : int
+        Forcing periods that a run has to hold before it counts: near a bifurcation the noise takes as long as a small
+        disturbance to fill the neighbourhood of an orbit, and until then exits are not as likely as later.
+    splitting : int
+        Runs of each level of a splitting, at least 16, for exits from periodic regimes that plain runs are too few for;
+        0 for none.
     random, seed : int
         Random starts, and their seed.
     settle, record, watch : float
@@ -206,19 +207,26 @@ def exits(
     >>> [a.name for a in found.attractors], found.runs["censored"].all()
     (['1:1'], True)
     """
-    check_exits(p, scatter)
+    check_exits(p, scatter, splitting)
+    if not wait < periods:
+        raise StateError(f"wait is {wait}, allowed is wait < periods, which is {periods}")
     check_periods("(settle + record) (1 + random)", (settle + record) * (1 + random))
     check_periods("runs periods", float(runs) * periods)
     how: dict[str, Any] = {"settle": settle, "record": record, "watch": watch}
     begin = dict(start or {})
     own = settle_run(p, phi=begin.pop("phase", 0.0), **begin, **how)
     listed = coexisting([own], random=random, seed=seed, **how)[0]
-    work = _Work(p, scatter, how, periods, confirm, threads)
+    work = Work(p, scatter, how, periods, confirm, wait, threads)
     for attractor, count in listed:
         work.add(attractor, count)
     for attractor in _on_orbits(p, words, how):
         work.known_as(Motion.of(attractor), lambda attractor=attractor: attractor)
-    work.all_regimes(runs)
+    rare: dict[int, Holding | None] = {}
+    while len(rare) < len(work.regimes):
+        work.all_regimes(runs)
+        for k in range(len(rare), len(work.regimes)):
+            periodic = work.regimes[k].attractor.regime == "periodic"
+            rare[k] = split(work, k, splitting) if splitting and periodic else None
     return Exits(
         p,
         scatter,
@@ -228,17 +236,28 @@ def exits(
         random,
         work.found,
         np.concatenate([work.runs[k] for k in range(len(work.regimes))]),
+        wait,
         [work.holding(k) for k in range(len(work.regimes))],
+        [each for each in rare.values() if each is not None],
     )
 
 
-def check_exits(p: Any, scatter: Scatter) -> None:
+def check_exits(p: Any, scatter: Scatter, splitting: int = 0) -> None:
     """Refuse a system, or a scatter, of which exits cannot be found."""
     if p.system.name not in SYSTEMS:
         raise ParameterError(f"exits cannot do the system {p.system.name!r}; it can do {', '.join(SYSTEMS)}")
     if wrong := [name for name in scatter.parts if name in SKELETON]:
         raise ParameterError(
             f"scatter has {', '.join(wrong)}, which changes the regimes themselves; exits takes the noise alone"
+        )
+    if splitting and (wrong := [name for name in scatter.parts if name in NOT_SPLIT]):
+        raise ParameterError(
+            f"scatter has {', '.join(wrong)}, which splitting cannot do: it measures distances from one orbit, at one "
+            "phase of the forcing; set splitting to 0"
+        )
+    if splitting and (splitting < LEAST_SPLIT or scatter.hold % 2):
+        raise ParameterError(
+            f"splitting is {splitting}, hold is {scatter.hold}; allowed is splitting >= {LEAST_SPLIT} with an even hold"
         )
     values = scatter.units(p.system, p.as_array()[None])
     room_of(p).scattered(values, scatter, np.zeros(1, dtype=np.int64))
@@ -253,151 +272,3 @@ def _on_orbits(p: Any, words: Sequence[str], how: Mapping[str, Any]) -> Iterator
                 phase = float(orbit.phase[0])
                 at = room.leave(p, orbit.states[0].tolist(), phase)
                 yield settle_from(p, at | {"phase": phase}, **{**how, "settle": 0})
-
-
-class _Work:
-    """The regimes that are known, and the runs that began in each."""
-
-    def __init__(
-        self, p: Any, scatter: Scatter, how: dict[str, Any], periods: int, confirm: int, threads: int | None
-    ) -> None:
-        self.p, self.scatter, self.how = p, scatter, how
-        self.periods, self.confirm = periods, confirm
-        self.cores = threads_allowed() if threads is None else max(1, threads)
-        self.regimes: list[Regime] = []
-        self.motions: list[Motion] = []
-        self.found: list[int] = []
-        self.runs: dict[int, npt.NDArray[np.void]] = {}
-
-    def add(self, attractor: Attractor, count: int = 0) -> int:
-        """Add a regime and return its number."""
-        self.regimes.append(Regime.of(attractor))
-        self.motions.append(Motion.of(attractor))
-        self.found.append(count)
-        return len(self.regimes) - 1
-
-    def all_regimes(self, runs: int) -> None:
-        """Run from every regime, those found on the way included; irregular ones last, when all patterns are known."""
-        while open_ones := [k for k in range(len(self.regimes)) if k not in self.runs]:
-            k = min(open_ones, key=lambda k: (self.regimes[k].irregular, k))
-            self.runs[k] = self.watch(k, k * EACH + np.arange(runs))
-
-    def watch(self, k: int, streams: npt.NDArray[np.int64]) -> npt.NDArray[np.void]:
-        """Return the runs that begin in a regime."""
-        n, regime = len(streams), self.regimes[k]
-        values = self.scatter.units(self.p.system, np.tile(self.p.as_array(), (n, 1)), int(streams[0]))
-        out = np.zeros(n, dtype=EXIT)
-        out["regime"], out["seed"], out["to"], out["censored"] = k, streams, -1, True
-        states, marks = begun(self.p, np.tile(regime.start, (n, 1))), np.zeros((n, MARKS), dtype=np.int64)
-        going = np.arange(n)
-        until = 0
-        while len(going):
-            until = min(until + CHUNK, self.periods) if self.ambiguous(k) else self.periods
-            self.run_on(k, values, streams, states, marks, going, until)
-            left = going[marks[going, M_STATUS] == LEFT_IT]
-            looked = going[marks[going, M_STATUS] == GOES_ON] if self.ambiguous(k) else left[:0]
-            for some, since in ((left, self.confirm), (looked, CHUNK // 2)):
-                to = self.where(values[some], streams[some], states[some], marks[some, M_DONE])
-                gone = to != k
-                out["to"][some[gone]], out["censored"][some[gone]] = to[gone], False
-                out["T_exit"][some[gone]] = np.maximum(marks[some[gone], M_DONE] - since, 0)
-                marks[some[gone], M_STATUS] = LEFT_IT
-                back = some[~gone]
-                out["excursions"][back] += since == self.confirm
-                marks[back, M_STATUS], marks[back, M_COUNT] = GOES_ON, 0
-            on = out["censored"] & (marks[:, M_STATUS] == GOES_ON) & (marks[:, M_DONE] < self.periods)
-            going = np.flatnonzero(on)
-        out["T_exit"][out["censored"]] = marks[out["censored"], M_DONE]
-        return out
-
-    def ambiguous(self, k: int) -> bool:
-        """Say whether another regime has patterns of this one, so that an exit may not show in them."""
-        own = self.regimes[k]
-        others = [each.codes for j, each in enumerate(self.regimes) if j != k]
-        return not own.irregular and any(np.intersect1d(own.codes, each).size for each in others)
-
-    def run_on(
-        self,
-        k: int,
-        values: Floats,
-        streams: npt.NDArray[np.int64],
-        states: Floats,
-        marks: npt.NDArray[np.int64],
-        runs: npt.NDArray[np.int64],
-        until: int,
-    ) -> None:
-        """Run on, in blocks on all cores, until patterns have differed or the time is over."""
-        known = np.concatenate([each.codes for each in self.regimes])
-        groups = np.concatenate([np.full(len(each.codes), j) for j, each in enumerate(self.regimes)])
-        size = max(1, -(-len(runs) // (4 * self.cores)))
-
-        def work(block: slice) -> None:
-            some = runs[block]
-            own, mark = states[some], marks[some]
-            table, _room = room_of(self.p).scattered(values[some], self.scatter, streams[some])
-            watch_block(
-                table,
-                own,
-                until,
-                EVENTS_PER_PERIOD,
-                known,
-                groups,
-                k,
-                self.regimes[k].irregular,
-                self.confirm,
-                NOWHERE,
-                NO_WEIGHTS,
-                0.0,
-                math.inf,
-                mark,
-            )
-            states[some], marks[some] = own, mark
-
-        each_thread(work, [slice(j, j + size) for j in range(0, len(runs), size)], self.cores)
-
-    def where(
-        self, values: Floats, streams: npt.NDArray[np.int64], states: Floats, done: npt.NDArray[np.int64]
-    ) -> npt.NDArray[np.int64]:
-        """Return the regimes to which runs would settle if the noise ended now; a new one gets a number."""
-        if not len(states):
-            return np.empty(0, dtype=np.int64)
-        out = np.empty((len(states), 6))
-        table, _room = room_of(self.p).scattered(values, self.scatter, streams)
-        places_block(table, states.copy(), done.astype(np.float64), EVENTS_PER_PERIOD, out)
-        many = classified(self.p, values, named_states(self.p, out), self.how)
-        ratio, size = many.measures["kinetic_ratio"].tolist(), many.measures["max_abs_x1"].tolist()
-        regimes, found = many.regime.tolist(), []
-        for j, word in enumerate(many.words):
-            counts = (word.n, word.m, word.p) if word else (None, None, None)
-            found.append(self.known_as(Motion(regimes[j], *counts, ratio[j], size[j]), partial(many.attractor, j)))
-        return np.array(found)
-
-    def known_as(self, motion: Motion, attractor: Callable[[], Attractor]) -> int:
-        """Return the number of the regime that a motion is; a new one gets the next."""
-        near = math.inf if self.scatter.spread else SAME
-        for k, known in enumerate(self.motions):
-            distance = apart(known, motion)
-            if distance < near or distance == 0.0:
-                return k
-        return self.add(attractor())
-
-    def holding(self, k: int) -> Holding:
-        """Return how long a regime holds, from its runs."""
-        rows = self.runs[k]
-        left = rows["to"][~rows["censored"]]
-        watched = float(rows["T_exit"].sum())
-        interval = mean_interval(len(left), watched) if watched > 0 else (0.0, 0.0, 0.0)
-        to = {int(j): int(n) for j, n in zip(*np.unique(left, return_counts=True), strict=True)}
-        return Holding(k, "runs", len(rows), len(left), watched, *interval, to)
-
-
-NOWHERE, NO_WEIGHTS = np.empty((0, 4)), np.zeros((4, 4))
-
-
-def classified(p: Any, values: Floats, starts: Mapping[str, Floats], how: Mapping[str, Any]) -> Classified:
-    """Return what runs without noise settle to, each with its own parameters."""
-    names = [each.name for each in p.system.parameters]
-    if isinstance(p, Params):
-        return classify_many(dict(zip(names, values.T, strict=True)), starts, **how)
-    points: Sequence[Any] = [type(p).of(dict(zip(names, row, strict=True))) for row in values.tolist()]
-    return classify_many(points, starts, **how, apart=0.0)

@@ -12,12 +12,12 @@ __all__ = [
     "CAPPED",
     "FELL",
     "GOES_ON",
+    "LEFT_IT",
+    "MARKS",
     "M_COUNT",
     "M_DONE",
     "M_GROUP",
     "M_STATUS",
-    "LEFT_IT",
-    "MARKS",
     "ROSE",
     "codes_block",
     "places_block",
@@ -89,7 +89,9 @@ def _distance(c, state, t, centres, weights):
 
 
 @entry_njit
-def watch_block(table, states, until, cap, known, groups, own, irregular, confirm, centres, weights, lower, upper, marks):
+def watch_block(
+    table, states, until, cap, known, groups, own, irregular, confirm, centres, weights, lower, upper, peaks, marks
+):
     """Run on until the pattern has differed for `confirm` periods, a distance is passed, or the time is over.
 
     Parameters
@@ -114,6 +116,8 @@ def watch_block(table, states, until, cap, known, groups, own, irregular, confir
         States and what makes distances of differences; no centre, no distance.
     lower, upper : float
         Distances at which a run stops.
+    peaks : ndarray, shape (n,)
+        Largest distances, changed.
     marks : ndarray of int, shape (n, MARKS)
         Changed.
     """
@@ -139,6 +143,7 @@ def watch_block(table, states, until, cap, known, groups, own, irregular, confir
                 mark[M_STATUS] = LEFT_IT
             elif centres.shape[0] > 0:
                 away = _distance(c, state, stop, centres, weights)
+                peaks[who] = max(peaks[who], away)
                 if away >= upper:
                     mark[M_STATUS] = ROSE
                 elif away < lower:

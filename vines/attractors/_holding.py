@@ -43,7 +43,9 @@ class Holding:
         Mean time until it is left, in forcing periods, with the ends of its interval of 95 %; infinite where no exit
         was seen.
     to : mapping of int to int
-        Exits to each regime, -1 for those of which it is not known.
+        Exits to each regime.
+    early : int
+        Runs that left it before they were counted.
     relative_error : float
         Of a rate by splitting its relative standard error, else nan.
     """
@@ -57,6 +59,7 @@ class Holding:
     low: float
     high: float
     to: Mapping[int, int]
+    early: int = 0
     relative_error: float = math.nan
 
 

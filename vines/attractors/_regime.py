@@ -14,7 +14,7 @@ from vines.dynamics import Scatter, simulate
 from vines.dynamics.kernels import room_of
 from vines.dynamics.runs import EVENTS_PER_PERIOD
 
-__all__ = ["Regime", "begun", "named_states"]
+__all__ = ["Regime", "begun", "centres_of", "named_states"]
 
 Floats = npt.NDArray[np.float64]
 
@@ -57,12 +57,23 @@ class Regime:
         if attractor.regime in IRREGULAR:
             return cls(attractor, last, np.empty(0, dtype=np.int64))
         span = attractor.p or 1
-        hits = simulate(p, phi=phase, periods=span, **end).impacts["t"] / p.period
-        cuts = np.arange(CUTS) / CUTS
+        at: dict[str, Any] = end
+        hits = simulate(p, phi=phase, periods=span, **at).impacts["t"] / p.period
+        cuts: Floats = np.arange(CUTS, dtype=np.float64) / CUTS
         starts = _later(p, np.tile(last, (CUTS, 1)), cuts)
         found = [_codes(p, starts, span, mirrored) for mirrored in ([False, True] if p.mirrored else [False])]
         start = _later(p, last[None], np.array([_quiet(hits)]))[0]
         return cls(attractor, start, np.unique(np.concatenate(found)))
+
+
+def centres_of(regime: Regime) -> Floats:
+    """Return where a periodic regime, and its mirror image if it is another motion, is at the begin of its periods."""
+    attractor, p = regime.attractor, regime.attractor.params
+    own = _later(p, np.tile(regime.start, (attractor.p or 1, 1)), np.arange(attractor.p or 1, dtype=float))[:, :4]
+    if attractor.symmetric or not p.mirrored:
+        return own
+    half = np.arange(attractor.p or 1) + 0.5
+    return np.concatenate([own, -_later(p, np.tile(regime.start, (len(half), 1)), half)[:, :4]])
 
 
 def begun(p: Any, places: Floats) -> Floats:

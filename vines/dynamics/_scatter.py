@@ -9,7 +9,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 import numpy.typing as npt
 
-from vines.bounds import check_count, check_number, shown
+from vines.bounds import check_count, check_hold, check_number, shown
 from vines.dynamics._coloured import held_halves
 from vines.dynamics._random import normal
 from vines.errors import ParameterError, nearest
@@ -30,9 +30,6 @@ _TRIES = 1000
 
 NUMBERS_OF_SCATTER, BEGUN = 18, 10
 """Numbers of a run that a kernel needs, and which of them is the coloured force at its begin [A], nan if drawn."""
-
-LONGEST_STEP = 0.5
-"""Longest step of a coloured force, in units of the oscillator's time: within it the force has two values."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -145,9 +142,17 @@ class Scatter:
         found += ["ou"] if self.coloured is not None else []
         return (*found, *(["spread"] if any(self.spread.values()) else []))
 
-    def seeded(self, seed: int) -> Scatter:
-        """Return the same with another seed."""
-        return replace(self, seed=seed)
+    def scaled(self, level: float) -> Scatter:
+        """Return the same with all that is drawn so many times as large.
+
+        Examples
+        --------
+        >>> Scatter(sigma_r=0.01, second=0.1, ou={"sigma": 0.1, "correlation_time": 2.0}).scaled(2.0).parts
+        ('sigma_r', 'second', 'ou')
+        """
+        numbers = {name: level * getattr(self, name) for name in ("sigma_r", "noise", "phase_diffusion")}
+        ou = None if self.coloured is None else replace(self.coloured, sigma=level * self.coloured.sigma)
+        return replace(self, **numbers, ou=ou, spread={name: level * share for name, share in self.spread.items()})
 
     def numbers(self, table: Floats) -> Floats:
         """Return what the kernel needs of runs with these parameters, shape (n, NUMBERS_OF_SCATTER).
@@ -168,13 +173,8 @@ class Scatter:
         for row, values in zip(out, table, strict=True):
             lam, Omega = float(values[DAMPING]), float(values[FREQUENCY])
             if (lam, Omega) not in known:
+                check_hold(self.hold, Omega)
                 step = 4.0 * math.pi / (Omega * self.hold)
-                if step > LONGEST_STEP:
-                    raise ParameterError(
-                        f"hold is {self.hold}; with ou at Omega = {Omega:g} allowed is hold >= "
-                        f"{math.ceil(4.0 * math.pi / (Omega * LONGEST_STEP))}: two steps of the force may not last "
-                        f"longer than {LONGEST_STEP:g}, in units of 1/omega0"
-                    )
                 time = ou.correlation_time * 2.0 * math.pi / Omega
                 known[lam, Omega] = np.array([ou.sigma, step / time, math.nan, *held_halves(lam, step, time)])
             row[len(own) + 1 :] = known[lam, Omega]

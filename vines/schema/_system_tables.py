@@ -14,7 +14,8 @@ from vines.schema._declared import expand
 __all__ = ["OF_EACH_SYSTEM", "of_system", "of_systems", "system_table"]
 
 OF_EACH_SYSTEM = (
-    "attractors", "basins", "bifurcations", "branches", "curves", "impacts", "orbits", "points", "transients"
+    "attractors", "basins", "bifurcations", "branches", "curves", "exit_points", "exit_regimes", "exits", "impacts",
+    "orbits", "points", "transients",
 )  # fmt: skip
 """Tables that every system has: the VI-NES under these names, another one with its name before them."""
 
@@ -27,9 +28,11 @@ def of_systems() -> dict[str, tuple[str, str]]:
 
 
 def _tables_of(system: str) -> list[str]:
-    """Return the tables that a system has: only what has a damper of its own decays."""
+    """Return the tables that a system has: only what has a damper of its own decays, and one ball alone has scatter."""
     decays = "damper_loss" in read_system(system, most_balls(system)).energies.lost
-    return [base for base in OF_EACH_SYSTEM if decays or base != "transients"]
+    none = set() if decays else {"transients"}
+    none |= {base for base in OF_EACH_SYSTEM if base.startswith("exit")} if most_balls(system) else set()
+    return [base for base in OF_EACH_SYSTEM if base not in none]
 
 
 def system_table(system: str, base: str) -> str:

@@ -38,7 +38,8 @@ class _Pair(Room):
     ) -> tuple[PairScatterTable, np.ndarray]:
         if wrong := [name for name in scatter.parts if name not in ("sigma_r", "spread")]:
             raise ParameterError(
-                f"scatter of the impact pair has {', '.join(wrong)}; it can have sigma_r and spread: its capsule is driven"
+                f"scatter of the impact pair has {', '.join(wrong)}; it can have sigma_r and spread: its capsule moves "
+                "as it is driven"
             )
         return PairScatterTable(values, scatter.sigma_r, scatter.seed, streams), np.empty(0)
 

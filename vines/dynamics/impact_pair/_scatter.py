@@ -16,7 +16,6 @@ from vines.dynamics._random import normal
 from vines.dynamics._scatter_table import colour_at
 from vines.dynamics._sticking import holds_for, next_release
 from vines.dynamics._window import width_of, write_end
-from vines.dynamics.impact_pair import _motion as _motion
 from vines.dynamics.impact_pair._constants import Capsule, PairConstants, pair_constants
 from vines.kernels import fused_njit, njit
 
@@ -60,7 +59,10 @@ width_of.register(PairScatterTable)(width_of.first)
 @njit
 def _constants_at(table, k):
     c = pair_constants(table.values[k, 0], table.values[k, 1], table.values[k, 2])
-    return ScatterPair(*c, table.sigma_r, table.key, table.streams[k])
+    return ScatterPair(
+        c.mu, c.Omega, c.r, c.lam, c.B, c.G, c.period, c.window, c.near, c.correction, c.law, c.free, c.stuck,
+        table.sigma_r, table.key, table.streams[k],
+    )  # fmt: skip
 
 
 for _name in (
