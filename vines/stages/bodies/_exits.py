@@ -113,6 +113,7 @@ def _regimes(found: Exits) -> list[dict[str, Any]]:
                 "method": each.method,
                 "relaxation": _there(relaxation(attractor)),
                 "runs": each.runs,
+                "wait": float(found.wait),
                 "early": each.early,
                 "exits": each.exits,
                 "watched": each.watched,
