@@ -16,7 +16,7 @@ import numpy.typing as npt
 from scipy.stats import t as student
 
 from vines.attractors._exit_watch import FELL, GOES_ON, LEFT_IT, M_COUNT, M_DONE, M_STATUS, MARKS, ROSE
-from vines.attractors._exit_work import Work
+from vines.attractors._exit_work import UNDECIDED, Work
 from vines.attractors._holding import LEVEL, Holding
 from vines.attractors._regime import begun, centres_of
 
@@ -30,7 +30,7 @@ REPEATS = 8
 NEAR, FIRST, NEXT = 0.5, 0.9, 0.7
 """Shares of runs that are nearer: to the orbit than what counts as back, than the first level, than the next level."""
 
-MOST_LEVELS = 60
+MOST_LEVELS, TRIMS = 60, 4
 
 MEMORIES, FLUX = 4.0, 12.0
 """Relaxation times before what is counted begins, and over which runs come to the first level."""
@@ -109,16 +109,20 @@ class _Stages:
         """Find what the noise makes of the orbit: the unit of distances, what is near, and the first level."""
         run = _Runs(self, np.tile(self.work.regimes[self.k].start, (self.walkers, 1)), None)
         run.on(self.burn, 0.0, math.inf)
-        inside = run.marks[:, M_STATUS] == GOES_ON
+        inside = (run.marks[:, M_STATUS] == GOES_ON) & (run.marks[:, M_COUNT] == 0)
         if inside.sum() < max(16, self.walkers // 2):
             return False
         away = run.places()[inside, :4]
         square = ((away[:, None] - self.centres) ** 2).sum(axis=2)
         away -= self.centres[np.argmin(square, axis=1)]
-        values, vectors = np.linalg.eigh(away.T @ away / len(away))
-        kept = values > 1e-12 * values[-1]
-        self.weights = np.where(kept, 1.0 / np.sqrt(np.where(kept, values, 1.0)), 0.0)[:, None] * vectors.T
-        distance = np.sqrt(((away @ self.weights.T) ** 2).sum(axis=1))
+        distance = np.zeros(len(away))
+        for _ in range(TRIMS):
+            # Those farthest away may be on their way out, and would make the unit too long.
+            close = away[distance <= np.quantile(distance, FIRST)]
+            values, vectors = np.linalg.eigh(close.T @ close / len(close))
+            kept = values > 1e-12 * values[-1]
+            self.weights = np.where(kept, 1.0 / np.sqrt(np.where(kept, values, 1.0)), 0.0)[:, None] * vectors.T
+            distance = np.sqrt(((away @ self.weights.T) ** 2).sum(axis=1))
         self.near, self.first = np.quantile(distance, [NEAR, FIRST]).tolist()
         return True
 
@@ -221,7 +225,7 @@ class _Runs:
         to = self.work.where(
             self.values[some], self.streams[some], self.states[some], self.marks[some, M_DONE], self._begun(some)
         )
-        back = to == self.stages.k
+        back = (to == self.stages.k) | (to == UNDECIDED)
         self.gone[some[~back]] = to[~back]
         self.peaks[some[~back]] = math.inf
         self.marks[some[back], M_STATUS], self.marks[some[back], M_COUNT] = GOES_ON, 0

@@ -218,9 +218,12 @@ def exits(
     listed = coexisting([own], random=random, seed=seed, **how)[0]
     work = Work(p, scatter, how, periods, confirm, wait, threads)
     for attractor, count in listed:
-        work.add(attractor, count)
+        if attractor.settled:
+            work.add(attractor, count)
     for attractor in _on_orbits(p, words, how):
         work.known_as(Motion.of(attractor), lambda attractor=attractor: attractor)
+    if not work.regimes:
+        raise StateError(f"no start settled within {settle + record:g} periods and its patience: {own.reason}")
     rare: dict[int, Holding | None] = {}
     while len(rare) < len(work.regimes):
         work.all_regimes(runs)

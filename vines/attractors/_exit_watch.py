@@ -146,7 +146,7 @@ def watch_block(
                 peaks[who] = max(peaks[who], away)
                 if away >= upper:
                     mark[M_STATUS] = ROSE
-                elif away < lower:
+                elif away < lower and not differs:
                     mark[M_STATUS] = FELL
 
 

@@ -22,7 +22,7 @@ from vines.dynamics.kernels import room_of
 from vines.dynamics.runs import EVENTS_PER_PERIOD, each_thread, threads_allowed
 from vines.model import Params
 
-__all__ = ["EACH", "EXIT", "Work"]
+__all__ = ["EACH", "EXIT", "UNDECIDED", "Work"]
 
 Floats = npt.NDArray[np.float64]
 
@@ -36,6 +36,9 @@ EACH = 1 << 24
 """Streams of a regime; those of its runs come first."""
 
 NOWHERE, NO_WEIGHTS = np.empty((0, 4)), np.zeros((4, 4))
+
+UNDECIDED = -2
+"""Instead of a regime: a run that would take too long to settle, and is left to go on."""
 
 CHUNK = 64
 """Forcing periods after which runs are looked at where patterns alone do not tell two regimes apart."""
@@ -95,7 +98,7 @@ class Work:
             looked = going[marks[going, M_STATUS] == GOES_ON] if self.ambiguous(k) else left[:0]
             for some, since in ((left, self.confirm), (looked, CHUNK // 2)):
                 to = self.where(values[some], streams[some], states[some], marks[some, M_DONE])
-                gone = to != k
+                gone = (to != k) & (to != UNDECIDED)
                 out["to"][some[gone]], out["censored"][some[gone]] = to[gone], False
                 out["T_exit"][some[gone]] = np.maximum(marks[some[gone], M_DONE] - since, 0)
                 marks[some[gone], M_STATUS] = LEFT_IT
@@ -189,14 +192,20 @@ class Work:
         done: npt.NDArray[np.int64],
         begun: Floats | None = None,
     ) -> npt.NDArray[np.int64]:
-        """Return the regimes to which runs would settle if the noise ended now; a new one gets a number."""
+        """Return the regimes to which runs would settle if the noise ended now; a new one gets a number.
+
+        UNDECIDED where a run has not settled within its patience.
+        """
         if not len(states):
             return np.empty(0, dtype=np.int64)
         out = self.places(values, streams, states, done, begun)
         many = classified(self.p, values, named_states(self.p, out), self.how)
         ratio, size = many.measures["kinetic_ratio"].tolist(), many.measures["max_abs_x1"].tolist()
-        regimes, found = many.regime.tolist(), []
+        regimes, settled, found = many.regime.tolist(), many.settled.tolist(), []
         for j, word in enumerate(many.words):
+            if not settled[j]:
+                found.append(UNDECIDED)
+                continue
             counts = (word.n, word.m, word.p) if word else (None, None, None)
             found.append(self.known_as(Motion(regimes[j], *counts, ratio[j], size[j]), partial(many.attractor, j)))
         return np.array(found)
