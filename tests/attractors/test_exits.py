@@ -5,8 +5,12 @@ import math
 import numpy as np
 import pytest
 
-from vines.attractors import exits
+from vines.attractors import exits, settle_from
+from vines.attractors._regime import Regime, begun
 from vines.dynamics import Scatter
+from vines.dynamics._simulate import record
+from vines.dynamics.kernels import constants_at, room_of, state_now
+from vines.dynamics.kernels import rows as col
 from vines.errors import ParameterError, StateError
 from vines.model import Params
 from vines.systems import ImpactPair, Parallel
@@ -42,11 +46,31 @@ def test_runs_do_not_depend_on_cores_nor_on_how_many_there_are():
 
 
 def test_a_run_has_left_when_it_says_so():
-    # The run of one stream, simulated again: it follows the pattern LR until its exit, and settles elsewhere from there.
-    found = exits(FIG_11, Scatter(noise=0.2, seed=2), runs=8, periods=1000, **FEW)
-    own = found.runs[(found.runs["regime"] == 1) & ~found.runs["censored"]]
-    assert (own["T_exit"] > 0).all()
-    assert (own["to"] == 0).all()
+    # The run of one stream again, by the event loop alone: LR until its exit, and then another pattern.
+    noise = Scatter(noise=0.2, seed=2)
+    found = exits(FIG_11, noise, runs=8, periods=1000, **FEW)
+    own = found.runs[(found.runs["regime"] == 1) & ~found.runs["censored"] & (found.runs["excursions"] == 0)]
+    assert (found.runs["to"][found.runs["regime"] == 1] <= 0).all()
+    row, room = own[0], room_of(FIG_11)
+    table, _room = room.scattered(FIG_11.as_array()[None], noise, np.array([row["seed"]]))
+    state = begun(FIG_11, Regime.of(found.attractors[1]).start[None])[0]
+    last = int(row["T_exit"]) + 8
+    rows, status = record(constants_at(table, 0), state, [last * FIG_11.period], 1000, 4 * last)
+    hits = rows[rows[:, col.KIND] == col.IMPACT]
+    period = np.floor(hits[:, col.TIME] / FIG_11.period)
+    sides = ["".join("L" if side > 0 else "R" for side in hits[period == k, col.SIDE]) for k in range(last)]
+    assert status == "complete"
+    assert not {"LR", "RL"} & set(sides[-8:])
+    assert sides[-9] in ("LR", "RL")
+    assert sum(each in ("LR", "RL") for each in sides[:-8]) > 0.5 * (last - 8)
+    end = dict(
+        zip(
+            ("x1", "v1", "x2", "v2", "phase"),
+            state_now(constants_at(table, 0), state, last * FIG_11.period),
+            strict=False,
+        )
+    )
+    assert settle_from(FIG_11, end).regime == "chaotic"
     share, low, high = found.law
     assert share[0] > share[1]
     assert np.all(low <= high)
@@ -67,7 +91,13 @@ def test_waiting_leaves_out_what_left_early():
 
 
 def test_units_differ():
-    found = exits(Params(mu=0.01, A=0.015), Scatter(noise=0.01, spread={"mu": 0.02, "r": 0.01}, seed=5), runs=4, periods=50, random=4)
+    found = exits(
+        Params(mu=0.01, A=0.015),
+        Scatter(noise=0.01, spread={"mu": 0.02, "r": 0.01}, seed=5),
+        runs=4,
+        periods=50,
+        random=4,
+    )
     assert [a.name for a in found.attractors] == ["1:1"]
     assert found.runs["censored"].all()
 
@@ -77,7 +107,13 @@ def test_units_differ():
     [
         (Parallel(mu=(0.01,), A=0.02), Scatter(noise=0.1), {}, ParameterError, "cannot do the system 'parallel'"),
         (FIG_11, Scatter(r_speed=0.1), {}, ParameterError, "scatter has r_speed, which changes the regimes"),
-        (ImpactPair(B=0.5, G=0.0, r=0.5), Scatter(noise=0.1), {}, ParameterError, "scatter of the impact pair has noise"),
+        (
+            ImpactPair(B=0.5, G=0.0, r=0.5),
+            Scatter(noise=0.1),
+            {},
+            ParameterError,
+            "scatter of the impact pair has noise",
+        ),
         (FIG_11, Scatter(phase_diffusion=0.1), {"splitting": 32}, ParameterError, "which splitting cannot do"),
         (FIG_11, Scatter(noise=0.1), {"splitting": 3}, ParameterError, "allowed is splitting >= 16"),
         (FIG_11, Scatter(noise=0.1), {"periods": 10, "wait": 10}, StateError, "allowed is wait < periods"),

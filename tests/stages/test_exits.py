@@ -55,7 +55,7 @@ def _rows(name):
 def test_tables_tell_of_runs_and_regimes_and_shards_agree_bit_for_bit(exits, monkeypatch, tmp_path):
     exits(EXITS)
     run("held")
-    runs = vines.query('select * from exits order by level, attractor, seed').to_pylist()
+    runs = vines.query("select * from exits order by level, attractor, seed").to_pylist()
     assert len(runs) == 2 * 2 * 4
     regimes = vines.query("select * from exit_regimes where name = '1:1' order by level").to_pylist()
     for row in regimes:
@@ -84,12 +84,20 @@ def test_tables_tell_of_runs_and_regimes_and_shards_agree_bit_for_bit(exits, mon
 @pytest.mark.parametrize(
     ("change", "error", "text"),
     [
-        (('kind = "exits"', 'kind = "exits"\nsystem = "parallel"\nparams = { mu = [0.01] }'), DeclarationError, "its kernels have no scatter"),
+        (
+            ('kind = "exits"', 'kind = "exits"\nsystem = "parallel"\nparams = { mu = [0.01] }'),
+            DeclarationError,
+            "its kernels have no scatter",
+        ),
         (("noise = 0.2", "nois = 0.2"), DeclarationError, "scatter: unknown key 'nois': did you mean 'noise'"),
         (("[1.0, 2.0]", "[-1.0]"), ParameterError, "level is -1, allowed is level >= 0"),
         (("periods = 500", "periods = 500\nwait = 500"), DeclarationError, "allowed is wait < periods, which is 500"),
         (("noise = 0.2", "spread = { B = 0.1 }"), DeclarationError, "scatter.spread: unknown parameter 'B'"),
-        (("noise = 0.2", "hold = 4, ou = { sigma = 1.0, correlation_time = 1.0 }"), ParameterError, "allowed is hold >= 22"),
+        (
+            ("noise = 0.2", "hold = 4, ou = { sigma = 1.0, correlation_time = 1.0 }"),
+            ParameterError,
+            "allowed is hold >= 22",
+        ),
         (('show = "mean"\nof = "held"', 'show = "mean"\nof = "up"'), DeclarationError, "'up' is not needed"),
     ],
 )

@@ -220,12 +220,14 @@ class Work:
         return self.add(attractor())
 
     def holding(self, k: int) -> Holding:
-        """Return how long a regime holds, from its runs."""
+        """Return how long a regime holds, from its runs: all of them where none held for as long as they have to."""
         rows = self.runs[k]
-        counted = rows["T_exit"] >= self.wait
+        wait = self.wait if (rows["T_exit"] >= self.wait).any() else 0
+        counted = rows["T_exit"] >= wait
         left = rows["to"][counted & ~rows["censored"]]
-        watched = float((rows["T_exit"][counted] - self.wait).sum())
-        interval = mean_interval(len(left), watched) if watched > 0 else (0.0, 0.0, 0.0)
+        # Times are those of whole periods, so that all may be 0.
+        watched = max(float((rows["T_exit"][counted] - wait).sum()), 1.0)
+        interval = mean_interval(len(left), watched)
         to = {int(j): int(n) for j, n in zip(*np.unique(left, return_counts=True), strict=True)}
         return Holding(k, "runs", len(rows), len(left), watched, *interval, to, int((~counted).sum()))
 

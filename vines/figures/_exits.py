@@ -129,6 +129,7 @@ class HoldingPanel:
     curves: Sequence[HeldCurve]
     title: str = ""
     log: bool = False
+    y: tuple[float, float] | None = None
 
     def draw(self, ax: Axes) -> None:
         """Draw it."""
@@ -141,8 +142,9 @@ class HoldingPanel:
             )  # fmt: skip
             ax.plot(curve.x[~known], curve.low[~known], color=colour, marker="^", markersize=4.5, linestyle="none")
         ax.set_yscale("log")
-        if self.log:
-            ax.set_xscale("log")
+        _along(ax, self.curves, self.log)
+        if self.y is not None:
+            ax.set_ylim(*self.y)
         name_axis(ax, "x", self.axis)
         name_axis(ax, "y", "mean_exit")
         _title(ax, self.title)
@@ -172,6 +174,7 @@ class SharesPanel:
     curves: Sequence[HeldCurve]
     title: str = ""
     log: bool = False
+    y: tuple[float, float] | None = None
 
     def draw(self, ax: Axes) -> None:
         """Draw it."""
@@ -184,9 +187,8 @@ class SharesPanel:
                     curve.x, curve.other, color=colour, marker="s", markersize=3.5, markerfacecolor="white",
                     linestyle=DASHED, linewidth=0.8,
                 )  # fmt: skip
-        if self.log:
-            ax.set_xscale("log")
-        ax.set_ylim(-0.03, 1.03)
+        _along(ax, self.curves, self.log)
+        ax.set_ylim(*(self.y or (-0.03, 1.03)))
         name_axis(ax, "x", self.axis)
         name_axis(ax, "y", "held_share")
         _title(ax, self.title)
@@ -202,6 +204,18 @@ class SharesPanel:
         )  # fmt: skip
         named = [(curve.label, (_patch(_colour(curve)),)) for curve in self.curves]
         return [*named, ("of the time", (filled,)), ("of the starts", (hollow,))]
+
+
+def _along(ax: Axes, curves: Sequence[HeldCurve], log: bool) -> None:
+    """Make the axis of the parameter logarithmic where that is wanted, with its own values at the ticks."""
+    if not log:
+        return
+    from matplotlib.ticker import NullLocator
+
+    values = np.unique(np.concatenate([curve.x for curve in curves]))
+    ax.set_xscale("log")
+    ax.set_xticks(values, [f"{value:g}" for value in values])
+    ax.xaxis.set_minor_locator(NullLocator())
 
 
 def _patch(colour: str) -> Any:

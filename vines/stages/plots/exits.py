@@ -35,6 +35,7 @@ class ExitsCell(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     ] = ()
     title: Annotated[str, Meta(description="Written above the panel")] = ""
     log: Annotated[bool, Meta(description="Whether the parameter has a logarithmic axis")] = False
+    y: Annotated[tuple[float, float] | None, Meta(description="The part of the other axis that is shown")] = None
 
 
 class ExitsOptions(PlotOptions, frozen=True, tag="exits"):
@@ -55,6 +56,8 @@ def _check(stage: Stage, pipeline: Pipeline) -> None:
         one = pipeline.stages[cell.of]
         if not called(one.kind.tables, "exit_regimes"):
             raise DeclarationError(f"cell {number}: {cell.of} is of kind {one.kind.name!r}; this draws kind exits")
+        if cell.y is not None and not cell.y[0] < cell.y[1]:
+            raise DeclarationError(f"cell {number}: y is {cell.y[0]:g} to {cell.y[1]:g}; give the lower end first")
         if len(one.axes) > 1 or (not one.axes and cell.show != "survival"):
             varied = ", ".join(axis.name for axis in one.axes) or "nothing"
             raise DeclarationError(f"cell {number}: {cell.of} varies {varied}; {cell.show} needs one parameter")
@@ -82,10 +85,10 @@ def _panel(cell: ExitsCell, stage: Input) -> Panel:
         return _survival(cell, stage, rows)
     axis = next(iter(stage.axes))
     if cell.show == "mean":
-        return HoldingPanel(axis, _curves(rows, axis, "mean", "mean_low", "mean_high"), cell.title, cell.log)
+        return HoldingPanel(axis, _curves(rows, axis, "mean", "mean_low", "mean_high"), cell.title, cell.log, cell.y)
     plain = [row for row in rows if row["method"] == "runs"]
     keys = ("long_run", "long_run_low", "long_run_high", "basin")
-    return SharesPanel(axis, _curves(plain, axis, *keys), cell.title, cell.log)
+    return SharesPanel(axis, _curves(plain, axis, *keys), cell.title, cell.log, cell.y)
 
 
 def _wanted(cell: ExitsCell, row: Mapping[str, Any]) -> bool:
