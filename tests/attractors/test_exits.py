@@ -130,7 +130,7 @@ def test_what_cannot_be_is_refused_before_any_work(p, scatter, options, error, m
 def test_splitting_agrees_with_plain_runs_where_both_can():
     # The 1:1 beside chaos, held for some thousands of periods.
     p = Params(mu=0.05, A=0.115, Omega=1.17)
-    found = exits(p, Scatter(noise=0.1, seed=6), runs=40, periods=4000, wait=100, splitting=64, **FEW)
+    found = exits(p, Scatter(noise=0.1, seed=6), runs=60, periods=4000, splitting=96, **FEW)
     (plain,) = [h for h, a in zip(found.holdings, found.attractors, strict=True) if a.name == "1:1"]
     (rare,) = found.split
     assert plain.exits > 20

@@ -32,12 +32,12 @@ NEAR, FIRST, NEXT = 0.5, 0.9, 0.7
 
 MOST_LEVELS, TRIMS = 60, 4
 
-MEMORIES, FLUX = 4.0, 12.0
-"""Relaxation times before what is counted begins, and over which runs come to the first level."""
+MEMORIES = 4.0
+"""Relaxation times after which the noise has filled the neighbourhood of the orbit, from which distances are taken."""
 
 
 def split(work: Work, k: int, walkers: int) -> Holding | None:
-    """Return how long a periodic regime holds, by splitting; None where most runs leave it before anything is counted.
+    """Return how long a periodic regime holds from its orbit on, by splitting; None where most runs leave it at once.
 
     Parameters
     ----------
@@ -51,7 +51,7 @@ def split(work: Work, k: int, walkers: int) -> Holding | None:
     size = work.regimes[k].attractor.max_multiplier
     p = work.regimes[k].attractor.p or 1
     memory = p / -math.log(size) if 0.0 < size < 1.0 else 1.0
-    stages = _Stages(work, k, walkers, max(16, math.ceil(MEMORIES * memory)), max(200, math.ceil(FLUX * memory)))
+    stages = _Stages(work, k, walkers, max(16, math.ceil(MEMORIES * memory)))
     if not stages.prepared():
         return None
     levels = stages.levels()
@@ -91,8 +91,8 @@ class _Entries:
 class _Stages:
     """Runs of a regime in the distances from its orbit that noise makes of it."""
 
-    def __init__(self, work: Work, k: int, walkers: int, burn: int, flux: int) -> None:
-        self.work, self.k, self.walkers, self.burn, self.time = work, k, walkers, burn, flux
+    def __init__(self, work: Work, k: int, walkers: int, burn: int) -> None:
+        self.work, self.k, self.walkers, self.burn = work, k, walkers, burn
         self.centres = centres_of(work.regimes[k])
         self.weights = np.zeros((4, 4))
         self.drawn = work.first_of_splitting(k)
@@ -153,12 +153,14 @@ class _Stages:
     def flux(self, level: float) -> tuple[_Entries, float]:
         """Return the runs that come to the first level from near the orbit, and how many do so a forcing period."""
         run = _Runs(self, np.tile(self.work.regimes[self.k].start, (self.walkers, 1)), None)
-        run.on(self.burn, 0.0, math.inf)
-        run.leave()
-        begun_at = run.marks[:, M_DONE].copy()
-        until = self.burn + self.time
-        # Those that are beyond the level when the count begins have not come to it: they have to be near first.
-        up = np.zeros(self.walkers, dtype=bool)
+        # As long as plain runs: what is far from the orbit for long comes to no level, but belongs to the time.
+        found = self._cross(run, np.ones(self.walkers, dtype=bool), self.work.periods, level)
+        counted = float(run.marks[:, M_DONE].sum())
+        entries = _Entries.joined(found) if found else _Entries(np.empty((0, 6)), np.empty(0, dtype=np.int64))
+        return entries, len(entries) / counted if counted else 0.0
+
+    def _cross(self, run: _Runs, up: npt.NDArray[np.bool_], until: int, level: float) -> list[_Entries]:
+        """Run on, and return those that come to a level; `up` says which were near the orbit since, and is changed."""
         found = []
         while (going := (run.marks[:, M_STATUS] == GOES_ON) & (run.marks[:, M_DONE] < until)).any():
             run.on(until, 0.0, level, going & up)
@@ -166,12 +168,15 @@ class _Stages:
             rose, fell = (run.marks[:, M_STATUS] == status for status in (ROSE, FELL))
             if rose.any():
                 found.append(_Entries(run.places(rose), np.full(int(rose.sum()), -1)))
-            up = np.where(rose, False, np.where(fell, True, up))
+            up[rose], up[fell] = False, True
             run.marks[rose | fell, M_STATUS] = GOES_ON
+            before = run.gone >= 0
             run.leave()
-        counted = float((run.marks[:, M_DONE] - begun_at).sum())
-        entries = _Entries.joined(found) if found else _Entries(np.empty((0, 6)), np.empty(0, dtype=np.int64))
-        return entries, len(entries) / counted if counted else 0.0
+            # An exit counts as coming to every level, wherever it is by the distance.
+            new = (run.gone >= 0) & ~before & up
+            if new.any():
+                found.append(_Entries(run.places(new), run.gone[new]))
+        return found
 
     def trial(self, entries: _Entries, level: float) -> tuple[Floats, _Entries]:
         """Let runs go on from a level, with noise of their own, until they are near the orbit, or at the next level.

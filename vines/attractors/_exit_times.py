@@ -20,11 +20,12 @@ from vines.attractors._holding import Holding, stationary_law
 from vines.attractors._settle import settle as settle_run
 from vines.attractors._settle import settle_from
 from vines.attractors._shares import share_error
-from vines.bounds import check_periods
-from vines.domains import Named, Number, Of, Parameters, Whole, stated
+from vines.bounds import check_periods, shown
+from vines.domains import Name, Named, Number, Of, Parameters, Whole, stated
 from vines.dynamics import Scatter
 from vines.dynamics.kernels import room_of
-from vines.errors import ParameterError, StateError
+from vines.errors import ParameterError, StateError, nearest
+from vines.model import word_for
 from vines.orbits import all_orbits
 
 __all__ = ["Exits", "exits"]
@@ -123,9 +124,9 @@ class Exits:
     scatter=Of("Scatter"),
     start=Named(Number(), optional=True),
     runs=Whole(most=EACH // 2),
-    periods=Whole(),
+    periods=Whole(most=10**12),
     confirm=Whole(most=4096),
-    wait=Whole(least=0),
+    wait=Whole(least=0, most=10**9),
     splitting=Whole(least=0, most=100_000),
     random=Whole(least=0, most=1_000_000),
     seed=Whole(least=0),
@@ -214,6 +215,15 @@ def exits(
     check_periods("runs periods", float(runs) * periods)
     how: dict[str, Any] = {"settle": settle, "record": record, "watch": watch}
     begin = dict(start or {})
+    known = [each.name for each in p.system.start]
+    for name in begin:
+        if name not in known:
+            raise StateError(f"unknown coordinate {name!r} of start: {nearest(name, known)}")
+    if isinstance(words, str | bytes) or not isinstance(words, Sequence):
+        raise ParameterError(f"words is {shown(words)}; give a list of words, such as ['LR']")
+    for word in words:
+        Name().check("a word of words", word, ParameterError)
+        word_for(word, p.system)
     own = settle_run(p, phi=begin.pop("phase", 0.0), **begin, **how)
     listed = coexisting([own], random=random, seed=seed, **how)[0]
     work = Work(p, scatter, how, periods, confirm, wait, threads)

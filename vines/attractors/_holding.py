@@ -63,7 +63,7 @@ class Holding:
     relative_error: float = math.nan
 
 
-@stated(exits=Whole(least=0), watched=Number(above=0), level=Number(above=0, below=1))
+@stated(exits=Whole(least=0, most=10**9), watched=Number(above=0, most=1e15), level=Number(least=1e-6, most=1 - 1e-6))
 def mean_interval(exits: int, watched: float, level: float = LEVEL) -> tuple[float, float, float]:
     """Return the mean time to an exit and its interval, for exits at a constant rate and runs that may be cut.
 
