@@ -13,6 +13,7 @@ from vines.dynamics._advance import advance, begin, law_of
 from vines.dynamics._contact import NO_CONTACT, contact_within, next_contact
 from vines.dynamics._flight import (
     advance_phase,
+    ball_flown,
     decay,
     derivatives,
     fifth,
@@ -20,9 +21,11 @@ from vines.dynamics._flight import (
     flown,
     forced_fifth,
     free_ball,
+    launched,
     modulus,
     phase_after,
     pull,
+    relative,
     sixth,
     slow_growth,
     terms,
@@ -177,7 +180,7 @@ def redraw(c, o, motion):
     return under(c, o, motion, place_of(c, motion[INDEX] + 1.0))
 
 
-for _name in (advance, begin, free_ball, pull, write_end):
+for _name in (advance, ball_flown, begin, free_ball, launched, pull, relative, write_end):
     _name.register(ScatterConstants)(_name.first)
 
 

@@ -10,7 +10,19 @@ import numpy.typing as npt
 from vines.dynamics._advance import advance, begin, law_of
 from vines.dynamics._constants import constants_at
 from vines.dynamics._contact import next_contact
-from vines.dynamics._flight import flight, flown, forced_fifth, free_ball, phase_after, pull
+from vines.dynamics._flight import (
+    ball_flown,
+    drift,
+    flight,
+    flown,
+    forced_fifth,
+    free_ball,
+    launched,
+    phase_after,
+    pull,
+    rate_alone,
+    relative,
+)
 from vines.dynamics._impact_law import ImpactLaw, impact_law_kernel
 from vines.dynamics._random import normal
 from vines.dynamics._scatter_table import colour_at
@@ -67,16 +79,21 @@ def _constants_at(table, k):
 
 for _name in (
     advance,
+    ball_flown,
     begin,
+    drift,
     flight,
     flown,
     forced_fifth,
     free_ball,
     holds_for,
+    launched,
     next_contact,
     next_release,
     phase_after,
     pull,
+    rate_alone,
+    relative,
     write_end,
 ):
     _name.register(ScatterPair)(_name.bodies[PairConstants])
