@@ -5,6 +5,7 @@ import itertools
 import numpy as np
 import pytest
 from matplotlib.text import Text
+from matplotlib.ticker import LogFormatter
 
 from vines.figures import BranchLine, ImpactDots, Look, Marker, bifurcation_figure, finish, wearing
 from vines.figures._style import new_figure
@@ -121,3 +122,18 @@ def test_the_legend_of_a_panel_covers_no_curve_where_there_is_room_anywhere():
     for line in ax.lines:
         at = ax.transData.transform(np.column_stack(line.get_data()))
         assert not ((at > box.min) & (at < box.max)).all(axis=1).any()
+
+
+@pytest.mark.parametrize(("width", "written"), [(120, {"0.02", "0.03", "0.04", "0.06"}), (52, {"0.02"})])
+def test_numbers_of_a_logarithmic_axis_do_not_touch(width, written):
+    with wearing(Look()):
+        figure = new_figure(width / 25.4, 2.0)
+        ax = figure.add_subplot(xscale="log", xlim=(0.011, 0.066))
+        ax.set_ylim(0, 1)
+        ax.xaxis.set_minor_formatter(LogFormatter(minor_thresholds=(2, 0.4)))
+        finish(figure)
+    figure.draw_without_rendering()
+    shown = [(each.get_text(), each.get_window_extent()) for each in ax.get_xticklabels(which="both")]
+    shown = sorted(((text, box) for text, box in shown if text.strip()), key=lambda each: each[1].x0)
+    assert all(one.x1 < other.x0 for (_, one), (_, other) in itertools.pairwise(shown))
+    assert len(shown) >= len(written) - 1
