@@ -14,8 +14,12 @@ from vines.orbits._all import Orbits, all_orbits
 from vines.orbits._general import refine, search
 from vines.orbits._orbit import Orbit
 from vines.orbits._own_word import sticking_word, whole_word
+from vines.orbits._shooting import shoots
+from vines.orbits._slid import refine_slid, slides
 from vines.orbits._sticking_capsule import capsule_sticks, rides_capsule
+from vines.orbits._sticking_of_balls import rides_in_parallel
 from vines.orbits._sticking_search import no_sticking_orbit, refine_sticking
+from vines.orbits._sticking_search_of_balls import refine_balls
 from vines.orbits._symmetric import no_symmetric_orbit
 
 __all__ = ["find_orbit"]
@@ -68,8 +72,12 @@ def find_orbit(word: str | Word, p: Any, guess: Orbit | npt.ArrayLike | None = N
     """
     word = whole_word(word, p)
     if guess is not None:
+        if slides(p) and not word.sticking:
+            return refine_slid(word, p, guess)
         if word.sticking and rides_capsule(p):
             return capsule_sticks(word, p)
+        if word.sticking and rides_in_parallel(p):
+            return refine_balls(word, p, guess)
         return refine_sticking(sticking_word(word, p), p, guess) if word.sticking else refine(word, p, guess)
     found = all_orbits(word, p)
     if found:
@@ -82,6 +90,10 @@ def find_orbit(word: str | Word, p: Any, guess: Orbit | npt.ArrayLike | None = N
         raise no_symmetric_orbit(p, word)
     if isinstance(p, Params) and (word.n == 0 or word.m == 0):
         raise OrbitNotFound(f"no {word} orbit at any parameters: {found.remark}; give a word with both L and R")
+    if shoots(p):
+        raise OrbitNotFound(f"no {word} orbit at {p}: {found.remark}; give one at nearby parameters as guess")
+    if slides(p):
+        raise OrbitNotFound(f"no {word} orbit at {p} ({found.remark}); vines.settle says what one settles to")
     nearest = search(word, p)[1] if found.complete else found.nearest
     how = "there is none that never sticks (all flight times were searched); " if found.complete else ""
     raise OrbitNotFound(

@@ -33,7 +33,7 @@ def tables() -> dict[str, Table]:
     Examples
     --------
     >>> [name for name in tables() if "bif" in name]
-    ['bifurcations', 'impact_pair_bifurcations', 'parallel_bifurcations']
+    ['bifurcations', 'cubic_barriers_bifurcations', 'impact_pair_bifurcations', 'parallel_bifurcations']
     """
     return {name: _table(name) for name in dict.fromkeys([*_names(), *brought(GROUP)])}
 
