@@ -7,6 +7,8 @@ import math
 from vines.attractors import _verdict as v
 from vines.attractors._contacts import difference, repetition
 from vines.attractors._multipliers import carry_on, multipliers, square_of
+from vines.dynamics.drag import DragConstants
+from vines.dynamics.friction import FrictionConstants
 from vines.dynamics.impact_pair import PairConstants
 from vines.dynamics.kernels import Constants, directions, flow_basis, jump_basis, offset
 from vines.dynamics.kernels import rows as col
@@ -130,7 +132,7 @@ def nearest_orbit(c, rows, kept, p, lag, scale, tolerance):
     return True, largest, distance, p * _repetitions(Y, away, distance, tolerance)
 
 
-for _kind in (PairConstants, ParallelConstants):
+for _kind in (DragConstants, FrictionConstants, PairConstants, ParallelConstants):
     nearest_orbit.register(_kind)(nearest_orbit.first)
 
 

@@ -37,7 +37,7 @@ from vines.dynamics._advance import (
     write_row,
 )
 from vines.dynamics._contact import CONTACT, NO_CONTACT
-from vines.dynamics._flight import advance_phase
+from vines.dynamics._flight import advance_phase, drift
 from vines.dynamics._impact_law import after_impact_kernel
 from vines.dynamics._sticking import UNRESOLVED, ends_chatter
 from vines.dynamics._window import width_of, write_end
@@ -51,6 +51,7 @@ from vines.kernels import entry_njit, linked_njit, loop_njit, njit
 __all__ = ["set_mass"]
 
 begin.register(TaylorConstants)(begin.first)
+drift.register(TaylorConstants)(drift.first)
 width_of.register(TaylorTable)(width_of.first)
 
 
