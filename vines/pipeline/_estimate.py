@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 __all__ = ["estimate", "seconds_a_point"]
 
-_ENOUGH, _LEAST = 1.0, 24
+_ENOUGH, _LEAST = 1.0, 120
 """Seconds of points, and how many of them, that are measured: few say little where some take a hundred times longer."""
 _MOST = 5.0
 """Seconds after which no more are computed, however few there were."""
@@ -129,5 +129,6 @@ def seconds_a_point(
         enough = took >= _ENOUGH and done >= _LEAST
         if enough or took >= _MOST or done == total:
             return took / done
-        left = (_ENOUGH if done >= _LEAST else _MOST) - took
-        size = max(1, min(_GROWTH * size, int(left * done / max(took, 1e-9)), total - done))
+        rate = done / max(took, 1e-9)
+        wanted = max((_ENOUGH - took) * rate, _LEAST - done)
+        size = max(1, min(_GROWTH * size, int(min(wanted, (_MOST - took) * rate)), total - done))
