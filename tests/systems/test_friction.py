@@ -215,6 +215,13 @@ def test_chatter_with_friction_ends_on_the_wall_or_beside_it():
     assert len(run.sticks) > 2
     assert run.status == "complete"
     assert run.measures().balance == pytest.approx(0, abs=1e-13 * run.measures().base_work)
+    chatters = np.flatnonzero(run.events["kind"] == STICK)
+    for spell, row in zip(run.sticks, chatters, strict=True):
+        before = run.events[:row]
+        hits = np.flatnonzero((before["kind"] == IMPACT) & (before["side"] == spell["side"]))
+        assert spell["impacts"] == len(hits[len(hits) - spell["impacts"] :]) >= 1
+        own = before[hits[-spell["impacts"] :][0] :]
+        assert set(own["kind"].tolist()) <= {IMPACT, SLIDE}
     released = run.events[run.events["kind"] == RELEASE]
     for each in released:
         force = p.A * (math.sin(each["phase"]) + p.lam * p.Omega * math.cos(each["phase"]))

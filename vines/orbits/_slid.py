@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from vines.domains import Numbers
 from vines.dynamics import simulate
 from vines.dynamics.friction import FrictionConstants
 from vines.dynamics.kernels import (
@@ -33,6 +34,7 @@ from vines.kernels import linked_njit, new_matrix, new_vector, njit
 from vines.model import Word
 from vines.orbits._equations import closing_kernel, closing_unit, prepared
 from vines.orbits._floquet import FIXED_TIME, half_map, monodromy, sorted_multipliers, squared
+from vines.orbits._general import check_word
 from vines.orbits._moved import moved
 from vines.orbits._orbit import Orbit
 from vines.orbits._survey import NO_TURNING
@@ -297,19 +299,28 @@ def _alike(one: Orbit, other: Orbit) -> bool:
 
 
 def refine_slid(word: Word, p: Any, guess: Any) -> Orbit:
-    """Return the orbit that Newton's method finds from an orbit at nearby parameters.
+    """Return the orbit that Newton's method finds from one nearby, or from x1, v1, v2 and t at its first impact.
 
     Raises
     ------
     ParameterError
-        If the guess is no orbit of the word.
+        If the guess is neither.
     OrbitNotFound
         If there is none near it.
     """
     _check(word)
-    if not isinstance(guess, Orbit) or guess.word != word:
-        raise ParameterError(f"the guess for {word} has to be an orbit of it where the ball slides with friction")
-    z = _solved(word, p, _before(guess))
+    if isinstance(guess, Orbit):
+        check_word(guess, word)
+        first = _before(guess)
+    else:
+        Numbers(most=4).check("guess", guess, ParameterError)
+        first = np.asarray(guess, dtype=np.float64)
+        if first.shape != (4,):
+            raise ParameterError(
+                f"the guess for {word} has to be x1, v1, v2 and t just before its first impact, or an orbit"
+            )
+        first = first * [1.0, 1.0, 1.0, p.Omega]
+    z = _solved(word, p, first)
     orbit = None if z is None else _assembled(word, p, z)
     if orbit is None:
         raise OrbitNotFound(f"no {word} orbit from this guess at {p}; give a nearer one, or look what a run settles to")
