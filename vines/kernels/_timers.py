@@ -1,6 +1,7 @@
 """numba times what it holds its locks for, and hears of each call of LLVM twice for that; nobody asks for the times.
 
-Kernels call kernels forty deep: a million notices for the kernels of a system.
+Kernels call kernels forty deep: a million notices for the kernels of a system. Of its passes it tells, too, and here
+only where somebody listens.
 """
 
 from __future__ import annotations
@@ -27,6 +28,12 @@ def time_no_locks() -> None:
 
     install_timer.leaves_locks = True  # pyright: ignore[reportFunctionMemberAccess]
     event.install_timer = install_timer
+    trigger = event.trigger_event
+
+    def trigger_event(kind: str, data: Any = None) -> AbstractContextManager[Any]:
+        return trigger(kind, data) if event._registered[kind] else nullcontext()
+
+    event.trigger_event = trigger_event
     for enter, leave in list(ffi.lib._lock._cblist):
         if enter.__module__.partition(".")[0] == "numba":
             ffi.unregister_lock_callback(enter, leave)
