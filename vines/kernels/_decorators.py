@@ -13,9 +13,11 @@ from numba.core.registry import CPUDispatcher
 
 from vines.kernels._bodies import inherit
 from vines.kernels._cache import LazyCache
+from vines.kernels._closures import look_for_closures_where_they_are
 from vines.kernels._copied import CopiedCompiler, read_copied_libraries
 from vines.kernels._declarations import leave_declarations
 from vines.kernels._elements import address_elements_at_once
+from vines.kernels._flags import read_flags_at_once
 from vines.kernels._lifetimes import find_lifetimes_once
 from vines.kernels._linked import Linked
 from vines.kernels._operators import remember_operators
@@ -44,6 +46,8 @@ import_parts_once()
 address_elements_at_once()
 pass_tuples_whole()
 count_rounds_at_once()
+look_for_closures_where_they_are()
+read_flags_at_once()
 
 _FUSED = {"contract", "nsz"}
 _FULL = _OptLevel(3)
