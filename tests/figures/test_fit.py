@@ -7,6 +7,7 @@ import pytest
 from matplotlib.text import Text
 
 from vines.figures import BranchLine, ImpactDots, Look, Marker, bifurcation_figure, finish, wearing
+from vines.figures._style import new_figure
 
 LABELS = ("simulation", "1:1 symmetric", "1:1 asymmetric, the branch that a broken symmetry begins", "2:1")
 CAPTION = r"$\mu = 0.01$,  $\Omega = 1$,  $r = 0.65$,  $\lambda = 0.012$,  and a word of what the study is about"
@@ -86,3 +87,17 @@ def test_every_entry_of_the_legend_is_there_at_every_width():
         (legend,) = drawn(width).legends
         said = [" ".join(each.get_text().split()) for each in legend.get_texts()]
         assert [each for each in said if each in LABELS] == list(LABELS)
+
+
+def test_a_title_in_the_middle_keeps_away_from_the_letter():
+    with wearing(Look()):
+        figure = new_figure(180 / 25.4, 2.0)
+        for ax in figure.subplots(1, 3):
+            ax.set_title("(h)", loc="left", fontsize=9)
+            ax.set_title("1:1/2T, by definition 2:2/2T", fontsize=9)
+        finish(figure)
+    figure.draw_without_rendering()
+    for ax in figure.axes:
+        letter, title = (each.get_window_extent() for each in (ax._left_title, ax.title))
+        assert letter.x1 < title.x0
+        assert " ".join(ax.title.get_text().split()) == "1:1/2T, by definition 2:2/2T"

@@ -22,9 +22,13 @@ from vines.dynamics._totals import TOTALS
 from vines.errors import StateError, nearest
 from vines.model import Params
 
-__all__ = ["Layout", "Room", "constants", "room_of", "start_of", "table_of"]
+__all__ = ["IN_TURN", "TIES", "TOGETHER", "Layout", "Room", "constants", "room_of", "start_of", "table_of"]
 
 Floats = npt.NDArray[np.float64]
+
+
+IN_TURN, TOGETHER = TIES = ("in_turn", "together")
+"""How balls are struck that arrive at one instant: one after the other by their numbers, or by one law of all."""
 
 
 class Layout(NamedTuple):
@@ -44,10 +48,13 @@ class Room:
     ----------
     trajectory, measures : callable or None
         What makes a run of its rows, and measures of its totals, where one ball is not enough for that.
+    unstruck : str or None
+        Name of a settled motion without impacts, where such a one repeats of itself.
     """
 
     trajectory: Callable[..., Any] | None = None
     measures: Callable[..., Any] | None = None
+    unstruck: str | None = None
 
     def constants(self, values: Sequence[float]) -> Any:
         """Return the constants of the kernels from the values of the parameters, in the order of the declaration."""
@@ -73,6 +80,9 @@ class Room:
     def begin(self, c: Any, state: Floats, x1: float, v1: float, x2: Any, v2: Any, phase: float, t: float) -> None:
         """Put a run at its start."""
         set_state(state, float(x1), float(v1), float(x2), float(v2), phase, t)
+
+    def strike_in_turn(self, state: Floats) -> None:
+        """Let balls that arrive at one instant be struck one after the other in a run that has begun."""
 
     def gaps(self, p: Any, at: Mapping[str, Any]) -> Any:
         """Return the gap of each ball over half the length of its cavity, shape (n, balls), of n states by name."""

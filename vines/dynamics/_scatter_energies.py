@@ -28,7 +28,15 @@ from vines.dynamics._scatter_constants import (
 )
 from vines.dynamics._scatter_motion import HELD, INDEX, LEFT, end_of, redraw, sagging, under
 from vines.dynamics._sincos import sincos
-from vines.dynamics._totals import add_segment, base_at, event_loss, event_work, stored_energy, window_totals
+from vines.dynamics._totals import (
+    add_segment,
+    base_at,
+    event_loss,
+    event_work,
+    segment_state,
+    stored_energy,
+    window_totals,
+)
 from vines.kernels import (
     cold_njit,
     doubles_at,
@@ -49,7 +57,7 @@ def _base_at(c, phase):
     return c.A * np.sin(phase) + c.second * np.sin(2.0 * phase + c.second_phase)
 
 
-for _name in (event_loss, event_work, stored_energy, window_totals):
+for _name in (event_loss, event_work, segment_state, stored_energy, window_totals):
     _name.register(ScatterConstants)(_name.first)
 
 
@@ -382,7 +390,7 @@ def _book(room, out, stuck, ball):
 
 @add_segment.register(ScatterConstants)
 @fused_njit
-def _add_segment(c, out, mode, begins, x1, v1, v2, phase, length):
+def _add_segment(c, out, mode, begins, x1, v1, x2, v2, phase, length):
     stuck = mode != 0.0
     o = c.stuck if stuck else c.free
     motion = flight(c, o, x1, v1, phase, begins)

@@ -11,6 +11,7 @@ import math
 from vines.dynamics._advance import advance, begin, law_of
 from vines.dynamics._contact import NO_CONTACT, contact_within, next_contact
 from vines.dynamics._flight import (
+    ball_flown,
     decay,
     derivatives,
     fifth,
@@ -18,8 +19,10 @@ from vines.dynamics._flight import (
     flown,
     forced_fifth,
     free_ball,
+    launched,
     modulus,
     pull,
+    relative,
     sixth,
     slow_growth,
     terms,
@@ -133,7 +136,7 @@ def redraw(c, o, motion):
     return under(c, o, motion, _draw(c, motion[INDEX] + 1.0))
 
 
-for _name in (advance, begin, free_ball, pull, write_end):
+for _name in (advance, ball_flown, begin, free_ball, launched, pull, relative, write_end):
     _name.register(ScatterConstants)(_name.first)
 
 

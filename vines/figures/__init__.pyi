@@ -23,6 +23,8 @@ from ._energy import FOUND as FOUND
 from ._energy import EnergyCurve as EnergyCurve
 from ._energy import EnergyPanel as EnergyPanel
 from ._finish import finish as finish
+from ._front import FrontPanel as FrontPanel
+from ._front import front_of as front_of
 from ._look import Look as Look
 from ._look import wearing as wearing
 from ._measures import MeasureCurve as MeasureCurve

@@ -165,8 +165,9 @@ def _titles(figure: Figure) -> list[tuple[Text, float]]:
         left: Any = ax._left_title  # pyright: ignore[reportAttributeAccessIssue] # no other way to it
         if left.get_text():
             found.append((left, _room(ax, figure) - edge))
-        if ax.title.get_text():
-            found.append((ax.title, ax.bbox.width))
+        if ax.title.get_text():  # in the middle, so that a letter on the left counts on both sides
+            letter = _extent(left).width + edge if left.get_text() else 0.0
+            found.append((ax.title, ax.bbox.width - 2 * letter))
     return found
 
 

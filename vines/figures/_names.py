@@ -22,6 +22,8 @@ QUANTITIES = {
     "reduction": r"reduction of $\max|x_1|$",
     "rms_x1": r"root mean square of $x_1$",
     "impact_power": "power lost in impacts",
+    "electric_power": "power of the coil",
+    "electric_share": "share that goes to the coil",
     "impacts_per_period": "impacts in a forcing period",
     "lyapunov": "largest Lyapunov exponent",
     "impact_share": "share lost in impacts",

@@ -6,7 +6,7 @@ import functools
 import tomllib
 from typing import Any
 
-from vines.model import VI_NES, most_balls, read_system, system_names
+from vines.model import VI_NES, System, most_balls, read_system, system_names
 from vines.places import shipped
 from vines.schema._columns import Column, Table
 from vines.schema._declared import expand
@@ -51,20 +51,25 @@ def of_system(name: str) -> Table:
     form = tomllib.loads((folder / f"{base}.toml").read_text("utf-8"))
     more = folder / "systems" / "columns" / f"{base}.toml"
     entries = [*form["columns"], *(tomllib.loads(more.read_text("utf-8"))["columns"] if more.exists() else ())]
+    # what only some systems have says which
+    entries = [each for each in entries if called in each.pop("only", (called,))]
     # a coordinate may be called as a column that the common table has anyhow
-    expanded = [each for entry in entries for own in _of_balls(entry, system.balls) for each in expand(own, system)]
+    expanded = [each for entry in entries for own in _of_balls(entry, system) for each in expand(own, system)]
     columns = {each["name"]: each for each in reversed(expanded)}
     kept = [each for each in reversed(columns.values()) if each["name"] not in system.without]
     about = f"Of the system {called}: {form['description'][:1].lower()}{form['description'][1:]}"
     return Table(name, about, form["version"], tuple(Column(**each) for each in kept), True, called)
 
 
-def _of_balls(entry: dict[str, Any], balls: int) -> list[dict[str, Any]]:
-    """Return an entry, or one a ball where it is said to be there for each."""
+def _of_balls(entry: dict[str, Any], system: System) -> list[dict[str, Any]]:
+    """Return an entry, one a ball where it is said to be there for each, none where its parameter is not there."""
+    entry = dict(entry)
+    if entry.pop("beside", None) not in (None, *(each.name for each in system.parameters)):
+        return []
     if "each" not in entry:
         return [entry]
     rest = {key: value for key, value in entry.items() if key != "each"}
     return [
         rest | {"name": f"{rest['name']}_{ball}", "description": f"{rest['description']}, ball {ball}"}
-        for ball in range(1, balls + 1)
+        for ball in range(1, system.balls + 1)
     ]

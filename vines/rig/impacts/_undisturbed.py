@@ -10,10 +10,18 @@ import numpy as np
 from vines.errors import RigError
 from vines.rig.fit import Train, bins_of
 from vines.rig.impacts._oscillator import Response
-from vines.rig.impacts._ringing import Mode, less_modes, mean_ringing, modes_heard, modes_seen, unpredicted
+from vines.rig.impacts._ringing import (
+    Mode,
+    less_modes,
+    mean_ringing,
+    modes_felt,
+    modes_heard,
+    modes_seen,
+    unpredicted,
+)
 from vines.rig.recording import Recording
 
-__all__ = ["still_rings", "undisturbed"]
+__all__ = ["still_rings", "undisturbed", "without_ringing"]
 
 _CLEAN = 1.25
 """Most that a fit leaves, relative to the noise, before modes are looked for."""
@@ -99,6 +107,31 @@ def _taken_off(
             break
         train = Train(again.fit.jumps.t, again.fit.jumps.dv, np.full(len(again.fit.jumps.t), _TIGHT))
     return found
+
+
+def without_ringing(recording: Recording, response: Response, modes: tuple[Mode, ...]) -> Recording:
+    """Return a recording without modes of the frame in any channel, those of the base among them.
+
+    Parameters
+    ----------
+    recording : Recording
+        As it was before they were looked for.
+    response : Response
+        By which they are known, with its impacts.
+    modes : tuple of Mode
+        Of the oscillator's channels.
+    """
+    jumps, channels = response.fit.jumps, dict(recording.channels)
+    poles = tuple(mode.s for mode in modes if mode.name == response.channel.name)
+    for name, channel in recording.channels.items():
+        if channel.role in ("base_disp", "base_acc", "base_vel"):
+            late = response.late
+            own = modes_felt(channel, response.fit.motion.omega, poles, jumps.t - late, jumps.dv)
+        else:
+            late = response.delay if channel.role == "lo_acc" else 0.0
+            own = tuple(mode for mode in modes if mode.name == name)
+        channels[name] = less_modes(channel, own, jumps.t - late, jumps.dv)
+    return replace(recording, channels=channels)
 
 
 def still_rings(response: Response) -> tuple[float, tuple[float, ...]] | None:

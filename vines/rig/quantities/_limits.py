@@ -256,8 +256,8 @@ class Ringing:
     dv: Floats
 
     def waves(self, t: Floats) -> Floats:
-        """Return the two phases of each mode and of its derivative by the exponent, one a row."""
-        waves = [wave for s in self.s for wave in rung(t, self.t, self.dv, s)]
+        """Return the two phases of each mode, its derivative by the exponent and what rings on at first, one a row."""
+        waves = [wave for s in self.s for wave in (*rung(t, self.t, self.dv, s), np.exp(s * (t - t[0])))]
         return np.array([part for wave in waves for part in (wave.real, wave.imag)]).reshape(-1, len(t))
 
     def away(self, f: Floats) -> npt.NDArray[np.bool_]:

@@ -71,7 +71,7 @@ def _of_all(store: Store, parts: list[Part]) -> list[str]:
 
 
 def _step(command: str, what: str) -> str:
-    return f"  {command:68s} {what}"
+    return f"  {command:68s} {what}" if len(command) <= 68 else f"  {command}\n  {'':68s} {what}"
 
 
 def _cached(store: Store, pipeline: str, results: dict[str, Result]) -> list[str]:

@@ -55,6 +55,9 @@ def resolve_again(result: Result, table: str, place: int, rng: np.random.Generat
     shortest = float(np.diff(t, append=t[0] + word.p * p.period).min())
     if word.sticking:
         orbit = _searched(word, p, t)
+    elif p.system.stops:
+        first = np.array([row["x1"][0], row["v1"][0], row["v2"][0], t[0]])
+        orbit = _solve(word, p, first, rng.uniform(-1, 1, 4) * min(scale, 0.1 * shortest))
     else:
         orbit = _solve(word, p, t, rng.uniform(-1, 1, len(t)) * min(scale, 0.1 * shortest))
     comparison = Comparison()
@@ -69,7 +72,7 @@ def resolve_again(result: Result, table: str, place: int, rng: np.random.Generat
         largest = float(np.abs(one).max())
         for k, (a, b) in enumerate(zip(one, other, strict=True)):
             comparison.number(f"coefficient {k} of the multipliers", float(abs(a - b)), 0.0, allowed * 10 * largest)
-        if row["admissible"] and not word.sticking:
+        if row["admissible"] and not word.sticking and all(word.sides):
             _fly(comparison, orbit)
     return comparison
 
