@@ -110,11 +110,11 @@ def _reconstructed(
     mu = run.m.value / run.M.value
     sight = see_ball(recording, s, omega)
 
-    def measure(recording: Recording) -> Response:
+    def measure(recording: Recording, gain: complex | None = None) -> Response:
         return measure_response(
             recording, s, omega, forced, seen=None if sight is None else sight.train(mu),
             friction=mu * friction.value, u_natural=(omega0.u / omega0.value, lam.u / lam.value),
-            driven=complex(forced_response(base.e[0], omega, s)), impacts=impacts, seed=seed,
+            driven=complex(forced_response(base.e[0], omega, s)), impacts=impacts, gain=gain, seed=seed,
         )  # fmt: skip
 
     modes: tuple[Mode, ...] = ()
@@ -125,7 +125,7 @@ def _reconstructed(
             recording, hum = without_hum(without_ringing(recorded, response, modes), base.f.value)
             base = measure_base(recording)
             forced = _harmonics(base, recording, s)
-            response = measure(recording)
+            response = measure(recording, response.gain)
     else:
         response = measure(recording)
     if len(response.fit.jumps.t) < 6:
