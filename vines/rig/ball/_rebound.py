@@ -31,8 +31,6 @@ TILT = Uncertain(0.0, 0.02)
 ROLLS = 0.2
 """Largest deceleration of a ball that slides on its guide [m/s^2]."""
 
-_TURNS = 3
-
 _CENTROID = Uncertain(5.5e-5, 1.6e-5)
 """Centroid of the force of a contact of 70 to 200 us after the touch [s]."""
 
@@ -170,10 +168,6 @@ def measure_rebounds(
         )  # fmt: skip
 
     free = solved(known, rubbing)
-    for _ in range(0):
-        # A ball that rolls spins, which turns its friction earlier or later in a flight.
-        course = _course(response, side, b.value, free.friction.value)
-        free = solved(known, rubbing)
     if "friction" not in run.more and _contradicted(FRICTION, free.friction):
         friction = rubbing
     alone, joint = solved(None, friction), solved(known, friction)
@@ -209,10 +203,10 @@ def _contradicted(usual: Uncertain, seen: Uncertain) -> bool:
     return seen.value - usual.value > _UNUSUAL * float(np.hypot(usual.u, seen.u))
 
 
-def _course(response: Response, side: Floats, b: float, rolls: float = 0.0) -> Course:
+def _course(response: Response, side: Floats, b: float) -> Course:
     """Return how the ball slides on each flight and how fast it comes to each wall, by a first look at its motion."""
     fit = response.fit
-    found = slide(fit.motion, fit.jumps.x - side * b, rolls)
+    found = slide(fit.motion, fit.jumps.x - side * b)
     speed = np.abs(ball_motion(fit.jumps, side, Cavity(b)).w_before)
     middle = float(np.median(speed))
     # A Hertzian contact of speed v lasts v^(-1/5), so that the ball goes in by v^(4/5); wild speeds are misfits.

@@ -39,7 +39,7 @@ class Slide:
     before: Floats
 
 
-def slide(motion: Motion, x2: Floats, rolls: float = 0.0) -> Slide:
+def slide(motion: Motion, x2: Floats) -> Slide:
     """Return how the ball slides.
 
     Parameters
@@ -48,10 +48,6 @@ def slide(motion: Motion, x2: Floats, rolls: float = 0.0) -> Slide:
         Of the oscillator, K impacts.
     x2 : ndarray, shape (K,)
         Position of the ball at the impacts [m].
-    rolls : float
-        Deceleration by which friction turns the ball as well [m/s^2]; 0 for one that does not spin. What slides is then
-        its surface, of velocity v2 - u, with u' = 5/2 of the deceleration (a solid sphere), and u goes on through
-        impacts.
 
     Notes
     -----
@@ -74,32 +70,10 @@ def slide(motion: Motion, x2: Floats, rolls: float = 0.0) -> Slide:
     # The nodes at the ends belong to this flight, not to the next one.
     flight = np.repeat(np.arange(1, len(t)), _CELLS + 1)
     apart = (np.diff(x2) / time)[:, None] - motion.on(flight, nodes.ravel(), 1).reshape(nodes.shape)
-    if rolls:
-        apart = apart - _surface(apart, time, rolls)
     size = np.abs(apart[:, :-1]) + np.abs(apart[:, 1:])
     sense = (apart[:, :-1] + apart[:, 1:]) / np.where(size > 0, size, 1.0)
     share = (np.arange(_CELLS) + 0.5) / _CELLS
     return Slide(sense, time * np.mean(sense * (1 - share), axis=1), time * np.mean(sense * share, axis=1))
-
-
-def _surface(apart: Floats, time: Floats, rolls: float) -> Floats:
-    """Return the velocity of the ball's surface by its spin at the ends of all parts of all flights [m/s]."""
-    found = np.empty_like(apart)
-    gain = (2.5 * rolls * time / _CELLS).tolist()
-    rows, begun = apart.tolist(), 0.0
-    for _ in range(2):
-        # The second time it begins such that it turns as often one way as the other.
-        u = begun
-        for k, row in enumerate(rows):
-            own = [u]
-            for i in range(_CELLS):
-                first, last = row[i] - u, row[i + 1] - u
-                size = abs(first) + abs(last)
-                u += gain[k] * (first + last) / size if size > 0 else 0.0
-                own.append(u)
-            found[k] = own
-        begun -= float(found.mean())
-    return found
 
 
 @dataclass(frozen=True, slots=True, eq=False)
