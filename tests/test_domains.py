@@ -173,7 +173,7 @@ def calls() -> Calls:
                 "word": "LR",
                 "p": P,
                 "parameter": "A",
-                "within": (0.0169, 0.0171),
+                "within": (0.01699, 0.01701),
                 "seeds": [0.017],
                 "depth": 0,
                 "at": (),

@@ -92,3 +92,16 @@ def test_a_viewer_that_is_gone_does_not_stop_the_run(tmp_path):
     watched(event)
     watched.stay(wait=True)
     assert said == ["the connection is lost; the run goes on without it"]
+
+
+def test_more_runs_than_fit_beside_each_other_are_refused(study):
+    text = (study.root / "pipelines" / "two.toml").read_text()
+    nine = text.replace("[0.015, 0.016]", str([0.015 + k / 1e4 for k in range(9)]))
+    (study.root / "pipelines" / "two.toml").write_text(nine)
+    said = study.vines("run", "two", "motion").stdout
+    (shown,) = [line.split()[2] for line in said.splitlines() if line.startswith("  vines view")]
+    assert shown.startswith("two.motion/")
+    done = study.vines("view", "two.motion", "--save", study.root / "a.rrd", check=False)
+    assert done.returncode == 2
+    assert "two.motion has 9 logs, and 8 fit beside each other; name points, such as two.motion/" in done.stderr
+    assert "wrote" in study.vines("view", shown, "--save", study.root / "a.rrd").stdout

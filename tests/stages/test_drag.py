@@ -6,7 +6,7 @@ import pytest
 
 import vines
 from vines.errors import VinesError
-from vines.figures import front_of
+from vines.figures._front import front_of
 from vines.logs import read
 from vines.stages import load_pipeline, run, verify
 from vines.systems import Drag

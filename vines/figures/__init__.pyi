@@ -29,7 +29,6 @@ from ._exits import SharesPanel as SharesPanel
 from ._exits import SurvivalPanel as SurvivalPanel
 from ._finish import finish as finish
 from ._front import FrontPanel as FrontPanel
-from ._front import front_of as front_of
 from ._look import Look as Look
 from ._look import wearing as wearing
 from ._measures import MeasureCurve as MeasureCurve

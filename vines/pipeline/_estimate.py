@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 __all__ = ["estimate", "seconds_a_point"]
 
-_ENOUGH, _LEAST = 1.0, 24
+_ENOUGH, _LEAST = 1.0, 120
 """Seconds of points, and how many of them, that are measured: few say little where some take a hundred times longer."""
 _MOST = 5.0
 """Seconds after which no more are computed, however few there were."""
@@ -121,13 +121,18 @@ def seconds_a_point(
     """
     compute(0, 1)
     took, done, size = 0.0, 0, 1
+    batches: list[tuple[int, float]] = []
     while True:
         began = clock()
         compute(done, size)
-        took += clock() - began
-        done += size
-        enough = took >= _ENOUGH and done >= _LEAST
-        if enough or took >= _MOST or done == total:
-            return took / done
-        left = (_ENOUGH if done >= _LEAST else _MOST) - took
-        size = max(1, min(_GROWTH * size, int(left * done / max(took, 1e-9)), total - done))
+        batches.append((size, clock() - began))
+        took, done = took + batches[-1][1], done + size
+        if (took >= _ENOUGH and done >= _LEAST) or took >= _MOST or done == total:
+            break
+        rate = done / max(took, 1e-9)
+        wanted = max((_ENOUGH - took) * rate, _LEAST - done)
+        size = max(1, min(_GROWTH * size, int(min(wanted, (_MOST - took) * rate)), total - done))
+    # Many points go other ways than few, whose code the first of them load too: the large batches tell.
+    largest = max(size for size, _ in batches)
+    large = [each for each in batches if 2 * each[0] >= largest]
+    return sum(seconds for _, seconds in large) / sum(size for size, _ in large)

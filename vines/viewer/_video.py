@@ -160,6 +160,7 @@ def _gif(frames: Iterator[np.ndarray], out: Path, fps: int) -> None:
 
 def _quantized(frame: np.ndarray) -> Image.Image:
     """Return a frame in few colours, the paper of its corner as it is."""
+    need("PIL")
     from PIL import Image
 
     found = Image.fromarray(frame).quantize(_COLOURS)
