@@ -9,7 +9,7 @@ import vines
 from vines import Params, find_orbit
 from vines.dynamics import tangent_map
 from vines.errors import OrbitNotFound, ParameterError, StateError
-from vines.orbits import continue_orbit, follow_curve, mirror_image
+from vines.orbits import continue_orbit, follow_curve, mirror_image, switch_branch
 from vines.orbits._release_of_balls import Moment, Release, run_round
 from vines.systems import Parallel
 
@@ -154,6 +154,25 @@ def test_a_family_ends_where_its_chatter_does():
     assert continue_orbit(find_orbit("L*R*", ONE), "A", 0.4).bifurcations[-1].value == pytest.approx(
         0.44865639866870555, abs=1e-9
     )
+
+
+def test_bifurcations_of_one_ball_are_those_of_the_vi_nes_and_go_on_where_it_is_tilted():
+    p = Params(mu=0.0784564, A=0.171193, Omega=1.33447, r=0.302436, lam=0.0900701)
+    q = Parallel(mu=(p.mu,), A=p.A, Omega=p.Omega, r=p.r, lam=p.lam)
+    (theirs, _), (found, _) = (continue_orbit(find_orbit("LR*/3T", each), "A", 0.34).bifurcations for each in (p, q))
+    assert found.type == theirs.type == "period_doubling"
+    assert found.value == pytest.approx(theirs.value, abs=1e-13)
+    (doubled,) = switch_branch(found)
+    assert (str(doubled.word), doubled.stable) == ("LR*LR*/6T", True)
+    curve = follow_curve(found, ("A", "G"), box={"A": (0.15, 0.2), "G": (0.0, 0.002)}, step=0.3)
+    for orbit in (curve.orbits[0], curve.orbits[-1]):
+        assert np.abs(orbit.multipliers + 1).min() < 1e-9
+        assert orbit.residual < 1e-12
+    farther = curve.orbits[int(np.argmax(curve.values[:, 1]))]
+    assert farther.params.G > 1e-3
+    before, after = (farther.params.replace(A=farther.params.A + change) for change in (-2e-4, 2e-4))
+    assert find_orbit("LR*/3T", before, guess=farther).stable
+    assert not find_orbit("LR*/3T", after, guess=farther).stable
 
 
 def test_mirror_images_and_what_is_refused():

@@ -238,6 +238,8 @@ def test_an_orbit_and_its_branch():
     assert abs(orbit.energy_imbalance) < 1e-13
     early, late = (vines.simulate(p, **orbit.start(), periods=periods).final for periods in (0.2, 1.2))
     assert [late[name] for name in STATE] == pytest.approx([early[name] for name in STATE], abs=1e-12)
+    rough = np.column_stack([orbit.t, orbit.states]) + 1e-4
+    assert vines.find_orbit("LR", p, guess=rough).states == pytest.approx(orbit.states, abs=1e-13)
     settled = vines.settle(p)
     assert sorted(np.abs(settled.multipliers)) == pytest.approx(sorted(np.abs(orbit.multipliers)), abs=1e-8)
     assert settled.measures.kinetic_ratio == pytest.approx(orbit.measures.kinetic_ratio, abs=1e-9)
@@ -272,3 +274,47 @@ def test_what_cannot_be_is_refused():
     with pytest.raises(OrbitNotFound):
         vines.find_orbit("LR", C3.replace(A=0.001))
     assert constants(C3).field.order == 20
+
+
+def test_what_is_too_fast_to_follow_ends_with_a_status():
+    p = systems.CubicBarriers(mu=0.5, A=1e4, k3=1e4, walls=False)
+    run = vines.simulate(p, x2=1e6, periods=1)
+    assert run.status == "step_limit"
+    stiff = vines.simulate(systems.CubicBarriers(mu=0.5, A=0.1, k1=1e3, k3=1e3, l2=20.0), periods=2)
+    assert stiff.status == "complete"
+    assert abs(stiff.measures().balance) < 1e-11
+    with pytest.raises(ParameterError, match="nothing holds it"):
+        systems.CubicBarriers(mu=0.02, A=0.1, k1=-1.0, walls=False)
+
+
+@pytest.mark.parametrize("block", range(3))
+def test_no_run_loses_energy_or_passes_a_barrier(block):
+    rng = np.random.default_rng(block)
+    hits = sticks = 0
+    for _ in range(60):
+        p = systems.CubicBarriers(
+            mu=10 ** rng.uniform(-3, 0), A=10 ** rng.uniform(-2, 0.5), Omega=10 ** rng.uniform(-0.5, 0.5),
+            r=rng.choice([0.0, rng.uniform(0, 0.95)], p=[0.15, 0.85]), k1=rng.choice([0.0, rng.uniform(-1, 3)]),
+            k3=rng.choice([0.0, 10 ** rng.uniform(-2, 1.5)]), l2=rng.choice([0.0, 10 ** rng.uniform(-2, 0)]),
+        )  # fmt: skip
+        x1 = rng.uniform(-1, 1)
+        run = vines.simulate(p, x1=x1, x2=x1 - rng.uniform(-1, 1), v2=rng.uniform(-1, 1), phi=1.0, periods=12)
+        assert run.status == "complete"
+        found = run.measures()
+        assert abs(found.balance) < 1e-12 * (1 + abs(found.base_work))
+        at = run.sample(400)
+        assert np.abs(at["w"]).max() <= 1 + 1e-13
+        assert np.abs(at["x1"]).max() <= found.max_abs_x1 * (1 + 1e-13)
+        hits, sticks = hits + len(run.impacts), sticks + len(run.sticks)
+    assert hits > 1000
+    assert sticks > 30
+
+
+def test_the_rest_of_a_step_is_no_contact():
+    """Where a certified step ended a rounding short of the end of its series, that rest was once taken for one."""
+    p = systems.CubicBarriers(mu=0.45853489954660936, A=1.9732007182359343, Omega=0.6464421085573149,
+                              r=0.7359636530886098, k1=-0.44190651788682356, l2=0.7433302110153561)  # fmt: skip
+    run = vines.simulate(p, x1=-0.9352966688888046, v1=-4.421125081278097, x2=0.06470333111119542,
+                         v2=-4.442324775472302, phi=3.494402628753789, periods=0.1)  # fmt: skip
+    assert len(run.impacts) == 0
+    assert abs(run.measures().balance) < 1e-13

@@ -10,7 +10,7 @@ import numpy as np
 
 from vines.dynamics._constants import Constants
 from vines.dynamics._contact import CONTACT, NO_CONTACT, next_contact
-from vines.dynamics._flight import advance_phase, ball_flown, derivatives, flown, launched, relative
+from vines.dynamics._flight import advance_phase, ball_flown, derivatives, flown, launched, phase_after, relative
 from vines.dynamics._impact_law import after_impact_kernel
 from vines.dynamics._sticking import merges, next_release
 from vines.kernels import by_type, fused_njit, linked_njit, loop_njit, njit
@@ -124,7 +124,7 @@ def state_now(c, state, t):
     o = c.stuck if side != 0.0 else c.free
     motion = launched(c, o, state[S_X1], state[S_V1], state[S_V2], state[S_PHASE], state[S_T])
     x1, v1, _, _, _ = derivatives(o, c.Omega, *flown(c, o, motion, tau))
-    phase = advance_phase(state[S_PHASE], c.Omega * tau)
+    phase = phase_after(c, state[S_PHASE], c.Omega * tau, state[S_T], t)
     if side != 0.0:
         return x1, v1, x1 - side, v1, phase, tau
     way, v2 = ball_flown(c, motion, state[S_V2], tau)
@@ -139,8 +139,8 @@ def move(c, state, tau):
     total = t + step
     rest = total - t
     state[S_T_LOW] = (t - (total - rest)) + (step - rest)
+    state[S_PHASE] = phase_after(c, state[S_PHASE], c.Omega * tau, t, total)
     state[S_T] = total
-    state[S_PHASE] = advance_phase(state[S_PHASE], c.Omega * tau)
     state[S_CLEAR] = 0.0
 
 

@@ -26,6 +26,7 @@ __all__ = [
     "free_ball",
     "launched",
     "modulus",
+    "phase_after",
     "phasors",
     "pull",
     "rate_alone",
@@ -290,3 +291,10 @@ def advance_phase(phase, angle):
     if turned < 0.0:
         turned += TWO_PI
     return turned if turned < TWO_PI else 0.0
+
+
+@by_type(Constants)
+@fused_njit
+def phase_after(c, phase, angle, before, after):
+    """Return the phase of the forcing at a time, from that at a time before and the angle that it turns by since."""
+    return advance_phase(phase, angle)

@@ -17,6 +17,9 @@ import numpy.typing as npt
 from vines.dynamics._advance import ROW, STATE, set_state
 from vines.dynamics._constants import ParameterTable, constants_kernel
 from vines.dynamics._impact_law import ImpactLaw, impact_law
+from vines.dynamics._scatter import BEGUN, Scatter
+from vines.dynamics._scatter_constants import ROOM
+from vines.dynamics._scatter_table import ScatterTable
 from vines.dynamics._start import check_coordinate, check_gap, check_numbers
 from vines.dynamics._totals import TOTALS
 from vines.errors import StateError, nearest
@@ -63,6 +66,33 @@ class Room:
     def table(self, points: list[list[float]]) -> Any:
         """Return the table for kernels that run many points."""
         return ParameterTable(np.array(points))
+
+    def scattered(
+        self, values: Floats, scatter: Scatter, streams: npt.NDArray[np.int64], begun: Floats | None = None
+    ) -> tuple[Any, Floats]:
+        """Return the table of runs with scatter, and room that has to be kept as long as it is used.
+
+        Parameters
+        ----------
+        values : ndarray, shape (n, d)
+            Parameters of the runs.
+        scatter : Scatter
+            What is drawn.
+        streams : ndarray of int, shape (n,)
+            Number of each run.
+        begun : ndarray, shape (n,), optional
+            Coloured force at time 0, in units of A; drawn if left out.
+
+        Raises
+        ------
+        ParameterError
+            If the system cannot have such a scatter.
+        """
+        numbers = scatter.numbers(values)
+        if begun is not None:
+            numbers[:, BEGUN] = begun
+        room = np.empty(ROOM)
+        return ScatterTable(values, numbers, streams, room.ctypes.data), room
 
     def layout(self, p: Any) -> Layout:
         """Return the lengths of arrays."""

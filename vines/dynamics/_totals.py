@@ -21,7 +21,7 @@ from vines.dynamics._advance import (
     X2,
 )
 from vines.dynamics._constants import Constants
-from vines.dynamics._flight import advance_phase, ball_flown, derivatives, flown, launched, phasors, turn
+from vines.dynamics._flight import ball_flown, derivatives, flown, launched, phase_after, phasors, turn
 from vines.dynamics._integrals import energies_between, peak_between, segment_integrals
 from vines.kernels import by_type, entry_njit, linked_njit, njit, zero_matrix, zero_vector
 
@@ -70,7 +70,7 @@ def segment_state(c, row, tau):
     o = c.stuck if mode != 0.0 else c.free
     motion = launched(c, o, row[X1], row[A_V1], row[A_V2], row[PHASE], row[TIME])
     x1, v1, _, _, _ = derivatives(o, c.Omega, *flown(c, o, motion, tau))
-    phase = advance_phase(row[PHASE], c.Omega * tau)
+    phase = phase_after(c, row[PHASE], c.Omega * tau, row[TIME], row[TIME] + tau)
     if mode != 0.0:
         return x1, v1, x1 - mode, v1, phase
     way, v2 = ball_flown(c, motion, row[A_V2], tau)

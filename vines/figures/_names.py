@@ -47,8 +47,8 @@ _PARAMETERS = [
     *(each for name in system_names() for each in read_system(name, most_balls(name)).parameters),
     *VI_NES.parameters,  # a name that several systems have is called as there
 ]
-SYMBOLS = {each.name: each.symbol for each in _PARAMETERS} | {"V": "V"}
-NAMES = {each.name: each.label for each in _PARAMETERS} | {"V": "velocity at the start"}
+SYMBOLS = {each.name: each.symbol for each in _PARAMETERS} | {"V": "V", "level": r"\ell"}
+NAMES = {each.name: each.label for each in _PARAMETERS} | {"V": "velocity at the start", "level": "factor on the noise"}
 
 ERRORS = {
     "max_abs_x1": r"error of $\max|x_1|$",

@@ -49,10 +49,6 @@ def whole_word(word: str | Word, p: Any) -> Word:
     word = of_moderate_length(own_word(word, p))
     if STOPS in word.letters and not p.system.stops:
         raise ParameterError(f"{word} has stops, and a ball of the system {p.system.name!r} never stops in mid-cavity")
-    if word.sticking and not p.system.starred:
-        raise ParameterError(
-            f"{word} sticks, and orbits that stick are not computed for {p.system.name!r}; follow it by simulation"
-        )
     balls = getattr(p, "balls", 1)
     numbers = sorted(set(word.balls))
     if numbers != (list(range(1, balls + 1)) if balls > 1 else [0]):

@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from vines.bounds import shown
 from vines.dynamics.kernels import constants
 from vines.dynamics.taylor import TaylorConstants
 from vines.errors import ParameterError
@@ -92,21 +93,27 @@ class Shooting:
 
 
 def shot_from(word: Word, p: Any, guess: object) -> tuple[bool, Floats, float, Floats]:
-    """Return what Newton's method comes to from an orbit at nearby parameters; see `shot`.
+    """Return what Newton's method comes to from an orbit at nearby parameters, or from times and states; see `shot`.
 
     Raises
     ------
     ParameterError
-        If there are no barriers, or the guess is no orbit.
+        If there are no barriers, or the guess is neither an orbit nor an (N, 5) array of t, x1, v1, x2, v2.
     """
     if not p.walls:
         raise ParameterError("walls is 0: a word tells of impacts; vines.settle finds what there is without barriers")
-    if not isinstance(guess, Orbit):
+    if isinstance(guess, Orbit):
+        return shot(word, p, guess.t * frequency_of(guess.params) / frequency_of(p), guess.states)
+    try:
+        found = np.asarray(guess, dtype=np.float64)
+    except (TypeError, ValueError):
+        found = np.empty(0)
+    if found.shape != (len(word), 5) or not np.isfinite(found).all():
         raise ParameterError(
-            f"the guess is {type(guess).__name__}; of {p.system.name} give an orbit at nearby parameters: times of "
-            "impacts alone do not say how the mass flies"
+            f"the guess is {shown(guess)}; of {p.system.name} give an orbit at nearby parameters, or rows of t, x1, "
+            f"v1, x2, v2 just before each of the {len(word)} impacts: times alone do not say how the mass flies"
         )
-    return shot(word, p, guess.t * frequency_of(guess.params) / frequency_of(p), guess.states)
+    return shot(word, p, found[:, 0], found[:, 1:])
 
 
 def shot(word: Word, p: Any, t: Floats, states: Floats) -> tuple[bool, Floats, float, Floats]:

@@ -53,7 +53,8 @@ def shots_kernel(c, sign, span, side, t, states, defect, slope):
     """
     n = t.size
     row = zero_vector(col.ROW)
-    law = c.law
+    # The law of impact is linear: what it makes of each velocity alone.
+    first, second = after_impact_kernel(c.law, 1.0, 0.0), after_impact_kernel(c.law, 0.0, 1.0)
     for i in range(4 * n):
         for k in range(4 * n):
             slope[i, k] = 0.0
@@ -82,8 +83,8 @@ def shots_kernel(c, sign, span, side, t, states, defect, slope):
             slope[at_row, j] -= moved
             slope[at_row, k] += after[i]
             slope[at_row, n + j] += Y[i, 0] + Y[i, 2]
-            slope[at_row, 2 * n + j] += law.keep1 * Y[i, 1] + law.pass2 * Y[i, 3]
-            slope[at_row, 3 * n + j] += law.pass1 * Y[i, 1] + law.keep2 * Y[i, 3]
+            slope[at_row, 2 * n + j] += first[0] * Y[i, 1] + first[1] * Y[i, 3]
+            slope[at_row, 3 * n + j] += second[0] * Y[i, 1] + second[1] * Y[i, 3]
         slope[4 * j, n + k] -= turned
         slope[4 * j + 2, n + k] -= turned
         slope[4 * j + 1, 2 * n + k] -= turned

@@ -11,6 +11,7 @@ import numpy.typing as npt
 
 from vines.dynamics.kernels import constants, derivatives, flight, pull, tangent_product, turn, window_totals
 from vines.dynamics.kernels import rows as col
+from vines.dynamics.parallel import ParallelConstants
 from vines.dynamics.parallel.kernels import BALL, R_V2, R_X2, frame_with
 from vines.dynamics.runs import measures_from
 from vines.errors import OrbitNotFound
@@ -62,7 +63,7 @@ class _Contacts(NamedTuple):
 
 def rides_in_parallel(p: Any) -> bool:
     """Say whether a system has balls in parallel cavities."""
-    return hasattr(p, "balls")
+    return isinstance(constants(p), ParallelConstants)
 
 
 def balls_orbit(word: Word, p: Any, release: Begun, remark: str = "") -> Orbit:

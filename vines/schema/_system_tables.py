@@ -14,9 +14,13 @@ from vines.schema._declared import expand
 __all__ = ["OF_EACH_SYSTEM", "of_system", "of_systems", "system_table"]
 
 OF_EACH_SYSTEM = (
-    "attractors", "basins", "bifurcations", "branches", "curves", "impacts", "orbits", "points", "transients"
+    "attractors", "basins", "bifurcations", "branches", "curves", "exit_points", "exit_regimes", "exits", "impacts",
+    "orbits", "points", "transients",
 )  # fmt: skip
 """Tables that every system has: the VI-NES under these names, another one with its name before them."""
+
+WITH_SCATTER = ("impact_pair",)
+"""Systems beside the VI-NES whose runs can have noise."""
 
 
 @functools.cache
@@ -27,9 +31,11 @@ def of_systems() -> dict[str, tuple[str, str]]:
 
 
 def _tables_of(system: str) -> list[str]:
-    """Return the tables that a system has: only what has a damper of its own decays."""
+    """Return the tables that a system has: only what has a damper of its own decays, and few can have scatter."""
     decays = "damper_loss" in read_system(system, most_balls(system)).energies.lost
-    return [base for base in OF_EACH_SYSTEM if decays or base != "transients"]
+    none = set() if decays else {"transients"}
+    none |= set() if system in WITH_SCATTER else {"exit_points", "exit_regimes", "exits"}
+    return [base for base in OF_EACH_SYSTEM if base not in none]
 
 
 def system_table(system: str, base: str) -> str:

@@ -80,3 +80,5 @@ class CubicBarriers(Parameters):
         Parameters.__post_init__(self)
         if self.walls not in (0.0, 1.0):
             raise ParameterError(f"walls is {self.walls:g}, allowed are 1 and 0: there are barriers or there are none")
+        if self.k1 < 0 and self.k3 == 0 and not self.walls:
+            raise ParameterError(f"k1 is {self.k1:g} without barriers, give k1 >= 0 or k3 > 0: nothing holds it")

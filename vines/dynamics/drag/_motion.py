@@ -19,6 +19,7 @@ from vines.dynamics._flight import (
     free_ball,
     launched,
     modulus,
+    phase_after,
     phasors,
     pull,
     rate_alone,
@@ -38,7 +39,7 @@ from vines.kernels import fused_njit, loop_njit, njit
 
 __all__ = ["ball_velocity", "set_out"]
 
-for _name in (advance, begin, carry_basis, write_end, law_of, next_release, flown, free_ball, pull):
+for _name in (advance, begin, carry_basis, write_end, law_of, next_release, flown, free_ball, phase_after, pull):
     _name.register(DragConstants)(_name.first)
 
 pull.register(GapConstants)(pull.first)

@@ -15,6 +15,7 @@ from vines.dynamics._flight import (
     free_ball,
     launched,
     modulus,
+    phase_after,
     phasors,
     pull,
     rate_alone,
@@ -43,7 +44,7 @@ SENSE, WAY, SPEED = 4, 5, 6
 """Places in a motion."""
 
 flown.register(FrictionConstants)(flown.first)
-for _name in (pull, free_ball):
+for _name in (pull, free_ball, phase_after):
     _name.register(FrictionConstants)(_name.first)
 for _kind in (SlidGapConstants, RateConstants):
     pull.register(_kind)(pull.first)

@@ -43,6 +43,7 @@ from vines.dynamics._impact_law import (
 from vines.dynamics._integrals import largest_displacement, segment_integrals
 from vines.dynamics._room import Room, constants, room_of, table_of
 from vines.dynamics._saltation import jacobian_kernel
+from vines.dynamics._scatter_table import colour_at
 from vines.dynamics._sticking import next_release
 from vines.dynamics._tangent import (
     carry_basis,
@@ -69,6 +70,7 @@ __all__ = [
     "ball_mass",
     "begin",
     "carry_basis",
+    "colour_at",
     "constants",
     "constants_at",
     "constants_kernel",

@@ -15,6 +15,7 @@ from vines.dynamics._flight import (
     free_ball,
     launched,
     modulus,
+    phase_after,
     phasors,
     pull,
     rate_alone,
@@ -104,7 +105,7 @@ def _speed_terms(c, ur, ui, gr, gi):
     return abs(ur) + abs(ui) + (1.0 + c.Omega) * (abs(gr) + abs(gi)) + abs(c.G)
 
 
-for _name in (drift, holds_for, launched, rate_alone, relative):
+for _name in (drift, holds_for, launched, phase_after, rate_alone, relative):
     _name.register(ParallelConstants)(_name.first)
 
 free_ball.register(ParallelConstants)(falling_ball)

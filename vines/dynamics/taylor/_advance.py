@@ -37,7 +37,7 @@ from vines.dynamics._advance import (
     write_row,
 )
 from vines.dynamics._contact import CONTACT, NO_CONTACT
-from vines.dynamics._flight import advance_phase, drift
+from vines.dynamics._flight import advance_phase, drift, phase_after
 from vines.dynamics._impact_law import after_impact_kernel
 from vines.dynamics._sticking import UNRESOLVED, ends_chatter
 from vines.dynamics._window import width_of, write_end
@@ -52,6 +52,7 @@ __all__ = ["set_mass"]
 
 begin.register(TaylorConstants)(begin.first)
 drift.register(TaylorConstants)(drift.first)
+phase_after.register(TaylorConstants)(phase_after.first)
 width_of.register(TaylorTable)(width_of.first)
 
 

@@ -80,7 +80,10 @@ def _hit(f, h, clear, until, wall, released, since):
             return (CONTACT, found, side) if found <= until else (NO_CONTACT, s, 0)
         forth, back = certain_ways(gap, behind, pace, d2, d3, d4, fifth, left)
         step = min(forth, back)
-        if not step > FEW_ULP * (since + s) and s < h:
+        if left <= FEW_ULP * (since + h):
+            # What is left of the step is rounding; the next one begins where it ends.
+            return NO_CONTACT, s, 0
+        if not step > FEW_ULP * (since + s):
             return (CONTACT, s, (side if forth <= back else -side)) if s <= until else (NO_CONTACT, s, 0)
         if s + step >= until:
             return NO_CONTACT, s, 0
@@ -107,9 +110,11 @@ def fly(c, state, stop):
     f = c.field
     order = f.order
     a = coefficients(f)
-    while True:
+    for _ in range(MAX_STEPS):
         since = state[SINCE]
         h = open_step(c, state)
+        if not h > 0.0:
+            break
         if c.walls != 0.0:
             wall = int(state[S_WALL]) if since == 0.0 else 0
             code, s, side = _hit(
@@ -125,6 +130,7 @@ def fly(c, state, stop):
         x, v = at(a, X, order, h)
         w, u = at(a, W, order, h)
         begin_step(state, since + h, x, v, w, u)
+    return STEP_CAP, state[SINCE], 0
 
 
 @loop_njit
@@ -138,6 +144,6 @@ def flown_from(f, x, v, w, u, phase, tau):
         h = min(h, left)
         x, v = at(a, X, f.order, h)
         w, u = at(a, W, f.order, h)
-        if h == left:
+        if not h < left:
             return x, v, w, u
         done += h

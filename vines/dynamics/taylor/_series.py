@@ -31,6 +31,9 @@ X, W, SQUARE, DISTURBED = 0, LENGTH, 2 * LENGTH, 3 * LENGTH
 
 DIRECTIONS = 4
 
+SHORTEST = 1e-8
+"""Shortest step, in units of the longest."""
+
 
 @fused_njit
 def coefficients(f):
@@ -93,7 +96,7 @@ def expand(f, x, v, w, u, phase):
 def reach(a, order, size, longest):
     """Return how far a step may go: terms fall by e^-2, so that e^-40 of `size` is left out (Jorba and Zou, 2005).
 
-    Series of twice the order go as far, and leave out e^-80.
+    Series of twice the order go as far, and leave out e^-80. Nan where there is no step that is worth it.
     """
     last = max(abs(a[X + order]), abs(a[W + order]))
     before = max(abs(a[X + order - 1]), abs(a[W + order - 1]))
@@ -102,7 +105,9 @@ def reach(a, order, size, longest):
         step = math.log(size / last) / order
     if before > 0.0:
         step = min(step, math.log(size / before) / (order - 1))
-    return min(longest, math.exp(step - 2.0 - 0.7 / (ORDER - 1)))
+    step = math.exp(step - 2.0 - 0.7 / (ORDER - 1))
+    # Motion that is lost in overflow, or a million times as fast as the forcing, goes no step.
+    return min(longest, step) if step > SHORTEST * longest else math.nan
 
 
 @fused_njit

@@ -36,7 +36,7 @@ _LOOSE, _TIGHT = 1e-4, 2e-5
 
 
 def undisturbed(
-    recording: Recording, measure: Callable[[Recording], Response]
+    recording: Recording, measure: Callable[[Recording, complex | None], Response]
 ) -> tuple[Recording, Response, tuple[Mode, ...]]:
     """Return the response with modes of the frame taken off, the recording without them, and the modes.
 
@@ -44,13 +44,14 @@ def undisturbed(
     ----------
     recording : Recording
     measure : callable
-        Finds the impacts in a recording and fits the motion.
+        Finds the impacts in a recording and fits the motion; the second argument is the gain of the accelerometer where
+        that is known.
 
     Notes
     -----
     They are looked for where the fit of a displacement leaves more than its noise, or no impacts are found.
     """
-    best = measure(recording)
+    best = measure(recording, None)
     found: tuple[Recording, Response, tuple[Mode, ...]] = (recording, best, ())
     if best.order != 0 or (len(best.fit.jumps.t) >= _FEW and best.fit.residual < _CLEAN * best.fit.noise):
         return found
@@ -67,7 +68,7 @@ def undisturbed(
 
 
 def _taken_off(
-    recording: Recording, best: Response, train: Train, measure: Callable[[Recording], Response]
+    recording: Recording, best: Response, train: Train, measure: Callable[[Recording, complex | None], Response]
 ) -> tuple[Recording, Response, tuple[Mode, ...]]:
     """Return recording, response and modes, found and taken off in turns, begun with given impacts."""
     channel, heard = recording.channels[best.channel.name], recording.role("lo_acc")
@@ -81,20 +82,20 @@ def _taken_off(
                 break
             channels = dict(recording.channels)
             channels[channel.name] = less_modes(channel, modes, train.t, train.dv)
-            again = measure(replace(recording, channels=channels))
+            again = measure(replace(recording, channels=channels), best.gain)
             if heard is not None and best.gain is not None:
                 fit, delay = again.fit, again.delay
                 if len(fit.jumps.t) < _FEW:
                     # Its own modes hide the pulses; what the displacement's past does not predict tells when they ring.
                     less = replace(best.begun.model, bins=bins_of(channels[channel.name]))
                     fit, delay = less.fit(train, draws=0), best.delay
-                more = modes_heard(fit, delay, heard, again.gain or best.gain, modes)
+                more = modes_heard(fit, delay, heard, best.gain, modes)
                 if more:
                     times, dv = fit.jumps.t, fit.jumps.dv
                     channels[channel.name] = less_modes(channel, modes, times, dv)
                     channels[heard.name] = less_modes(heard, more, times - delay, dv)
                     modes = (*modes, *more)
-                    again = measure(replace(recording, channels=channels))
+                    again = measure(replace(recording, channels=channels), best.gain)
         except (RigError, np.linalg.LinAlgError):
             break
         better = len(again.fit.jumps.t) >= _FEW and (
@@ -110,7 +111,9 @@ def _taken_off(
 
 
 def without_ringing(recording: Recording, response: Response, modes: tuple[Mode, ...]) -> Recording:
-    """Return a recording without modes of the frame in any channel, those of the base among them.
+    """Return a recording without modes of the frame, in the base's displacement and velocity neither.
+
+    An acceleration has pulses that set the modes moving; without their ringing these would count for the base's motion.
 
     Parameters
     ----------
@@ -124,7 +127,7 @@ def without_ringing(recording: Recording, response: Response, modes: tuple[Mode,
     jumps, channels = response.fit.jumps, dict(recording.channels)
     poles = tuple(mode.s for mode in modes if mode.name == response.channel.name)
     for name, channel in recording.channels.items():
-        if channel.role in ("base_disp", "base_acc", "base_vel"):
+        if channel.role in ("base_disp", "base_vel"):
             late = response.late
             own = modes_felt(channel, response.fit.motion.omega, poles, jumps.t - late, jumps.dv)
         else:

@@ -101,7 +101,7 @@ def cut_into_periods(unwrapped: Floats, side: Floats, span: tuple[float, float],
     number = np.floor((unwrapped - cut) / (2 * np.pi)).astype(np.int64)
     first, last = int(np.ceil((span[0] - cut) / (2 * np.pi))), int(np.floor((span[1] - cut) / (2 * np.pi)))
     begin = np.searchsorted(number, np.arange(first, max(last, first) + 1)).tolist()
-    letters = VI_NES.letters(side)
+    letters = "".join(np.where(side > 0, *VI_NES.letters([1.0, -1.0])))
     words = [letters[low:high] for low, high in itertools.pairwise(begin)]
     return Periods(cut, number, words, first)
 
