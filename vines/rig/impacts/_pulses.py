@@ -233,11 +233,23 @@ def refine_pulses(pulses: Pulses, train: Train, *, level: bool = False) -> Train
 
 
 def _joined(train: Train, apart: float) -> Train:
-    """Join jumps that are nearer than `apart` into one of the same sum, at the centroid."""
-    while (near := np.flatnonzero(np.diff(train.t) < apart)).size:
-        k = int(near[np.argmin(np.diff(train.t)[near])])
-        two = slice(k, k + 2)
-        centre = np.average(train.t[two], weights=np.abs(train.dv[two]) + 1e-12)
-        one = Train.alike(np.array([centre]), np.array([train.dv[two].sum()]), train.u[k])
-        train = train.without(np.isin(np.arange(len(train)), [k, k + 1])).merged(one)
-    return train
+    """Join jumps that are nearer than `apart` into one of the same sum, at the centroid; the nearest ones first."""
+    near = np.diff(train.t) < apart
+    if not near.any():
+        return train
+    t, dv, keep = train.t.copy(), train.dv.copy(), np.ones(len(train), bool)
+    # A centroid lies between those joined: what is apart from both is apart from it.
+    edges = np.flatnonzero(np.diff(near, prepend=False, append=False)).tolist()
+    for first, last in zip(edges[0::2], edges[1::2], strict=True):
+        few = list(range(first, last + 1))
+        while len(few) > 1:
+            gaps = np.diff(t[few])
+            k = int(np.argmin(gaps))
+            if gaps[k] >= apart:
+                break
+            one, other = few[k], few.pop(k + 1)
+            size, more = abs(dv[one]) + 1e-12, abs(dv[other]) + 1e-12
+            t[one] = (t[one] * size + t[other] * more) / (size + more)
+            dv[one] += dv[other]
+            keep[other] = False
+    return Train(t[keep], dv[keep], train.u[keep])

@@ -28,7 +28,7 @@ _MOST = 24
 
 
 def resonances(bins: Bins, times: Floats) -> npt.NDArray[np.complex128]:
-    """Return the exponents of the damped sines between impacts, slowest first.
+    """Return the exponents of the damped sines between impacts, strongest directions first taken, slowest first.
 
     Parameters
     ----------
@@ -82,6 +82,6 @@ def resonances(bins: Bins, times: Floats) -> npt.NDArray[np.complex128]:
         return nothing
     span = directions[:, ::-1][:, :order]
     roots = np.linalg.eigvals(np.linalg.lstsq(span[:-1], span[1:], rcond=None)[0]).astype(complex)
-    s = np.asarray(np.log(roots[np.abs(roots) > 1e-9]) / bins.width, dtype=np.complex128)
-    s = s[s.imag > 0]
-    return s[np.argsort(s.imag)]
+    s = np.log(roots[np.abs(roots) > 1e-9]) / bins.width
+    above: npt.NDArray[np.complex128] = s[s.imag > 0].astype(np.complex128)
+    return above[np.argsort(above.imag)]

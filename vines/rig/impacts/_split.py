@@ -69,18 +69,47 @@ def _kink(bins: Bins, fit: JumpFit, order: int, t: Floats, start: float) -> tupl
     free = bins.response(s) * s**order * np.exp(s * (t - start))
     two = np.stack([free.real, -free.imag], axis=1)
     alone = float(np.sum((y - two @ np.linalg.lstsq(two, y, rcond=None)[0]) ** 2))
-
-    def tried(tau: float) -> tuple[float, float, float]:
-        after = np.where(t > tau, (s**order * np.exp(s * (t - tau))).imag / s.imag, 0.0)
-        # Around the impact itself the smoothed signal is neither.
-        fair = np.abs(t - tau) > 4.5 * bins.smooth + bins.width
-        columns = np.column_stack([two, after])[fair]
-        linear = np.linalg.lstsq(columns, y[fair], rcond=None)[0]
-        left = float(np.sum((y[fair] - columns @ linear) ** 2)) * len(t) / max(np.count_nonzero(fair), 1)
-        return left, tau, float(linear[2])
-
+    # Around the impact itself the smoothed signal is neither.
+    apart = 4.5 * bins.smooth + bins.width
     low, high = t[_LEAST // 2], t[-_LEAST // 2]
-    best = min(map(tried, np.arange(low, high, _COARSE * _GRID)), default=(np.inf, 0.0, 0.0))
-    near = best[1] + _GRID * np.arange(1 - _COARSE, _COARSE)
-    best = min([best, *map(tried, near[(near >= low) & (near < high)])])
-    return (float(best[1]), best[2]) if best[0] < _BETTER**2 * alone else None
+    coarse = np.arange(low, high, _COARSE * _GRID)
+    if not len(coarse):
+        return None
+
+    def scanned(tau: Floats) -> float:
+        turn = np.exp(-s * (tau - start)) / (bins.response(s) * s.imag)
+        return float(tau[np.argmin(_left_by_kinks(t, y, two, tau, (turn.imag, -turn.real), apart))])
+
+    near = scanned(coarse) + _GRID * np.arange(1 - _COARSE, _COARSE, dtype=np.float64)
+    tau = scanned(near[(near >= low) & (near < high)])
+    after = np.where(t > tau, (s**order * np.exp(s * (t - tau))).imag / s.imag, 0.0)
+    fair = np.abs(t - tau) > apart
+    columns = np.column_stack([two, after])[fair]
+    linear = np.linalg.lstsq(columns, y[fair], rcond=None)[0]
+    left = float(np.sum((y[fair] - columns @ linear) ** 2)) * len(t) / max(np.count_nonzero(fair), 1)
+    return (tau, float(linear[2])) if left < _BETTER**2 * alone else None
+
+
+def _left_by_kinks(
+    t: Floats, y: Floats, two: Floats, tau: Floats, parts: tuple[Floats, Floats], apart: float
+) -> Floats:
+    """Return what a free oscillation with a kink at each time `tau` leaves, as a sum of squares over all samples.
+
+    The kink is a combination of the two phases of the free oscillation after its time, with `parts` of each, so that
+    sums over the samples before and after give all normal equations. Sums that begin at their small end keep digits.
+    """
+    one, other = two.T
+    products = np.stack([one * one, one * other, other * other, one * y, other * y, y * y])
+    none = np.zeros((6, 1))
+    low, high = np.searchsorted(t, tau - apart), np.searchsorted(t, tau + apart, side="right")
+    later = np.hstack([np.cumsum(products[:, ::-1], axis=1)[:, ::-1], none])[:, high]
+    aa, ab, bb, ay, by, yy = np.hstack([none, np.cumsum(products, axis=1)])[:, low] + later
+    a, b = parts
+    ac, bc = a * later[0] + b * later[1], a * later[1] + b * later[2]
+    normal = np.stack([aa, ab, ac, ab, bb, bc, ac, bc, a * ac + b * bc], axis=1).reshape(-1, 3, 3)
+    right = np.stack([ay, by, a * later[3] + b * later[4]], axis=1)
+    size = np.sqrt(np.maximum(np.diagonal(normal, axis1=1, axis2=2), 1e-300))
+    normal, right = normal / (size[:, :, None] * size[:, None, :]), right / size
+    solved = np.linalg.solve(normal + 1e-13 * np.eye(3), right[:, :, None])[:, :, 0]
+    count = np.maximum(low + len(t) - high, 1)
+    return (yy - np.sum(solved * right, axis=1)) * len(t) / count

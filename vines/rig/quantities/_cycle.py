@@ -47,7 +47,8 @@ class Track:
         k = np.clip(np.searchsorted(self.t, t, side="right") - 1, 0, len(self.t) - 2)
         v2 = (self.x2[k + 1] - self.x2[k]) / (self.t[k + 1] - self.t[k])
         x2 = self.x2[k] + v2 * (t - self.t[k])
-        return self.motion.at(t) - x2, self.motion.at(t, 1) - v2
+        x1, v1 = self.motion.both(t)
+        return x1 - x2, v1 - v2
 
 
 @dataclass(frozen=True, slots=True, eq=False)

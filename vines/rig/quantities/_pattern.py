@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from collections import Counter
 from dataclasses import dataclass
 
@@ -42,6 +43,12 @@ class Periods:
     words: list[str]
     first: int
 
+    @property
+    def counts(self) -> list[tuple[int, int]]:
+        """Impacts on the left and on the right in each complete period."""
+        of = {word: (word.count("L"), word.count("R")) for word in set(self.words)}
+        return [of[word] for word in self.words]
+
 
 @dataclass(frozen=True, slots=True)
 class Pattern:
@@ -81,7 +88,7 @@ def cut_into_periods(unwrapped: Floats, side: Floats, span: tuple[float, float],
     Parameters
     ----------
     unwrapped : ndarray, shape (K,)
-        Omega t + phi of each impact, not reduced mod 2 pi [rad].
+        Omega t + phi of each impact, in their order, not reduced mod 2 pi [rad].
     side : ndarray, shape (K,)
         +1 L, -1 R.
     span : tuple of float
@@ -93,10 +100,9 @@ def cut_into_periods(unwrapped: Floats, side: Floats, span: tuple[float, float],
         cut = _widest_gap(unwrapped)
     number = np.floor((unwrapped - cut) / (2 * np.pi)).astype(np.int64)
     first, last = int(np.ceil((span[0] - cut) / (2 * np.pi))), int(np.floor((span[1] - cut) / (2 * np.pi)))
-    words = [""] * max(last - first, 0)
-    for n, sigma in zip(number, side, strict=True):
-        if first <= n < last:
-            words[n - first] += VI_NES.letters([sigma])
+    begin = np.searchsorted(number, np.arange(first, max(last, first) + 1)).tolist()
+    letters = "".join(np.where(side > 0, *VI_NES.letters([1.0, -1.0])))
+    words = [letters[low:high] for low, high in itertools.pairwise(begin)]
     return Periods(cut, number, words, first)
 
 
@@ -117,7 +123,7 @@ def find_pattern(periods: Periods, unwrapped: Floats | None = None) -> Pattern:
     '1:1'
     """
     words = periods.words
-    counts = [(w.count("L"), w.count("R")) for w in words]
+    counts = periods.counts
     if not sum(map(len, words)):
         return Pattern("none", 0, 0, 1, ("",), 1.0, {"0:0": 1.0})
     fractions = {f"{n}:{m}": k / len(counts) for (n, m), k in Counter(counts).most_common()}
@@ -125,8 +131,8 @@ def find_pattern(periods: Periods, unwrapped: Floats | None = None) -> Pattern:
     for p in range(1, _LONGEST + 1):
         if len(counts) < 4 * p:
             break
-        usual = [Counter(counts[k::p]).most_common(1)[0][0] for k in range(p)]
-        fraction = sum(c == usual[k % p] for k, c in enumerate(counts)) / len(counts)
+        most = [Counter(counts[k::p]).most_common(1)[0] for k in range(p)]
+        usual, fraction = [each for each, _ in most], sum(n for _, n in most) / len(counts)
         if fraction >= HOLDS:
             best = (fraction, p, usual)
             break
@@ -139,7 +145,7 @@ def find_pattern(periods: Periods, unwrapped: Floats | None = None) -> Pattern:
         p, usual = 2 * p, usual * 2
     n, m = sum(c[0] for c in usual), sum(c[1] for c in usual)
     word = tuple(
-        Counter(w for w in words[k::p] if (w.count("L"), w.count("R")) == usual[k]).most_common(1)[0][0]
+        Counter(w for w, c in zip(words[k::p], counts[k::p], strict=True) if c == usual[k]).most_common(1)[0][0]
         for k in range(p)
     )
     name = (f"{n}:{m}" if p == 1 else f"{n}:{m}/{p}T") if fraction >= HOLDS else "mixed"
@@ -152,12 +158,8 @@ def alternates(periods: Periods, unwrapped: Floats, usual: list[tuple[int, int]]
     The alternating part (-1)^j (phase_j - mean) of a doubled orbit stays on one side of zero (its mean modulus squared
     is its mean square), that of noise near a doubling is normal about zero (2/pi of it), whatever its correlation.
     """
-    first = periods.first
-    complete = [
-        j
-        for j in range(0, len(periods.words) - p + 1, p)
-        if all((w.count("L"), w.count("R")) == usual[k] for k, w in enumerate(periods.words[j : j + p]))
-    ]
+    first, counts = periods.first, periods.counts
+    complete = [j for j in range(0, len(counts) - p + 1, p) if counts[j : j + p] == usual]
     impacts = sum(a + b for a, b in usual)
     if len(complete) < 16 or not impacts:
         return False

@@ -286,12 +286,10 @@ def _show(track: Track, p: Params, run: Reconstruction) -> _Shown:
 def _share(periods: Periods, usual: Pattern) -> float:
     """Return the fraction of periods with the counts of a pattern, wherever it begins."""
     wanted = [(w.count("L"), w.count("R")) for w in usual.word]
-    seen = [(w.count("L"), w.count("R")) for w in periods.words]
+    seen, p = periods.counts, usual.p
     if not seen:
         return 0.0
-    return max(
-        float(np.mean([c == wanted[(k + turn) % usual.p] for k, c in enumerate(seen)])) for turn in range(usual.p)
-    )
+    return max(sum(seen[k::p].count(wanted[(k + turn) % p]) for k in range(p)) for turn in range(p)) / len(seen)
 
 
 def period_maximum(track: Track, periods: Periods) -> float:
