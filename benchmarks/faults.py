@@ -10,7 +10,7 @@ import tempfile
 from collections.abc import Callable
 from pathlib import Path
 
-from tests.stages.test_faults import FAULTS, inject, run_two
+from tests.stages.test_faults import FAULTS, files_of, inject, run_two
 
 PAGE = Path(__file__).resolve().parent.parent / "docs" / "damage.md"
 COMMANDS = ("status", "query", "verify", "gc", "export", "run")
@@ -51,7 +51,8 @@ def measure(fault: Callable[[Path, Path], None]) -> list[tuple[str, str, dict[st
     with tempfile.TemporaryDirectory() as folder:
         place = Path(folder) / "injected"
         place.mkdir()
-        return inject(run_two(Path(folder) / "whole"), place, lambda number: fault)
+        whole = run_two(Path(folder) / "whole")
+        return inject(whole, place, lambda number: fault, files_of(whole))
 
 
 def write(table: list[tuple[str, str, dict[str, str]]]) -> None:

@@ -110,6 +110,27 @@ def calls() -> Calls:
         ),
         "Atlas.entry_of": (known.entry_of, {"orbit": orbit}),
         "orbit_of": (attractors.orbit_of, {"attractor": vines.settle(P, lyapunov=False, errors=False)}),
+        "exits": (
+            vines.exits,
+            {
+                "p": P,
+                "scatter": Scatter(noise=0.01),
+                "start": {"v2": 0.1},
+                "words": (),
+                "runs": 1,
+                "periods": 2,
+                "confirm": 2,
+                "wait": 0,
+                "splitting": 0,
+                "random": 0,
+                "seed": 0,
+                "settle": 2,
+                "record": 4,
+                "watch": 16,
+                "threads": 1,
+            },
+        ),
+        "mean_interval": (attractors.mean_interval, {"exits": 3, "watched": 100.0, "level": 0.95}),
         "share_error": (attractors.share_error, {"share": 0.5, "number": 10}),
         "impact_map": (
             dynamics.impact_map,
@@ -152,7 +173,7 @@ def calls() -> Calls:
                 "word": "LR",
                 "p": P,
                 "parameter": "A",
-                "within": (0.0169, 0.0171),
+                "within": (0.01699, 0.01701),
                 "seeds": [0.017],
                 "depth": 0,
                 "at": (),
@@ -195,7 +216,7 @@ def calls() -> Calls:
 
 BESIDE = {
     "curve_rows", "branch_row", "bifurcation_row", "orbit_row", "orbit_outline", "own_word", "warm_up", "apart",
-    "of_two_mirror_images", "one_of", "orbit_through", "partners",
+    "of_two_mirror_images", "one_of", "orbit_through", "partners", "coexisting", "random_starts", "stationary_law",
 }  # fmt: skip
 """Public to the rooms above, which call them with what other functions returned."""
 

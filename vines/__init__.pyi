@@ -1,8 +1,11 @@
 from . import systems as systems
 from .attractors import Attractor as Attractor
+from .attractors import Exits as Exits
 from .attractors import classify_many as classify_many
+from .attractors import exits as exits
 from .attractors import settle as settle
 from .dynamics import Ensemble as Ensemble
+from .dynamics import OrnsteinUhlenbeck as OrnsteinUhlenbeck
 from .dynamics import Scatter as Scatter
 from .dynamics import Trajectory as Trajectory
 from .dynamics import ball_locked as ball_locked

@@ -10,9 +10,9 @@ import operator
 import os
 from typing import Any
 
-from vines.errors import StateError, VinesError
+from vines.errors import ParameterError, StateError, VinesError
 
-__all__ = ["MOST_EVENTS", "MOST_PERIODS", "check_count", "check_number", "check_periods", "shown"]
+__all__ = ["MOST_EVENTS", "MOST_PERIODS", "check_count", "check_hold", "check_number", "check_periods", "shown"]
 
 MOST_PERIODS = 10_000_000
 """Forcing periods of one point: they take a minute, and a sweep has hundreds of points."""
@@ -117,6 +117,34 @@ def shown(value: Any) -> str:
     """Return a value as a message quotes it: in one line, and not pages of it."""
     text = " ".join(repr(value).split())
     return text if len(text) <= 60 else f"{text[:57]}..."
+
+
+LONGEST_STEP = 0.5
+"""Longest step of a coloured force, in units of 1/omega0: within it the force has two values."""
+
+
+def check_hold(hold: int, Omega: float) -> None:
+    """Refuse too few draws in a forcing period for a coloured force, of which two are a step.
+
+    Raises
+    ------
+    ParameterError
+        With the number that is enough.
+
+    Examples
+    --------
+    >>> check_hold(8, 1.0)
+    Traceback (most recent call last):
+        ...
+    vines.errors.ParameterError: hold is 8; with ou at Omega = 1 allowed is hold >= 26: two steps of the force may not \
+last longer than 0.5, in units of 1/omega0
+    """
+    if 4.0 * math.pi / (Omega * hold) > LONGEST_STEP:
+        raise ParameterError(
+            f"hold is {hold}; with ou at Omega = {Omega:g} allowed is hold >= "
+            f"{math.ceil(4.0 * math.pi / (Omega * LONGEST_STEP))}: two steps of the force may not last longer than "
+            f"{LONGEST_STEP:g}, in units of 1/omega0"
+        )
 
 
 def check_periods(name: str, periods: float, period: float = 2.0 * math.pi) -> None:

@@ -136,6 +136,7 @@ def test_it_is_written_as_a_whole_or_not_at_all(quickstart, tmp_path):
     (tmp_path / "empty").mkdir()
     told = quickstart.vines("export", tmp_path / "empty").stdout
     assert "begin with" in told
+    assert "no [study] is declared" in told
     assert not (tmp_path / "empty" / "logs").exists()
     assert "not part of this export" in (tmp_path / "empty" / "README.md").read_text()
 
@@ -260,7 +261,10 @@ def test_the_licence_is_that_of_the_data_and_the_citation_names_the_creators(dep
     cited = (folder / "CITATION.cff").read_text("utf-8")
     assert '  - family-names: "Doe"\n    given-names: "Alex"' in cited
     assert "type: dataset" in cited
-    assert "datacite.json" in (folder / "README.md").read_text("utf-8")
+    readme = (folder / "README.md").read_text("utf-8")
+    assert "datacite.json" in readme
+    assert readme.startswith("# What a ball takes: settled impacts\n\nDoe, Alex; A group. Version 1.2.0.\n")
+    assert "Creative Commons Attribution 4.0" in readme
 
 
 @pytest.mark.parametrize(

@@ -147,7 +147,7 @@ def test_an_unknown_column(refused, sql, says):
         (("--root", "/nonexist", "list"), "--root is '/nonexist', which is not a folder; name an existing one"),
         (("view", "mine.up", "--png", "a.pdf"), "--png a.pdf: a picture ends in .png, such as a.png"),
         (("view", "mine.up", "--save", "a.mcap"), "--save a.mcap: a recording ends in .rrd, such as a.rrd"),
-        (("solve", "LR", "--A", "0.02"), "Missing option '--mu'"),
+        (("solve", "LR", "--A", "0.02"), "Missing option '--mu'. Usage: vines solve [OPTIONS] WORD"),
         (("status", "mine", "quickstrat"), "did you mean 'quickstart'"),
     ],
 )

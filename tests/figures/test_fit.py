@@ -5,8 +5,10 @@ import itertools
 import numpy as np
 import pytest
 from matplotlib.text import Text
+from matplotlib.ticker import LogFormatter
 
 from vines.figures import BranchLine, ImpactDots, Look, Marker, bifurcation_figure, finish, wearing
+from vines.figures._style import new_figure
 
 LABELS = ("simulation", "1:1 symmetric", "1:1 asymmetric, the branch that a broken symmetry begins", "2:1")
 CAPTION = r"$\mu = 0.01$,  $\Omega = 1$,  $r = 0.65$,  $\lambda = 0.012$,  and a word of what the study is about"
@@ -86,3 +88,52 @@ def test_every_entry_of_the_legend_is_there_at_every_width():
         (legend,) = drawn(width).legends
         said = [" ".join(each.get_text().split()) for each in legend.get_texts()]
         assert [each for each in said if each in LABELS] == list(LABELS)
+
+
+def test_a_title_in_the_middle_keeps_away_from_the_letter():
+    with wearing(Look()):
+        figure = new_figure(180 / 25.4, 2.0)
+        for ax in figure.subplots(1, 3):
+            ax.set_title("(h)", loc="left", fontsize=9)
+            ax.set_title("1:1/2T, by definition 2:2/2T", fontsize=9)
+        finish(figure)
+    figure.draw_without_rendering()
+    for ax in figure.axes:
+        letter, title = (each.get_window_extent() for each in (ax._left_title, ax.title))
+        assert letter.x1 < title.x0
+        assert " ".join(ax.title.get_text().split()) == "1:1/2T, by definition 2:2/2T"
+
+
+def test_the_legend_of_a_panel_covers_no_curve_where_there_is_room_anywhere():
+    """In all nine places that matplotlib tries it would."""
+    with wearing(Look()):
+        figure = new_figure(60 / 25.4, 2.2)
+        ax = figure.add_subplot()
+        angle = np.linspace(0, 2 * np.pi, 400)
+        for size in (1.0, 0.93):
+            ax.plot(size * np.cos(angle), size * np.sin(angle), label=f"A = {size}")
+        ax.plot([-1, 0.2], [0.5, 0.3], color="black")
+        ax.plot([-1, 1], [-0.62, -0.62], color="black")
+        ax.plot([0.2, 0.2], [0.3, 1.0], color="black")
+        ax.legend(loc="best")
+        finish(figure)
+    figure.draw_without_rendering()
+    box = ax.get_legend().get_window_extent()
+    for line in ax.lines:
+        at = ax.transData.transform(np.column_stack(line.get_data()))
+        assert not ((at > box.min) & (at < box.max)).all(axis=1).any()
+
+
+@pytest.mark.parametrize(("width", "written"), [(120, {"0.02", "0.03", "0.04", "0.06"}), (52, {"0.02"})])
+def test_numbers_of_a_logarithmic_axis_do_not_touch(width, written):
+    with wearing(Look()):
+        figure = new_figure(width / 25.4, 2.0)
+        ax = figure.add_subplot(xscale="log", xlim=(0.011, 0.066))
+        ax.set_ylim(0, 1)
+        ax.xaxis.set_minor_formatter(LogFormatter(minor_thresholds=(2, 0.4)))
+        finish(figure)
+    figure.draw_without_rendering()
+    shown = [(each.get_text(), each.get_window_extent()) for each in ax.get_xticklabels(which="both")]
+    shown = sorted(((text, box) for text, box in shown if text.strip()), key=lambda each: each[1].x0)
+    assert all(one.x1 < other.x0 for (_, one), (_, other) in itertools.pairwise(shown))
+    assert len(shown) >= len(written) - 1

@@ -11,7 +11,16 @@ from vines.errors import ParameterError, SchemaError, UnknownNameError
 from vines.model import LAM_TABLE_1, VI_NES, Params, PhysicalParams, dimensionless, read_system, system_names
 
 ALL = [
-    read_system(name, balls) for name, balls in (("vi_nes", 0), ("impact_pair", 0), ("parallel", 1), ("parallel", 8))
+    read_system(name, balls)
+    for name, balls in (
+        ("vi_nes", 0),
+        ("cubic_barriers", 0),
+        ("drag", 0),
+        ("friction", 0),
+        ("impact_pair", 0),
+        ("parallel", 1),
+        ("parallel", 8),
+    )
 ]
 
 

@@ -150,5 +150,5 @@ def test_what_there_is_not_is_said():
     assert not all_orbits("L*", ImpactPair(B=0.5, G=0.6, r=0.3))
     # Half a repetition is no orbit of two periods.
     assert not all_orbits("L*R*L*R*/2T", p)
-    with pytest.raises(OrbitNotFound, match="computed for the VI-NES and the impact pair, not for 'parallel'"):
+    with pytest.raises(OrbitNotFound, match="follow an orbit of this word to there"):
         find_orbit("L1*R1*L2R2", Parallel(mu=(0.01, 0.01), A=0.9))

@@ -11,8 +11,10 @@ COARSE_LOOK = {
     "ytick.minor.visible": False,
     "savefig.dpi": 60,
     "svg.fonttype": "none",
+    "pdf.fonttype": 3,
 }
-"""Half the time of drawing goes into minor ticks, pixels and outlines, which say nothing about a stage."""
+"""Most of the time of drawing goes into minor ticks, pixels, outlines and subsets of fonts, which say nothing about a
+stage."""
 
 
 @pytest.fixture(scope="module")

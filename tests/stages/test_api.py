@@ -97,7 +97,9 @@ def test_lists_and_their_errors(root):
     assert "quickstart" in {row["name"] for row in list_pipelines()}
     with pytest.raises(UnknownNameError, match="nothing has been checked"):
         checks()
-    with pytest.raises(UnknownNameError, match=r"no log 'quickstart\.up'"):
+    with pytest.raises(
+        UnknownNameError, match=r"quickstart\.up is declared but not computed; 'vines run quickstart up'"
+    ):
         find_logs("quickstart.up")
     with pytest.raises(UnknownNameError, match="points"):
         vines.table("piont")

@@ -7,11 +7,11 @@ import numpy as np
 import pytest
 
 import vines
+from vines.attractors import random_starts
 from vines.dynamics.kernels import room_of
 from vines.errors import VinesError
 from vines.model import Params
 from vines.stages import load_pipeline, run, verify
-from vines.stages.bodies._coexisting import random_starts
 from vines.systems import ImpactPair, Parallel
 
 DECLARED = """

@@ -54,6 +54,7 @@ def root(tmp_path_factory):
         "count = 161": "count = 7",
         "count = 81": "count = 5",
         "lines = 4": "lines = 1\nseeds = 4",
+        "lines = 16": "lines = 2\nseeds = 4",
         "step = 0.01": "step = 0.05",
     }
     for one, other in fewer.items():

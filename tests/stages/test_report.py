@@ -111,7 +111,7 @@ def test_text_is_escaped_and_a_collection_has_contents():
 def test_what_cannot_be_reported_is_one_line(quickstart, tmp_path):
     for arguments, words in (
         (("quikstart",), "did you mean 'quickstart'"),
-        (("diagram",), "nothing is stored of a pipeline 'diagram'"),
+        (("diagram",), "nothing is stored of the pipeline 'diagram' yet; 'vines run diagram' computes it"),
         (("quickstart", "--out", tmp_path / "no" / "such.html"), "does not exist"),
     ):
         done = quickstart.vines("report", *arguments, check=False)

@@ -7,12 +7,12 @@ import pytest
 
 import vines
 from tests.project import REPOSITORY
-from vines.systems import ImpactPair, Parallel
+from vines.systems import CubicBarriers, ImpactPair, Parallel
 
 pytestmark = pytest.mark.long(20)
 
 PAGE = (REPOSITORY / "docs" / "systems.md").read_text("utf-8").partition("## Check values")[2]
-ROWS = {row[0]: row[1:] for row in re.findall(r"^\| ([adf]\w+) \| (.*?) \| (.*?) \| (.*?) \|$", PAGE, re.MULTILINE)}
+ROWS = {row[0]: row[1:] for row in re.findall(r"^\| ([acdf]\w+) \| (.*?) \| (.*?) \| (.*?) \|$", PAGE, re.MULTILINE)}
 
 
 def numbers(text):
@@ -65,7 +65,25 @@ def nearly_massless():
     return [abs(vines.find_orbit("LR", vines.Params(A=A, **given)).w_dot[0]) / 1.3]
 
 
+def spring(periods=1200, walls=True, **given):
+    """Energies of the last hundred periods, and the last impacts."""
+    run = vines.simulate(CubicBarriers(**given, walls=walls), periods=periods)
+    m = run.measures(last=100)
+    speeds = sorted(run.impacts["w_dot"][-2:].tolist(), reverse=True)
+    powers = [each / m.duration for each in (m.viscous_loss, m.impact_loss, m.base_work)]
+    return [m.kinetic_ratio, m.max_abs_x1, *speeds, *powers]
+
+
+def some(values, *places):
+    return [values[place] for place in places]
+
+
 OURS = {
+    "c1": lambda: spring(mu=0.01, A=0.02, k3=0.5, l2=0.05),
+    "c3": lambda: some(spring(mu=0.02, A=0.03, k3=1.0, l2=0.2), 0, 1, 2, 4, 5),
+    "c5": lambda: some(spring(mu=0.02, A=0.03, k3=0.25, l2=0.02), 0, 1, 2),
+    "c8": lambda: some(spring(mu=0.05, A=0.05, k3=3.0, l2=0.2, walls=False), 0, 1),
+    "cSB": lambda: bifurcation(CubicBarriers(mu=0.02, A=0.03, k3=1.0, l2=0.1), "A", 0.036, "symmetry_breaking"),
     "a1": lambda: balls((0.01, 0.01), (1.0, 1.0), 0.03, [0.1, -0.3]),
     "a3": lambda: balls((0.01, 0.01), (1.0, 1.4), 0.03, [0.1, -0.3]),
     "a5": lambda: balls((0.01, 0.01), (1.0, 1.0), 0.02, [0.1, -0.3]),

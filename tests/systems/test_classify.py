@@ -44,7 +44,7 @@ def test_points_of_the_pair():
 def test_equal_balls_start_apart():
     p = Parallel(mu=(0.01, 0.01), A=0.02)
     assert vines.classify_many(p).attractor(0).word == "L1L2R1R2"
-    assert vines.classify_many(p, settle=50, patience=0, apart=0.0).attractor(0).measures.ties > 0
+    assert vines.classify_many(p, settle=50, patience=0, apart=0.0, ties="together").attractor(0).measures.ties > 0
 
 
 def test_what_does_not_fit_is_refused():

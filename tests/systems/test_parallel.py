@@ -114,7 +114,7 @@ def test_equal_balls_that_start_alike_hit_together_and_are_one_ball():
 def test_settle_parts_equal_balls_unless_told_not_to():
     p = Parallel(mu=(0.01, 0.01), A=0.02)
     assert vines.settle(p).word == "L1L2R1R2"
-    together = vines.settle(p, apart=0.0, settle=50, patience=0)
+    together = vines.settle(p, apart=0.0, ties="together", settle=50, patience=0)
     assert together.measures.ties > 0
 
 

@@ -97,10 +97,10 @@ def test_runs_of_several_balls_are_laid_over_each_other(path, tmp_path):
     assert counts["/overlay/w_3/run_0"] == logs.read(path).states.num_rows
 
 
-@pytest.mark.long(20)
+@pytest.mark.long(8)
 @pytest.mark.usefixtures("vulkan")
 def test_views_draw_without_errors(path, tmp_path):
-    with headless(viewer.save_rrd([path], tmp_path / "run.rrd"), (1200, 800)) as client:
+    with headless(viewer.save_rrd([path], tmp_path / "run.rrd"), (600, 400)) as client:
         _at_rest(client)
         state = client.get_state()
         assert sum("/track_" in view.origin for view in state.views) == 3

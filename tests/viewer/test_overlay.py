@@ -43,15 +43,15 @@ def test_what_cannot_be_laid_over_each_other_is_refused(settled, rig, tmp_path):
 
 @pytest.mark.usefixtures("vulkan")
 def test_the_viewer_draws_both(settled, other, rig, tmp_path):
-    with headless(viewer.save_rrd([settled, other], tmp_path / "o.rrd", overlay=True), (1200, 800)) as client:
+    with headless(viewer.save_rrd([settled, other], tmp_path / "o.rrd", overlay=True), (600, 400)) as client:
         _at_rest(client)
         views = client.get_state().views
     assert {view.origin for view in views if view.view_class == "TimeSeries"} == {
         f"/overlay/{name}" for name in ("w", "w_dot", "x1", "x2")
     }
     assert [report for view in views for report in view.reports] == []
-    picture = viewer.screenshot([rig], tmp_path / "rig.png", size=(800, 500))
-    assert picture.stat().st_size > 20_000
+    picture = viewer.screenshot([rig], tmp_path / "rig.png", size=(400, 300))
+    assert picture.stat().st_size > 10_000
 
 
 def shown_in_a_browser(program, tmp_path, *arguments):

@@ -12,7 +12,7 @@ from vines.errors import ViewerError
 from vines.viewer._program import headless
 from vines.viewer._show import _at_rest
 
-pytestmark = [pytest.mark.long(20), pytest.mark.usefixtures("vulkan")]
+pytestmark = [pytest.mark.long(12), pytest.mark.usefixtures("vulkan")]
 
 
 def viewers():
@@ -26,7 +26,7 @@ def recording(settled, tmp_path_factory):
 
 
 def test_views_draw_without_errors(recording):
-    with headless(recording, (1200, 800)) as client:
+    with headless(recording, (800, 500)) as client:
         _at_rest(client)
         state = client.get_state()
         assert sorted((view.view_class, view.origin.rsplit("/", 1)[-1]) for view in state.views) == [
@@ -48,6 +48,7 @@ def test_views_draw_without_errors(recording):
         assert (kinds["sim_time"], kinds["cycle/1000"], kinds["impact"]) == ("duration", "sequence", "duration")
 
 
+@pytest.mark.full
 def test_bare_rerun_shows_a_log_that_explains_itself(settled):
     """Without our layout: the viewer makes its own from the channels that it understands."""
     with headless(settled, (600, 400), laid_out=False) as client:
@@ -62,7 +63,7 @@ def test_bare_rerun_shows_a_log_that_explains_itself(settled):
 
 def test_side_by_side_views_draw_without_errors(settled, chatter, tmp_path):
     both = viewer.save_rrd([settled, chatter], tmp_path / "both.rrd")
-    with headless(both, (1200, 800)) as client:
+    with headless(both, (600, 400)) as client:
         _at_rest(client)
         views = client.get_state().views
     origins = [view.origin for view in views]
@@ -101,10 +102,10 @@ def test_picture_shows_ball_and_both_ends(settled, tmp_path):
 
 
 def test_several_runs_at_a_given_time(settled, chatter, no_impact, tmp_path):
-    early = viewer.screenshot([settled, chatter], tmp_path / "a.png", at=1.0, size=(800, 600))
-    late = viewer.screenshot([settled, chatter], tmp_path / "b.png", at=20.0, size=(800, 600))
+    early = viewer.screenshot([settled, chatter], tmp_path / "a.png", at=1.0, size=(500, 400))
+    late = viewer.screenshot([settled, chatter], tmp_path / "b.png", at=20.0, size=(500, 400))
     assert early.read_bytes() != late.read_bytes()
-    assert viewer.screenshot([no_impact], tmp_path / "c.png", size=(800, 600)).stat().st_size > 10_000
+    assert viewer.screenshot([no_impact], tmp_path / "c.png", size=(400, 300)).stat().st_size > 10_000
     assert sorted(path.name for path in tmp_path.iterdir()) == ["a.png", "b.png", "c.png"]
 
 

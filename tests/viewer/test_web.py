@@ -6,6 +6,7 @@ import signal
 import subprocess
 import sys
 from pathlib import Path
+from urllib.request import urlopen
 
 import matplotlib.image
 import psutil
@@ -16,7 +17,7 @@ from vines import viewer
 from vines.errors import ViewerError
 from vines.viewer._program import served
 
-pytestmark = pytest.mark.long(40)
+pytestmark = pytest.mark.long(8)
 
 
 def listening():
@@ -38,6 +39,19 @@ def both_ends(picture):
     return min(red.sum(), blue.sum()) > 500
 
 
+def test_the_page_is_served_on_this_machine_with_a_policy_that_lets_nothing_out(settled, tmp_path):
+    with served(viewer.save_rrd([settled], tmp_path / "run.rrd")) as (url, _):
+        assert url.startswith("http://127.0.0.1:")
+        assert listening() == {"127.0.0.1"}
+        with urlopen(url) as page:
+            policy, text = page.headers["Content-Security-Policy"], page.read().decode()
+    hosts = {each for each in policy.replace(";", " ").split() if "//" in each}
+    assert hosts == {"http://127.0.0.1:*"}
+    assert policy.startswith("default-src 'self';")
+    assert "re_viewer" in text
+
+
+@pytest.mark.full
 def test_web_viewer_in_chromium(settled, tmp_path, browser_program):
     recording = viewer.save_rrd([settled], tmp_path / "run.rrd")
     with served(recording) as (url, _):
@@ -53,7 +67,8 @@ def test_web_viewer_in_chromium(settled, tmp_path, browser_program):
 
 def test_catalogue_has_parameters_and_attractors_as_columns(settled, chatter, tmp_path):
     client = pytest.importorskip("rerun.catalog").CatalogClient
-    with viewer.catalogue_of([settled, chatter], tmp_path / "cache") as address:
+    stages = {settled.resolve(): "quickstart.settled"}
+    with viewer.catalogue_of([settled, chatter], tmp_path / "cache", stages) as address:
         assert listening() == {"127.0.0.1"}
         root, _, entry = address.partition("/entry/")
         dataset = client(root).get_dataset(name="runs")
@@ -63,6 +78,11 @@ def test_catalogue_has_parameters_and_attractors_as_columns(settled, chatter, tm
     one = rows.set_index(rows["property:vines:log"].map(lambda value: value[0]))
     assert one.loc["chatter.mcap", "property:given:mu"] == [0.0084]
     assert one.loc["settled.mcap", "property:got:attractor"] == ["1:1"]
+    assert one.loc["settled.mcap", ["property:from:pipeline", "property:from:stage"]].tolist() == [
+        ["quickstart"],
+        ["settled"],
+    ]
+    assert one.loc["chatter.mcap", "property:from:stage"] == [""]
     assert one.loc["chatter.mcap", "property:got:sticks"][0] >= 1
     assert [path.suffix for path in (tmp_path / "cache").iterdir()] == [".rrd", ".rrd"]
 

@@ -5,11 +5,16 @@ from __future__ import annotations
 import math
 
 from vines.attractors import _verdict as v
-from vines.attractors._contacts import difference, mark, repetition
+from vines.attractors._contacts import difference, repetition
 from vines.attractors._multipliers import carry_on, multipliers, square_of
-from vines.dynamics.kernels import directions, flow_basis, jump_basis, offset
+from vines.dynamics.drag import DragConstants
+from vines.dynamics.friction import FrictionConstants
+from vines.dynamics.impact_pair import PairConstants
+from vines.dynamics.kernels import Constants, directions, flow_basis, jump_basis, offset
 from vines.dynamics.kernels import rows as col
+from vines.dynamics.parallel import ParallelConstants
 from vines.kernels import (
+    by_type,
     cold_njit,
     complex_vector,
     identity,
@@ -19,7 +24,7 @@ from vines.kernels import (
     njit,
     zero_vector,
 )
-from vines.orbits.kernels import newton_kernel
+from vines.orbits.kernels import mark, newton_kernel
 
 __all__ = ["LARGEST_P", "NO_ORBIT", "STABLE", "UNSTABLE", "comes_to_orbit", "nearest_orbit", "note_coming"]
 
@@ -41,6 +46,7 @@ DOUBLINGS = 22
 """A transient is predicted up to 2^DOUBLINGS repetitions."""
 
 
+@by_type(Constants)
 @cold_njit
 def nearest_orbit(c, rows, kept, p, lag, scale, tolerance):
     """Solve for the orbit near the last repetition of a run, and carry the distance from it on by its linear map.
@@ -124,6 +130,10 @@ def nearest_orbit(c, rows, kept, p, lag, scale, tolerance):
     event[col.SIDE] = 1.0 if side[lag - 1] > 0 else -1.0
     offset(c, rows[end], event, guess[lag - 1] - t[lag - 1], scale, away)
     return True, largest, distance, p * _repetitions(Y, away, distance, tolerance)
+
+
+for _kind in (DragConstants, FrictionConstants, PairConstants, ParallelConstants):
+    nearest_orbit.register(_kind)(nearest_orbit.first)
 
 
 @cold_njit

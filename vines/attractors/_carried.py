@@ -63,6 +63,8 @@ def carried(
     phases = np.broadcast_to(phase, n).tolist()
     for state, values, angle in zip(begun, states.tolist(), phases, strict=True):
         room.begin(c, state, *room.enter(p, dict(zip(names, values, strict=True)), angle), angle, 0.0)
+        # As settled runs are.
+        room.strike_in_turn(state)
     finals = np.empty((n, layout.width))
     sums = np.zeros((n if measured else 0, entry.TOTALS))
 

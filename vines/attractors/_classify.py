@@ -24,6 +24,7 @@ from vines.dynamics.kernels import rows as col
 from vines.dynamics.kernels import totals as entry
 from vines.dynamics.runs import (
     EVENTS_PER_PERIOD,
+    IN_TURN,
     each_thread,
     impacts_of,
     measures_of,
@@ -61,6 +62,7 @@ def classify_many(
     max_impacts_per_period: int = EVENTS_PER_PERIOD,
     threads: int | None = None,
     apart: float = APART,
+    ties: str = IN_TURN,
 ) -> Classified:
     """Do as `settle` for many parameter points or starts at once, in lanes and on all cores.
 
@@ -77,7 +79,7 @@ def classify_many(
         Whether runs that never repeat are watched on until what they measured has standard errors, as by `settle`.
     threads : int, optional
         Cores to use; all of this process's if left out. Results do not depend on it, nor on what else is in the call.
-    apart : float
+    apart, ties : float, str
         As for `settle`.
 
     Returns
@@ -95,7 +97,7 @@ def classify_many(
     >>> many.name.tolist(), many.regime[-1].item()
     (['1:1', '1:1', '2:2/2T', '2:1', None], 'chaotic')
     """
-    how = Patience(settle, record, patience, watch, tolerance, max_impacts_per_period, largest_p)
+    how = Patience(settle, record, patience, watch, tolerance, max_impacts_per_period, largest_p, ties)
     if _of_another_system(params):
         return classify_family(params, starts, how, apart=apart, impacts=impacts, errors=errors, threads=threads)
     table, given = parameter_table(cast(Any, params)), start_table(starts)

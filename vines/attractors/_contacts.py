@@ -1,88 +1,17 @@
-"""The contacts of a run, a complete chatter being one, and how well they repeat after p forcing periods."""
+"""How well the contacts of a run repeat after p forcing periods."""
 
 from __future__ import annotations
 
 import numpy as np
 
 from vines.dynamics.kernels import rows as col
-from vines.kernels import integer_vector, linked_njit, njit
+from vines.kernels import linked_njit, njit
+from vines.orbits.kernels import mark
 
-__all__ = ["STUCK", "completes", "contacts", "difference", "mark", "mirror_difference", "repetition"]
+__all__ = ["difference", "mirror_difference", "repetition"]
 
-STUCK = 64
-"""Added to the size of a `mark` where the contact is a complete chatter."""
-
-
-@njit
-def mark(rows, i):
-    """Return the wall of a contact, times the number of the ball where there are several."""
-    side = 1 if rows[i, col.SIDE] > 0.0 else -1
-    return side * int(rows[i, col.ROW]) if rows.shape[1] > col.ROW else side
-
-
-@njit
-def completes(rows, n, i):
-    """Say whether the impacts of a ball on a wall that begin with row i end in sticking."""
-    balls = rows.shape[1] > col.ROW
-    for j in range(i + 1, n):
-        if balls and rows[j, col.ROW] != rows[i, col.ROW]:
-            continue
-        if rows[j, col.KIND] == col.STICK:
-            return True
-        if rows[j, col.KIND] == col.IMPACT and mark(rows, j) != mark(rows, i):
-            return False
-    return False
-
-
-@linked_njit
-def contacts(rows, n, start):
-    """Return the rows that count as contacts after `start`: impacts, but of a complete chatter only the first.
-
-    A run of impacts on one wall that goes on at the end may be a chatter not yet complete, and one that began before
-    `start` may have its first impact there: neither gives more than it is sure of.
-    """
-    keep = integer_vector(n)
-    count = 0
-    for i in range(1, n):
-        kind = rows[i, col.KIND]
-        if kind == col.IMPACT and rows[i, col.TIME] > start:
-            keep[count] = i
-            count += 1
-        elif kind == col.STICK and rows.shape[1] > col.ROW:
-            count = _without_chatter(rows, keep, count, i)
-        elif kind == col.STICK:
-            run = int(rows[i, col.RUN])
-            while count > 0 and run > 0 and keep[count - 1] >= i - run:
-                count -= 1
-            if run > 0 and i - run > 0 and rows[i - run, col.TIME] > start:
-                keep[count] = i - run
-                count += 1
-    while count > 1 and _same_run(rows, keep[count - 2], keep[count - 1]):
-        count -= 1
-    return keep[:count]
-
-
-@njit
-def _without_chatter(rows, keep, count, i):
-    """Take the impacts of a chatter but the first from the contacts so far, where those of other balls lie between."""
-    run = int(rows[i, col.RUN])
-    own = 0
-    for k in range(count - 1, -1, -1):
-        if own == run:
-            break
-        if rows[keep[k], col.ROW] == rows[i, col.ROW]:
-            own += 1
-            if own < run:
-                for m in range(k, count - 1):
-                    keep[m] = keep[m + 1]
-                count -= 1
-    return count
-
-
-@njit
-def _same_run(rows, i, j):
-    """Say whether rows i and j are neighbouring impacts on the same wall, with no other event between."""
-    return j == i + 1 and mark(rows, i) == mark(rows, j)
+TOGETHER = 1e-9
+"""Contacts that are nearer to each other in time than this, relative to a span, may change places by rounding."""
 
 
 @linked_njit
@@ -118,12 +47,27 @@ def repetition(rows, kept, span):
             lag = middle
     if lag > 1 and target - rows[kept[lag - 1], col.TIME] < abs(rows[kept[lag], col.TIME] - target):
         lag -= 1
-    pairs = n - lag
+    filled = _filled(rows, kept, lag)
+    if filled == 0 and rows.shape[1] > col.ROW:
+        # Balls that hit together have contacts at one time, of which rounding says which is nearest.
+        there = rows[kept[lag], col.TIME]
+        for other in range(1, n):
+            if other != lag and abs(rows[kept[other], col.TIME] - there) < TOGETHER * span:
+                filled = _filled(rows, kept, other)
+                if filled > 0:
+                    return other, filled
+    return (lag, filled) if filled > 0 else (0, 0)
+
+
+@njit
+def _filled(rows, kept, lag):
+    """Return how many repetitions of so many contacts there are whose sides are those of the one before, else 0."""
+    pairs = kept.shape[0] - lag
     filled = pairs // lag
     for i in range(pairs - filled * lag, pairs):
         if mark(rows, kept[i]) != mark(rows, kept[i + lag]):
-            return 0, 0
-    return (lag, filled) if filled > 0 else (0, 0)
+            return 0
+    return filled
 
 
 @linked_njit

@@ -7,11 +7,12 @@ import math
 from vines.attractors import _verdict as v
 from vines.attractors._approach import LARGEST_P, STABLE, comes_to_orbit, nearest_orbit, note_coming
 from vines.attractors._coming import note_decay
-from vines.attractors._contacts import contacts, difference, repetition
+from vines.attractors._contacts import difference, repetition
 from vines.attractors._judge import NEAR, note_drift
 from vines.dynamics.kernels import (
     KNOWN_CORRELATION,
     directions,
+    drift,
     lyapunov_blocks,
     open_window,
     run_window,
@@ -20,6 +21,7 @@ from vines.dynamics.kernels import (
 )
 from vines.dynamics.kernels import rows as col
 from vines.kernels import cold_njit, identity, new_matrix, new_vector, njit
+from vines.orbits.kernels import contacts
 
 __all__ = ["follow"]
 
@@ -129,7 +131,7 @@ def follow(c, state, elapsed, watch, cap, tolerance, longest, rows, verdict):
         event -= 1
     quiet = length - rows[event, col.TIME]
     if quiet > 0.25 * length and rows[count, col.MODE] == 0.0:
-        note_drift(verdict, period, abs(rows[count, col.A_V2]))
+        note_drift(verdict, period, drift(c, rows[count, col.A_V2]))
         verdict[v.REMAINING] += passed
         verdict[v.REASON], verdict[v.VALUE] = v.RESTS, quiet / period
     elif _note_longer(c, rows, count + 1, length, longest, verdict):

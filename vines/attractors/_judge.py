@@ -7,21 +7,18 @@ import math
 from vines.attractors import _verdict as v
 from vines.attractors._approach import nearest_orbit
 from vines.attractors._coming import comes
-from vines.attractors._contacts import (
-    STUCK,
-    completes,
-    contacts,
-    difference,
-    mark,
-    mirror_difference,
-    repetition,
-)
+from vines.attractors._contacts import difference, mirror_difference, repetition
 from vines.attractors._multipliers import multipliers
-from vines.dynamics.kernels import directions, ringing, tangent_product
+from vines.dynamics.drag import DragConstants
+from vines.dynamics.friction import FrictionConstants
+from vines.dynamics.impact_pair import PairConstants
+from vines.dynamics.kernels import Constants, directions, drift, rate_alone, ringing, tangent_product
 from vines.dynamics.kernels import rows as col
-from vines.kernels import byte_vector, cold_njit, complex_vector, new_vector, njit, zero_integers
+from vines.dynamics.parallel import ParallelConstants
+from vines.kernels import by_type, byte_vector, cold_njit, complex_vector, new_vector, njit, zero_integers
+from vines.orbits.kernels import STUCK, completes, contacts, mark
 
-__all__ = ["NEAR", "clear", "judge_window", "note_drift"]
+__all__ = ["NEAR", "ROUNDING", "UNSTABLE", "clear", "judge_window", "note_drift", "without_impact"]
 
 UNSTABLE = 1e-5
 """How far the largest multiplier must lie outside the unit circle for a repeating orbit to be called unstable."""
@@ -80,7 +77,7 @@ def judge_window(c, rows, n, periods, tolerance, longest, verdict):
     clear(verdict)
     kept = contacts(rows, n, 0.0)
     if kept.shape[0] == 0:
-        _without_impact(c, rows, n, tolerance, verdict)
+        without_impact(c, rows, n, tolerance, verdict)
         return byte_vector(0)
     period = 2.0 * math.pi / c.Omega
     scale = _largest_speed(rows, n)
@@ -178,8 +175,13 @@ def _repeats(c, rows, n, kept, p, lag, last, tolerance, verdict):
         # The oldest of them: what a chatter at the end of the window becomes may not be seen any more.
         i = kept[count - 1 - lag + k]
         sides[k] = mark(rows, i)
-        verdict[v.LEFT if sides[k] > 0 else v.RIGHT] += 1.0
-        if completes(rows, n, i):
+        if sides[k] != 0:
+            verdict[v.LEFT if sides[k] > 0 else v.RIGHT] += 1.0
+        completed = sides[k] != 0 and completes(rows, n, i)
+        if rows.shape[1] > col.ROW and not completed and count - 1 - 2 * lag + k >= 0:
+            # Other balls may have hit since.
+            completed = completes(rows, n, kept[count - 1 - 2 * lag + k])
+        if completed:
             sides[k] += STUCK if sides[k] > 0 else -STUCK
     verdict[v.REGIME], verdict[v.SETTLED] = v.PERIODIC, 1.0
     verdict[v.P], verdict[v.LAG] = p, lag
@@ -188,25 +190,33 @@ def _repeats(c, rows, n, kept, p, lag, last, tolerance, verdict):
     return sides
 
 
+@by_type(Constants)
 @cold_njit
-def _without_impact(c, rows, n, tolerance, verdict):
+def without_impact(c, rows, n, tolerance, verdict):
     """Judge a run without impacts: a drifting ball will hit a wall one day; the oscillator's start must die out."""
     last = n - 1
     period = 2.0 * math.pi / c.Omega
     verdict[v.REGIME], verdict[v.LYAPUNOV_ERROR] = v.NO_IMPACT, 0.0
     d = len(directions(c))
     for k in range(d):
-        # The balls keep what they are given, in position and in velocity; the oscillator, if it is one, does not.
-        verdict[v.EXPONENTS + k] = 0.0 if k < max(d - 2, 2) else -0.5 * c.lam
-    if not note_drift(verdict, period, abs(rows[last, col.A_V2]) if rows[last, col.MODE] == 0.0 else 0.0):
+        verdict[v.EXPONENTS + k] = rate_alone(c, d, k)
+    if not note_drift(verdict, period, drift(c, rows[last, col.A_V2]) if rows[last, col.MODE] == 0.0 else 0.0):
         verdict[v.REGIME] = v.UNSETTLED
         return
     verdict[v.REASON], verdict[v.REMAINING] = v.NOTHING, 0.0
-    excess = ringing(c, rows[last, col.X1], rows[last, col.V1], rows[last, col.PHASE])
+    excess = ringing(c, rows[last, col.X1], rows[last, col.V1], rows[last, col.V2], rows[last, col.PHASE])
     if excess > max(tolerance, 1e-15):
         verdict[v.REASON], verdict[v.VALUE] = v.RINGS, excess
         verdict[v.REMAINING] = math.inf
-        if c.lam > 0.0:
-            verdict[v.REMAINING] = math.log(excess / tolerance) / (0.5 * c.lam * period)
+        slowest = 0.0
+        for k in range(d):
+            rate = -rate_alone(c, d, k)
+            slowest = rate if slowest == 0.0 or 0.0 < rate < slowest else slowest
+        if slowest > 0.0:
+            verdict[v.REMAINING] = math.log(excess / tolerance) / (slowest * period)
         return
     verdict[v.SETTLED] = 1.0
+
+
+for _kind in (DragConstants, FrictionConstants, PairConstants, ParallelConstants):
+    without_impact.register(_kind)(without_impact.first)

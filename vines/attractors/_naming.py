@@ -10,11 +10,11 @@ import numpy.typing as npt
 
 from vines.attractors import _verdict as v
 from vines.attractors._attractor import Attractor
-from vines.attractors._contacts import STUCK
 from vines.dynamics.kernels import room_of
 from vines.dynamics.runs import STATUS, measures_from
-from vines.model import VI_NES, Word
+from vines.model import STOPS, VI_NES, Word
 from vines.orbits import own_word
+from vines.orbits.kernels import STUCK
 
 __all__ = ["attractor_from", "word_of"]
 
@@ -35,7 +35,7 @@ def word_of(sides: npt.NDArray[np.int8], p: int, of: Any = None) -> Word:
         stuck = numbers > STUCK
         numbers = np.where(stuck, numbers - STUCK, numbers).tolist()
         each = [
-            of.system.letters([side], [ball]) if balls else VI_NES.letters([side])
+            STOPS if not side else of.system.letters([side], [ball]) if balls else VI_NES.letters([side])
             for side, ball in zip(sides.tolist(), numbers, strict=True)
         ]
         letters = "".join(name + "*" * sticks for name, sticks in zip(each, stuck.tolist(), strict=True))
@@ -88,7 +88,7 @@ def attractor_from(
         regime=v.REGIMES[regime],
         settled=bool(value[v.SETTLED]),
         word=str(word) if word else None,
-        name=word.named(balls if balls > 1 else 0) if word else None,
+        name=word.named(balls if balls > 1 else 0) if word else _unstruck(room.unstruck, value),
         n=word.n if word else None,
         m=word.m if word else None,
         p=word.p if word else None,
@@ -113,3 +113,11 @@ def attractor_from(
         status=STATUS[int(value[v.STATUS])],
         reason=v.reason_text(verdict),
     )
+
+
+def _unstruck(name: str | None, verdict: list[float]) -> str | None:
+    """Return the name of a motion without impacts, if it has settled and has one."""
+    if name is None or verdict[v.REGIME] != v.NO_IMPACT or not verdict[v.SETTLED]:
+        return None
+    periods = int(verdict[v.P])
+    return name if periods == 1 else f"{name}/{periods}T"

@@ -75,7 +75,7 @@ def orbit_through(word: Word, p: Any, final: Mapping[str, float]) -> Orbit:
 
 def _guesses(word: Word, p: Any, final: Mapping[str, float]) -> Iterator[list[float]]:
     """Yield times of the contacts of the word, or time and velocity of a release, along the run."""
-    at = {name: final[name] for name in STATE_NAMES}
+    at: dict[str, Any] = {name: final[name] for name in STATE_NAMES}
     run = simulate(p, **at, phi=final["phase"], periods=2 * word.p + 1, max_impacts_per_period=2000)
     early = final["phase"] / p.Omega
     if word.sticking:

@@ -5,8 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from vines.bounds import MOST_EVENTS, check_count, check_number, check_periods
-from vines.domains import Number, Whole
-from vines.dynamics.runs import EVENTS_PER_PERIOD
+from vines.domains import Choice, Number, Whole
+from vines.dynamics.runs import EVENTS_PER_PERIOD, IN_TURN, TIES
+from vines.errors import StateError
 
 __all__ = ["LARGEST_P", "Patience"]
 
@@ -37,6 +38,7 @@ class Patience:
     tolerance: float = 1e-10
     cap: int = EVENTS_PER_PERIOD
     largest_p: int | None = None
+    ties: str = IN_TURN
 
     def __post_init__(self) -> None:
         for name, value, least in (
@@ -50,6 +52,7 @@ class Patience:
         check_count("max_impacts_per_period", self.cap, most=MOST_EVENTS)
         if self.largest_p is not None:
             check_count("largest_p", self.largest_p, most=MOST_P)
+        Choice(TIES).check("ties", self.ties, StateError)
         for name in ("settle", "record", "patience", "watch", "tolerance"):
             object.__setattr__(self, name, Number().plain(getattr(self, name)))
         for name in ("cap", "largest_p"):

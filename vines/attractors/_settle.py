@@ -17,9 +17,9 @@ from vines.attractors._patience import Patience
 from vines.attractors._staying import REGULAR, note_conserving, watch_on
 from vines.attractors._waiting import next_wait
 from vines.domains import Named, Number, Parameters, stated
-from vines.dynamics.kernels import constants, pass_over, room_of, shift_time, table_of
+from vines.dynamics.kernels import Room, constants, pass_over, room_of, shift_time, table_of
 from vines.dynamics.kernels import rows as col
-from vines.dynamics.runs import EVENTS_PER_PERIOD, impacts_of, measures_from, slices, start_of
+from vines.dynamics.runs import EVENTS_PER_PERIOD, IN_TURN, impacts_of, measures_from, slices, start_of
 from vines.errors import StateError
 from vines.model import Word
 
@@ -57,6 +57,7 @@ def settle(
     errors: bool = True,
     max_impacts_per_period: int = EVENTS_PER_PERIOD,
     apart: float = APART,
+    ties: str = IN_TURN,
     **start: Any,
 ) -> Attractor:
     """Run for `settle` forcing periods, record the next `record`, and say what the run has settled to.
@@ -92,6 +93,11 @@ def settle(
     apart : float
         By how much more than the one before it each of several balls of one length and restitution starts in velocity:
         those that hit together would do so for ever, which no run does that begins beside it. 0 to leave them.
+    ties : str
+        How balls are struck that arrive at one instant, as those do that rode on one wall and have cavities of one
+        length: ``in_turn``, one after the other in the order of their numbers, which is what the smallest difference
+        between them comes to, or ``together``, by one law of all, so that equal balls move as one. Ties are counted in
+        ``measures.ties`` (docs/dynamics.md, "Ties").
     **start : float
         Start state by the names of the system, as for `vines.dynamics.simulate`.
 
@@ -118,7 +124,7 @@ def settle(
     """
     begin = parted(p, start_of(p, start, t, phi), apart)
     found = settled(
-        p, begin, Patience(settle, record, patience, watch, tolerance, max_impacts_per_period, largest_p), errors
+        p, begin, Patience(settle, record, patience, watch, tolerance, max_impacts_per_period, largest_p, ties), errors
     )
     return attractor_from(p, *found, t, lyapunov)
 
@@ -137,6 +143,7 @@ def settle_from(
     lyapunov: bool = True,
     errors: bool = True,
     max_impacts_per_period: int = EVENTS_PER_PERIOD,
+    ties: str = IN_TURN,
 ) -> Attractor:
     """Do as `settle`, from a state with its forcing phase: that of another point's `Attractor.final`, for instance.
 
@@ -147,7 +154,7 @@ def settle_from(
     start : mapping
         The coordinates of the system (x1, v1, x2, v2) and phase [rad]; t, if given, is only the origin of
         `Attractor.final["t"]`.
-    settle, record, patience, watch, tolerance, largest_p, lyapunov, errors, max_impacts_per_period
+    settle, record, patience, watch, tolerance, largest_p, lyapunov, errors, max_impacts_per_period, ties
         As for `settle`.
 
     Returns
@@ -172,7 +179,7 @@ def settle_from(
     at = {name: value for name, value in start.items() if name not in ("t", "phase")}
     begin = start_of(p, at, 0.0, start["phase"])
     found = settled(
-        p, begin, Patience(settle, record, patience, watch, tolerance, max_impacts_per_period, largest_p), errors
+        p, begin, Patience(settle, record, patience, watch, tolerance, max_impacts_per_period, largest_p, ties), errors
     )
     return attractor_from(p, *found, t, lyapunov)
 
@@ -206,6 +213,15 @@ def parted(p: Any, begin: tuple[Any, Any, Any, Any, float], apart: float) -> tup
     return x1, v1, x2, v2, phase
 
 
+def _begin(
+    room: Room, c: Any, state: npt.NDArray[np.float64], at: tuple[Any, Any, Any, Any, float], how: Patience
+) -> None:
+    """Put a run at its start, at time 0."""
+    room.begin(c, state, *at, 0.0)
+    if how.ties == IN_TURN:
+        room.strike_in_turn(state)
+
+
 def settled(p: Any, begin: tuple[Any, Any, Any, Any, float], how: Patience, errors: bool) -> Settled:
     """Run from a start, as kernels hold it, until it is decided what it settles to."""
     how.check_length(p.period)
@@ -213,7 +229,7 @@ def settled(p: Any, begin: tuple[Any, Any, Any, Any, float], how: Patience, erro
     layout = room.layout(p)
     states = np.zeros((1, layout.state))
     state = states[0]
-    room.begin(c, state, *begin, 0.0)
+    _begin(room, c, state, begin, how)
     table = table_of(p)
     work = np.empty((layout.rows, layout.width))
     length = v.EXPONENTS + 3 * layout.directions + layout.width - col.ROW
@@ -257,7 +273,7 @@ def settled(p: Any, begin: tuple[Any, Any, Any, Any, float], how: Patience, erro
             *at, phase = verdict[v.FINAL : v.FINAL + 5].tolist()
             there = room.leave(p, at, phase, verdict[length - layout.width + col.ROW :].tolist())
             x1, v1, x2, v2 = room.enter(p, there, phase)
-            room.begin(c, state, x1, v1, x2, v2 + NUDGE, phase, 0.0)
+            _begin(room, c, state, (x1, v1, x2, v2 + NUDGE, phase), how)
         else:
             wait = float(next_wait(verdict[v.REMAINING], spare, few_lengths=False))
             spare -= wait

@@ -253,6 +253,8 @@ class Catalogue:
             return f"{_KIND.sub('', text.splitlines()[0])}; a query reads the results of the study and nothing else"
         lines = [line.strip() for line in text.splitlines() if line.strip() and not line.startswith("LINE ")]
         told = [line for line in lines[1:] if line.startswith(("Candidate", "Did you mean"))]
+        if text.startswith("Parser Error"):
+            told.append("ask as in: select A, name from points where stage = 'up'")
         return "; ".join([_KIND.sub("", lines[0]) if lines else "the query failed", *told])
 
 

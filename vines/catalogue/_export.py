@@ -118,7 +118,7 @@ def export_results(collected: Collected, target: Path) -> list[str]:
         _write(folder / "load.sql", _load(collected))
         _write(folder / "dictionary.csv", _dictionary(collected))
         _write(folder / "datapackage.json", _datapackage(collected))
-        text = readme(collected.results, collected.titles, collected.logs, collected.stale, deposited=told is not None)
+        text = readme(collected.results, collected.titles, collected.logs, collected.stale, told)
         _write(folder / "README.md", text)
         names = sorted(path.relative_to(folder).as_posix() for path in folder.rglob("*") if path.is_file())
         _write(folder / "SHA256SUMS", "".join(f"{_sha256(folder / name)}  {name}\n" for name in names))

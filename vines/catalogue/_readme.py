@@ -5,14 +5,15 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 from vines import schema
+from vines.catalogue._study import LICENCES, Deposit
 from vines.store import Result
 
 __all__ = ["readme"]
 
 _HEAD = """\
-# Results of vines
+# {title}
 
-Simulations and periodic orbits of a vibro-impact nonlinear energy sink, with units and provenance. Everything is
+{study}Simulations and periodic orbits of a vibro-impact nonlinear energy sink, with units and provenance. Everything is
 dimensionless after the paper "Maps unlock the full dynamics of targeted energy transfer via a vibro-impact nonlinear
 energy sink" unless a unit is told. `w = x1 - x2` is the gap; `w = +1` is an impact on the left end of the cavity.
 
@@ -67,8 +68,7 @@ def readme(
     titles: Mapping[str, str],
     logs: bool,
     stale: Sequence[str] = (),
-    *,
-    deposited: bool = False,
+    deposit: Deposit | None = None,
 ) -> str:
     """Return the text of README.md.
 
@@ -82,13 +82,15 @@ def readme(
         Whether the logs are there.
     stale : sequence of str
         Stages that are declared otherwise now.
-    deposited : bool
-        Whether the fields of DataCite are there.
+    deposit : Deposit, optional
+        What the study tells a data repository.
     """
     files = [f"{pipeline}.{stage}.{name}" for pipeline, stage, result in results for name in result.tables]
     text = _HEAD.replace("{first}", files[0] if files else "<pipeline>.<stage>.<table>")
     of_datacite = "\n| `datacite.json` | title, creators, licence and so on for a repository (DataCite 4.5) |"
-    text = text.replace("{datacite}", of_datacite if deposited else "")
+    text = text.replace("{datacite}", of_datacite if deposit is not None else "")
+    text = text.replace("{title}", "Results of vines" if deposit is None else deposit.title)
+    text = text.replace("{study}", "" if deposit is None else _about(deposit))
     lines = [text.replace("{logs}", "" if logs else ": not part of this export")]
     if stale:
         lines += ["## Not as declared", "", "`declarations/` asks for more or something else than what is here:", ""]
@@ -109,3 +111,14 @@ def readme(
         tables = ", ".join(f"{name} ({about['rows']})" for name, about in result.manifest["tables"].items())
         lines.append(f"| `{pipeline}.{stage}` | {result.manifest['kind']} | {tables} |")
     return "\n".join(lines) + "\n"
+
+
+def _about(deposit: Deposit) -> str:
+    """Return who made a study, what it is, and how it may be used."""
+    name, address = LICENCES[deposit.licence]
+    said = [
+        "; ".join(creator.name for creator in deposit.creators) + f". Version {deposit.version}.",
+        *([deposit.description] if deposit.description else []),
+        f"Licence of the data: [{name}]({address}). To cite them: `CITATION.cff`.",
+    ]
+    return "\n\n".join(said) + "\n\n"

@@ -61,8 +61,8 @@ _KEEPING = frozenset({"merge", "run"})
 """Commands that keep what they have computed."""
 _SERVING = frozenset({"browse", "view"})
 """Commands that a signal is how to end: they end their server in good order."""
-_WATCHING = ("rig", "watch")
-"""One of a group that is ended so too: it finishes its log."""
+_WATCHING = (("rig", "watch"), ("run", "--watch"))
+"""Commands that are ended so too where the second word is there: they finish their log, or end their viewer."""
 _PROMPT = frozenset({"", "graph", "init", "kinds", "list", "plots", "schema", "tables"})
 """Commands that read or write a few small files, and none: Python hears a signal at once, nobody has to wait for it."""
 _SERVER_PATIENCE = 12.0
@@ -139,7 +139,7 @@ def run(*, supervised: bool) -> None:
     command = next((each for each in sys.argv[1:] if each in COMMANDS), "")
     remedy = f"'{shlex.join(['vines', *sys.argv[1:]])}' goes on" if command in _KEEPING else ""
     if supervised and command not in _PROMPT:
-        serving = command in _SERVING or (command == _WATCHING[0] and _WATCHING[1] in sys.argv)
+        serving = command in _SERVING or any(command == name and more in sys.argv for name, more in _WATCHING)
         go_on_in_a_child(remedy, patience=_SERVER_PATIENCE if serving else PATIENCE)
     os.environ.setdefault("RERUN_ANALYTICS", "0")
     load_pandas_late()
@@ -159,7 +159,7 @@ def run(*, supervised: bool) -> None:
         click.echo(error.format_message())
         code = 0
     except click.ClickException as error:
-        click.echo(f"vines: {error.format_message()}", err=True)
+        click.echo(f"vines: {error.format_message()}{_how_to_call(error)}", err=True)
         code = error.exit_code
     except VinesError as error:
         click.echo(f"vines: {error}", err=True)
@@ -177,6 +177,13 @@ def run(*, supervised: bool) -> None:
         click.echo(f"vines: not enough memory{f': {error}' if str(error) else ''}", err=True)
         code = 2
     sys.exit((code if isinstance(code, int) else 0) or (INCOMPLETE if incomplete else 0))
+
+
+def _how_to_call(error: click.ClickException) -> str:
+    """Say where to read how a command is called, where something is missing."""
+    if isinstance(error, click.MissingParameter) and error.ctx is not None:
+        return f" Usage: {' '.join([error.ctx.command_path, *error.ctx.command.collect_usage_pieces(error.ctx)])}"
+    return ""
 
 
 def _show(incomplete: list[str], message: Warning | str, category: type[Warning], *place: Any) -> None:

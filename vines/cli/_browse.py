@@ -21,8 +21,9 @@ def command(logs: tuple[str, ...], web: bool) -> None:
     vines browse quickstart.asymmetric_run --web
     """  # noqa: D301
     from vines import viewer
-    from vines.stages import all_logs, find_logs, recordings_folder
+    from vines.stages import all_logs, find_logs, recordings_folder, stages_of_logs
 
     study = the_study()
     paths = [path for name in logs for path in find_logs(name, study=study)] if logs else all_logs(study=study)
-    viewer.browse(paths, recordings_folder(study=study), web=web, tell=click.echo)
+    stages = stages_of_logs(study=study)
+    viewer.browse(paths, recordings_folder(study=study), stages=stages, web=web, tell=click.echo)

@@ -37,3 +37,5 @@ def command(
         click.echo(json.dumps({"folder": str(folder), "files": files, "bytes": size}, indent=2))
         return
     click.echo(f"{folder}: {len(files)} files, {size / 1e6:.1f} MB; begin with {folder / 'README.md'}")
+    if "datacite.json" not in files and licence is None:
+        click.echo("no [study] is declared: licence and citation are those of the project, of vines where it has none")

@@ -8,8 +8,11 @@ from collections.abc import Sequence
 
 import click
 
+_LEAST = 20
+"""Characters that a column keeps which is wrapped."""
 
-def print_rows(head: Sequence[str], rows: Sequence[Sequence[object]], *, wrap: int | None = -2) -> None:
+
+def print_rows(head: Sequence[str], rows: Sequence[Sequence[object]], *, wrap: int | Sequence[int] | None = -2) -> None:
     """Print rows under a head in aligned columns; see `lines`."""
     first, *rest = lines(head, rows, wrap=wrap)
     click.secho(first, bold=True)
@@ -17,7 +20,7 @@ def print_rows(head: Sequence[str], rows: Sequence[Sequence[object]], *, wrap: i
         click.echo(line)
 
 
-def lines(head: Sequence[str], rows: Sequence[Sequence[object]], *, wrap: int | None) -> list[str]:
+def lines(head: Sequence[str], rows: Sequence[Sequence[object]], *, wrap: int | Sequence[int] | None) -> list[str]:
     """Return rows under a head in aligned columns.
 
     Parameters
@@ -26,8 +29,9 @@ def lines(head: Sequence[str], rows: Sequence[Sequence[object]], *, wrap: int | 
         Column names.
     rows : sequence of sequences
         Cells; ``None`` prints as nothing.
-    wrap : int or None
-        Index of the column that is wrapped when the terminal is too narrow; ``None`` lets lines run on.
+    wrap : int, sequence of int or None
+        Index of the column that is wrapped when the terminal is too narrow, or of several of which the widest gives way
+        first; ``None`` lets lines run on.
 
     Examples
     --------
@@ -36,17 +40,17 @@ def lines(head: Sequence[str], rows: Sequence[Sequence[object]], *, wrap: int | 
     """
     cells = [[_text(cell) for cell in row] for row in rows]
     widths = [max([len(h), *(len(row[i]) for row in cells)]) for i, h in enumerate(head)]
-    if wrap is not None:
-        wrap %= len(widths)
+    wrapped = [] if wrap is None else [place % len(widths) for place in ([wrap] if isinstance(wrap, int) else wrap)]
+    if wrapped:
         excess = sum(widths) + 2 * (len(widths) - 1) - shutil.get_terminal_size((120, 24)).columns
-        if excess > 0:
-            widths[wrap] = max(20, widths[wrap] - excess)
+        for _ in range(excess):
+            widest = max(wrapped, key=widths.__getitem__)
+            widths[widest] = max(_LEAST, widths[widest] - 1)
     written = [_join(head, widths)]
     for row in cells:
-        pieces = [""] if wrap is None else textwrap.wrap(row[wrap], widths[wrap]) or [""]
-        for k, piece in enumerate(pieces):
-            shown = [piece if i == wrap else (cell if k == 0 else "") for i, cell in enumerate(row)]
-            written.append(_join(shown, widths))
+        pieces = [textwrap.wrap(cell, widths[i]) if i in wrapped else [cell] for i, cell in enumerate(row)]
+        for k in range(max([1, *map(len, pieces)])):
+            written.append(_join([each[k] if k < len(each) else "" for each in pieces], widths))
     return written
 
 

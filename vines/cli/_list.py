@@ -24,6 +24,7 @@ def command(as_json: bool) -> None:
     print_rows(
         ["pipeline", "stages", "title", "source"],
         [[row["name"], _size(row), row["title"], row["source"]] for row in rows],
+        wrap=(2, 3),
     )
 
 

@@ -55,6 +55,8 @@ def command(sql: str, form: str | None, out: Path | None) -> None:
             f"--out {out}: the suffix {out.suffix!r} names no format; allowed: {allowed}; or give --format"
         )
     _answer(sql, form, out)
+    if out is not None:
+        click.echo(f"wrote {out}  ({out.stat().st_size / 1e3:.0f} kB)")
 
 
 def _answer(sql: str, form: str | None, out: Path | None) -> None:

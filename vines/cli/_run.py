@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Sequence
 from dataclasses import asdict
+from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
 import click
@@ -13,7 +14,7 @@ from vines.cli._study import the_study
 from vines.errors import DeclarationError, RunFailed
 
 if TYPE_CHECKING:
-    from vines.pipeline import StagePlan
+    from vines.pipeline import Event, StagePlan
 
 
 @click.command("run")
@@ -33,6 +34,11 @@ if TYPE_CHECKING:
 @click.option("--dry-run", is_flag=True, help="Say what would be computed, why, and how long it takes; keep nothing.")
 @click.option("--force", is_flag=True, help="Compute everything again.")
 @click.option("--retry-failed", is_flag=True, help="Try the points again that failed.")
+@click.option("--watch", is_flag=True, help="Show each motion in the Rerun viewer as soon as it is computed.")
+@click.option("--web", is_flag=True, help="With --watch: on a page on 127.0.0.1.")
+@click.option(
+    "--save", type=click.Path(dir_okay=False, path_type=Path), help="With --watch: write recordings (.rrd) instead."
+)
 @click.option("--quiet", is_flag=True, help="Show no progress.")
 @click.option("--json", "as_json", is_flag=True, help="For machines: where each stage stands in the end, no progress.")
 def command(
@@ -46,6 +52,9 @@ def command(
     dry_run: bool,
     force: bool,
     retry_failed: bool,
+    watch: bool,
+    web: bool,
+    save: Path | None,
     quiet: bool,
     as_json: bool,
 ) -> None:
@@ -56,7 +65,14 @@ def command(
 
     What is computed is kept by point: a second run computes nothing, a finer grid only what is new, and after an
     interruption the same command goes on.
-    """
+
+    \b
+    vines run quickstart
+    vines run quickstart --dry-run                     say what would be computed
+    vines run ball.toml --set params.r=0.6             another value, once
+    vines run quickstart --watch                       see each motion as soon as it is there
+    """  # noqa: D301
+    from vines.cli._watched import how_to_watch, watched
     from vines.stages import compile_if_cold, estimate, run, status
 
     if scheduler is not None and engine != "dask":
@@ -75,6 +91,7 @@ def command(
     if shard is not None and force:
         raise DeclarationError("--shard cannot be forced: shards see what others computed; force without --shard")
 
+    shown = how_to_watch(watch=watch, web=web, save=save, idle="--dry-run" if dry_run else "")
     overrides = dict(read_setting(text) for text in settings)
     chosen = stages or None
     study = the_study()
@@ -96,6 +113,8 @@ def command(
             failed = sum(p.failed for p in plans)
             tail = f"; {failed} points failed before (--retry-failed tries them again)" if failed else ""
             click.echo(f"{name}: nothing to compute, all {len(plans)} stages are up to date{tail}")
+            if watch:
+                click.echo("nothing to watch: 'vines view' shows what is there, --force computes it again")
             _say_what_was_found(name)
         if as_json:
             _print_json(name, plans)
@@ -106,29 +125,42 @@ def command(
 
     compile_if_cold(plans, (lambda line: None) if quiet else click.echo)
     failure: RunFailed | None = None
-    with progress(quiet) as report:
-        try:
-            run(
-                name,
-                stages=chosen,
-                overrides=overrides,
-                jobs=jobs,
-                engine=engine,
-                scheduler=scheduler,
-                shard=shard,
-                force=force,
-                retry_failed=retry_failed,
-                report=report,
-                study=study,
-            )
-        except RunFailed as error:
-            failure = error
-    if as_json:
-        _print_json(name, status(name, stages=chosen, overrides=overrides, study=study))
-    elif shard is not None and not quiet:
-        click.echo(f"shard {shard} is computed; when all are, 'vines merge {name}' puts the results together")
-    elif not quiet:
-        _say_what_was_found(name)
+
+    def say(line: str) -> None:
+        click.echo(line, err=quiet)
+
+    with watched(shown, save, say) as watching:
+        with progress(quiet) as report:
+
+            def both(event: Event) -> None:
+                report(event)
+                if watching is not None:
+                    watching(event)
+
+            try:
+                run(
+                    name,
+                    stages=chosen,
+                    overrides=overrides,
+                    jobs=jobs,
+                    engine=engine,
+                    scheduler=scheduler,
+                    shard=shard,
+                    force=force,
+                    retry_failed=retry_failed,
+                    report=both,
+                    study=study,
+                )
+            except RunFailed as error:
+                failure = error
+        if as_json:
+            _print_json(name, status(name, stages=chosen, overrides=overrides, study=study))
+        elif shard is not None and not quiet:
+            click.echo(f"shard {shard} is computed; when all are, 'vines merge {name}' puts the results together")
+        elif not quiet:
+            _say_what_was_found(name)
+        if watching is not None:
+            watching.stay(wait=shown != "save")
     if failure is not None:
         raise failure
 

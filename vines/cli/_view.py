@@ -90,7 +90,7 @@ def command(
     """  # noqa: D301
     from vines import viewer
     from vines.logs import read_damaged
-    from vines.stages import find_logs, recordings_folder
+    from vines.stages import MOST_ABREAST, find_logs, recordings_folder
 
     if web and (png is not None or save is not None):
         raise click.UsageError("--web serves until Ctrl-C and goes with neither --png nor --save; give one of them")
@@ -113,9 +113,16 @@ def command(
     def told(line: str) -> None:
         click.echo(f"vines: {line}", err=True)
 
+    paths = [path for name in logs for path in find_logs(name, study=study)]
+    if len(paths) > MOST_ABREAST:
+        example = f"{next(iter(logs)).partition('/')[0]}/{paths[0].stem}"
+        raise click.UsageError(
+            f"{' '.join(logs)} has {len(paths)} logs, and {MOST_ABREAST} fit beside each other; name points, such as "
+            f"{example}, or look at all in 'vines browse {' '.join(logs)}'"
+        )
     runs: list[Log] = []
     long = False
-    for path in (path for name in logs for path in find_logs(name, study=study)):
+    for path in paths:
         if path.stat().st_size > _LONG:
             long = True
             told(f"reading {printable(path.name)}, {path.stat().st_size / 1e6:.0f} MB")

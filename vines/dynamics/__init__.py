@@ -9,7 +9,7 @@ from vines.dynamics._ensemble import Ensemble, ensemble
 from vines.dynamics._maps import P1, P2, P3, P4, Mapped, impact_map
 from vines.dynamics._measures import Measures
 from vines.dynamics._saltation import jacobian
-from vines.dynamics._scatter import Scatter
+from vines.dynamics._scatter import OrnsteinUhlenbeck, Scatter
 from vines.dynamics._simulate import simulate
 from vines.dynamics._tangent import lyapunov_spectrum, tangent_map
 from vines.dynamics._trajectory import Trajectory
@@ -27,6 +27,7 @@ __all__ = [
     "Ensemble",
     "Mapped",
     "Measures",
+    "OrnsteinUhlenbeck",
     "Scatter",
     "Trajectory",
     "ball_locked",

@@ -10,7 +10,7 @@ import numpy as np
 
 from vines.dynamics._constants import Constants
 from vines.dynamics._contact import CONTACT, NO_CONTACT, next_contact
-from vines.dynamics._flight import advance_phase, derivatives, flight, flown, free_ball
+from vines.dynamics._flight import advance_phase, ball_flown, derivatives, flown, launched, phase_after, relative
 from vines.dynamics._impact_law import after_impact_kernel
 from vines.dynamics._sticking import merges, next_release
 from vines.kernels import by_type, fused_njit, linked_njit, loop_njit, njit
@@ -29,9 +29,11 @@ __all__ = [
     "ROW",
     "RUN",
     "SIDE",
+    "SLIDE",
     "START",
     "STEP_LIMIT",
     "STICK",
+    "STOP",
     "TAU",
     "TIME",
     "V1",
@@ -44,14 +46,17 @@ __all__ = [
     "move",
     "new_state",
     "pass_over",
+    "place",
     "set_state",
     "shift_time",
     "state_now",
     "too_many",
+    "write_row",
 ]
 
-# Kinds of rows. START is also written inside a very long flight, where the closed form is started afresh.
-START, IMPACT, STICK, RELEASE, END = range(5)
+# Kinds of rows. START is also written inside a very long flight, where the closed form is started afresh. With friction
+# a ball may STOP in mid-cavity, and SLIDE is where it begins to slide the other way, or again.
+START, IMPACT, STICK, RELEASE, END, STOP, SLIDE = range(7)
 
 # Columns of a row: what happened, on which wall, when (and how long after the row before), the state just before and
 # the velocities just after, the mode of the motion after it (0 flight, else the wall stuck to) and, for STICK, the
@@ -117,12 +122,12 @@ def state_now(c, state, t):
     tau = (t - state[S_T]) - state[S_T_LOW]
     side = state[S_MODE]
     o = c.stuck if side != 0.0 else c.free
-    motion = flown(c, o, flight(c, o, state[S_X1], state[S_V1], state[S_PHASE], state[S_T]), tau)
-    x1, v1, _, _, _ = derivatives(o, c.Omega, *motion)
-    phase = advance_phase(state[S_PHASE], c.Omega * tau)
+    motion = launched(c, o, state[S_X1], state[S_V1], state[S_V2], state[S_PHASE], state[S_T])
+    x1, v1, _, _, _ = derivatives(o, c.Omega, *flown(c, o, motion, tau))
+    phase = phase_after(c, state[S_PHASE], c.Omega * tau, state[S_T], t)
     if side != 0.0:
         return x1, v1, x1 - side, v1, phase, tau
-    way, v2 = free_ball(c, state[S_V2], tau)
+    way, v2 = ball_flown(c, motion, state[S_V2], tau)
     return x1, v1, state[S_X2] + way, v2, phase, tau
 
 
@@ -134,13 +139,14 @@ def move(c, state, tau):
     total = t + step
     rest = total - t
     state[S_T_LOW] = (t - (total - rest)) + (step - rest)
+    state[S_PHASE] = phase_after(c, state[S_PHASE], c.Omega * tau, t, total)
     state[S_T] = total
-    state[S_PHASE] = advance_phase(state[S_PHASE], c.Omega * tau)
     state[S_CLEAR] = 0.0
 
 
 @fused_njit
-def _write(row, state, kind, side, tau, x1, v1, x2, v2):
+def write_row(row, state, kind, side, tau, x1, v1, x2, v2):
+    """Write an event that has come to the state as it is now: x1, v1, x2, v2 are those just before."""
     row[KIND] = kind
     row[SIDE] = side
     row[TIME] = state[S_T]
@@ -157,7 +163,8 @@ def _write(row, state, kind, side, tau, x1, v1, x2, v2):
 
 
 @fused_njit
-def _place(state, mode, wall, released, x1, v1, x2, v2):
+def place(state, mode, wall, released, x1, v1, x2, v2):
+    """Put a run where it goes on from; the mode is 0 in flight, else the gap at which the ball rides."""
     state[S_MODE] = mode
     state[S_WALL] = wall
     state[S_RELEASED] = released
@@ -178,7 +185,7 @@ def law_of(c, closing, number):
 @njit
 def begin(c, state, rows):
     """Write the row of the start."""
-    _write(rows[0], state, START, int(state[S_WALL]), 0.0, state[S_X1], state[S_V1], state[S_X2], state[S_V2])
+    write_row(rows[0], state, START, int(state[S_WALL]), 0.0, state[S_X1], state[S_V1], state[S_X2], state[S_V2])
 
 
 @by_type(Constants)
@@ -206,6 +213,7 @@ def advance(c, state, stop, cap, rows, first):
     count = first
     size = rows.shape[0]
     period = c.period
+    seen = relative(c)
     while True:
         if count >= size:
             return count, BUFFER_FULL
@@ -218,19 +226,19 @@ def advance(c, state, stop, cap, rows, first):
         x2 = state[S_X2]
         v2 = state[S_V2]
         o = c.stuck if side != 0 else c.free
-        motion = flight(c, o, x1, v1, state[S_PHASE], state[S_T])
+        motion = launched(c, o, x1, v1, v2, state[S_PHASE], state[S_T])
 
         if side != 0:
             code, tau, x, v = next_release(c, side, motion, state[S_CLEAR], min(left, AFRESH))
             if code == CONTACT:
                 move(c, state, tau)
-                _place(state, 0, side, 1.0, x, v, x - side, v)
-                after = flight(c, c.free, x, v, state[S_PHASE], state[S_T])
-                _, _, _, j, _ = derivatives(c.free, c.Omega, *after)
+                place(state, 0, side, 1.0, x, v, x - side, v)
+                after = launched(c, c.free, x, v, v, state[S_PHASE], state[S_T])
+                _, _, _, j, _ = derivatives(seen.free, c.Omega, *after)
                 if side * j >= 0.0:
                     # Contact was lost at once, with a push away from the wall that is not zero.
                     state[S_RELEASED] = 0.0
-                _write(rows[count], state, RELEASE, side, tau, x, v, x - side, v)
+                write_row(rows[count], state, RELEASE, side, tau, x, v, x - side, v)
                 count += 1
                 if too_many(state, cap, period):
                     return count, EVENT_CAP
@@ -239,12 +247,12 @@ def advance(c, state, stop, cap, rows, first):
             wall = int(state[S_WALL])
             if state[S_DECIDE] != 0.0:
                 state[S_DECIDE] = 0.0
-                if merges(c, c.free, c.r, c.correction, wall, max(wall * (v2 - v1), 0.0), motion, x2):
+                if merges(seen, seen.free, c.r, c.correction, wall, max(wall * (v2 - v1), 0.0), motion, x2):
                     common = (v1 + c.mu * v2) / (1.0 + c.mu)
                     run = state[S_RUN]
                     state[S_RUN] = 0.0
-                    _place(state, wall, wall, 0.0, x1, common, x1 - wall, common)
-                    _write(rows[count], state, STICK, wall, 0.0, x1, v1, x2, v2)
+                    place(state, wall, wall, 0.0, x1, common, x1 - wall, common)
+                    write_row(rows[count], state, STICK, wall, 0.0, x1, v1, x2, v2)
                     rows[count, RUN] = run
                     count += 1
                     if too_many(state, cap, period):
@@ -255,16 +263,16 @@ def advance(c, state, stop, cap, rows, first):
             )
             if code == CONTACT:
                 move(c, state, tau)
-                _, v2 = free_ball(c, v2, tau)
+                _, v2 = ball_flown(c, motion, v2, tau)
                 after1, after2 = after_impact_kernel(law_of(c, v - v2, state[S_IMPACTS]), v, v2)
                 state[S_IMPACTS] += 1.0
                 if hit != state[S_RUN_SIDE] or state[S_RELEASED] != 0.0:
                     state[S_RUN] = 0.0
                 state[S_RUN] += 1.0
                 state[S_RUN_SIDE] = hit
-                _place(state, 0, hit, 0.0, x, after1, x - hit, after2)
+                place(state, 0, hit, 0.0, x, after1, x - hit, after2)
                 state[S_DECIDE] = 1.0
-                _write(rows[count], state, IMPACT, hit, tau, x, v, x - hit, v2)
+                write_row(rows[count], state, IMPACT, hit, tau, x, v, x - hit, v2)
                 count += 1
                 if too_many(state, cap, period):
                     return count, EVENT_CAP
@@ -278,11 +286,11 @@ def advance(c, state, stop, cap, rows, first):
         x, v, _, _, _ = derivatives(o, c.Omega, *flown(c, o, motion, tau))
         move(c, state, tau)
         if side != 0:
-            _place(state, side, side, 0.0, x, v, x - side, v)
+            place(state, side, side, 0.0, x, v, x - side, v)
         else:
-            way, v2 = free_ball(c, v2, tau)
-            _place(state, 0, 0, 0.0, x, v, x2 + way, v2)
-        _write(rows[count], state, START, 0, tau, x, v, state[S_X2], state[S_V2])
+            way, v2 = ball_flown(c, motion, v2, tau)
+            place(state, 0, 0, 0.0, x, v, x2 + way, v2)
+        write_row(rows[count], state, START, 0, tau, x, v, state[S_X2], state[S_V2])
         count += 1
 
 

@@ -20,6 +20,7 @@ __all__ = [
     "close_in",
     "contact_within",
     "first_step",
+    "leave_wall",
     "next_contact",
 ]
 
@@ -47,16 +48,24 @@ def first_step(c, o, beta, motion, v2, wall, released):
     a = pull(c, a)
     re, im = fifth(o, *motion)
     bound = modulus(re, im) + forced_fifth(c, *motion) * c.window
-    speed = 0.0 if released else max(wall * (v2 - v), 0.0)
-    second = 0.0 if released else wall * a
-    own = step_back(0.0, speed, second, wall * j, wall * k, bound, c.window)
-    if own < 0.25 * c.window:
-        own = max(own, leaving_step(speed, second, wall * j, max(wall * k, 0.0) + 0.2 * c.window * bound, c.window))
-    pace = wall * (v2 - v)
-    span = min(c.window, 3.0 * beta / pace) if pace > 0.0 else c.window
+    return leave_wall(beta, wall * (v2 - v), wall * a, wall * j, wall * k, bound, c.window, released)
+
+
+@fused_njit
+def leave_wall(beta, pace, second, third, fourth, bound, window, released):
+    """Return the certified step from a wall that is left at `pace`, with further derivatives of the gap towards it.
+
+    `bound` is that of the fifth derivative over `window`.
+    """
+    speed = 0.0 if released else max(pace, 0.0)
+    bend = 0.0 if released else second
+    own = step_back(0.0, speed, bend, third, fourth, bound, window)
+    if own < 0.25 * window:
+        own = max(own, leaving_step(speed, bend, third, max(fourth, 0.0) + 0.2 * window * bound, window))
+    span = min(window, 3.0 * beta / pace) if pace > 0.0 else window
     if pace >= 0.0:
-        return min(own, step_ahead(2.0 * beta, pace, -wall * a, -wall * j, -wall * k, bound, span))
-    return min(own, step_back(2.0 * beta, -pace, -wall * a, -wall * j, -wall * k, bound, span))
+        return min(own, step_ahead(2.0 * beta, pace, -second, -third, -fourth, bound, span))
+    return min(own, step_back(2.0 * beta, -pace, -second, -third, -fourth, bound, span))
 
 
 @fused_njit

@@ -24,7 +24,9 @@ class Decay:
         and the oscillator below its place without them.
     impact_share, damper_share, frame_share, ball_share : float
         Shares of it that were lost in impacts and in the damper, and that oscillator and ball have at the end; their
-        sum is 1 to rounding.
+        sum is 1 to rounding. A spring that holds the ball counts with it, a damper beside that spring with the other.
+    travel_share : float
+        Share lost on the ball's way through the cavity, to a coil or by friction; it belongs to that sum.
     times : tuple of float
         When no more than each of the shares asked for is left for the first time, nan where that is not in the run.
     impacts : int
@@ -38,6 +40,7 @@ class Decay:
     damper_share: float
     frame_share: float
     ball_share: float
+    travel_share: float
     times: tuple[float, ...]
     impacts: int
     first_impact: float
@@ -84,6 +87,7 @@ def decay(run: Trajectory, shares: Sequence[float] = (0.1, 0.01)) -> Decay:
         damper_share=whole.damper_loss / start,
         frame_share=frame / start,
         ball_share=ball / start,
+        travel_share=whole.travel_loss / start,
         times=tuple(_reaches(run, frame + ball, share * start) for share in shares),
         impacts=len(hits),
         first_impact=float(hits[0]) if len(hits) else math.nan,
@@ -105,6 +109,9 @@ def _above_rest(values: dict[str, float], state: dict[str, float]) -> tuple[floa
     for ball, mass in masses.items():
         way = values.get(f"beta{ball}", 1.0) + math.copysign(1.0, pull) * (state[f"x2{ball}"] - state["x1"])
         balls += mass * (0.5 * state[f"v2{ball}"] ** 2 + abs(pull) * way)
+    if "k3" in values:
+        square = (state["x1"] - state["x2"]) ** 2
+        balls += values["mu"] * square * (0.5 * values["k1"] + 0.25 * values["k3"] * square)
     return frame, balls
 
 
@@ -121,7 +128,7 @@ def _reaches(run: Trajectory, left: float, level: float) -> float:
         if not low < middle < high:
             return high
         after = run.measures(last=(run.t_end - middle) / run.params.period)
-        if left + after.damper_loss + after.impact_loss > level:
+        if left + after.damper_loss + after.impact_loss + after.travel_loss > level:
             low = middle
         else:
             high = middle

@@ -209,7 +209,7 @@ def ensemble(
     lyapunov : bool
         Whether to give Lyapunov exponents over the recorded time.
     scatter : Scatter, optional
-        Restitution that varies from impact to impact, noise and a second harmonic of the base.
+        Restitution that varies from impact to impact, noise and a second harmonic of the base, units that differ.
     max_impacts_per_period : int
         Cap on events in one forcing period; a trajectory that passes it ends there, its status says so.
     threads : int, optional
@@ -243,6 +243,8 @@ def ensemble(
         check_periods(name, value, longest)
     if scatter is not None and lyapunov:
         raise StateError("lyapunov is not defined for runs with scatter; leave one of them out")
+    if scatter is not None and scatter.spread:
+        table = scatter.units(VI_NES, table)
     what = {"final": lanes.FINAL, "measures": lanes.WITH_MEASURES, "impacts": lanes.WITH_IMPACTS}[record]
     what += lanes.WITH_EXPONENTS if lyapunov else 0
     return _Runs(table, begin, periods, settle, max_impacts_per_period, scatter, threads).done(what)
@@ -310,7 +312,9 @@ class _Work:
                 filled = lanes.run_block(*runs, *common, growths, growth_errors, *rest)
             else:
                 own = np.empty(ROOM)
-                filled = scatter_block(*runs, *common, *rest, scatter.numbers(), block.start, own.ctypes.data)
+                filled = scatter_block(
+                    *runs, *common, *rest, scatter.numbers(self.runs.table[block]), block.start, own.ctypes.data
+                )
             if not np.any(self.codes[block] == lanes.OVERFLOW):
                 break
             room *= 2

@@ -14,17 +14,23 @@ from vines.kernels import by_type, fused_njit, njit
 
 __all__ = [
     "advance_phase",
+    "ball_flown",
     "decay",
     "derivatives",
+    "drift",
     "fifth",
     "flight",
     "flown",
     "forced_fifth",
     "fourth_bound",
     "free_ball",
+    "launched",
     "modulus",
+    "phase_after",
     "phasors",
     "pull",
+    "rate_alone",
+    "relative",
     "ringing",
     "sixth",
     "slow_growth",
@@ -200,6 +206,27 @@ def free_ball(c, v2, tau):
 
 @by_type(Constants)
 @fused_njit
+def launched(c, o, x, v, v2, phase, t):
+    """Return what `flight` does where a ball leaves with the velocity v2, which a frame may feel as the ball flies."""
+    return flight(c, o, x, v, phase, t)
+
+
+@by_type(Constants)
+@fused_njit
+def ball_flown(c, motion, v2, tau):
+    """Return what `free_ball` does, of a ball that left with the motion: the frame may move it as it flies."""
+    return free_ball(c, v2, tau)
+
+
+@by_type(Constants)
+@fused_njit
+def relative(c):
+    """Return the constants in whose frame a ball flies as `free_ball` says: these, where the frame does not move it."""
+    return c
+
+
+@by_type(Constants)
+@fused_njit
 def pull(c, a):
     """Return the acceleration of a wall that moves with x1'' = a, against a free ball: w''."""
     return a
@@ -230,12 +257,29 @@ def fourth_bound(c, ur, ui, gr, gi, window):
 
 @by_type(Constants)
 @njit
-def ringing(c, x1, v1, phase):
+def ringing(c, x1, v1, v2, phase):
     """Return how far the oscillator is from its steady motion under the forcing alone."""
     cosine, sine = math.cos(phase), math.sin(phase)
     q_re = c.free.qr * cosine - c.free.qi * sine
     q_im = c.free.qr * sine + c.free.qi * cosine
     return math.hypot(x1 - q_re, v1 + c.Omega * q_im)
+
+
+@by_type(Constants)
+@njit
+def drift(c, v2):
+    """Return the speed with which a ball of velocity v2 that is never hit comes to a wall in the end."""
+    return abs(v2)
+
+
+@by_type(Constants)
+@njit
+def rate_alone(c, d, k):
+    """Return the k-th of the d exponents of a motion in which no ball is ever hit, in descending order.
+
+    The balls keep what they are given, in position and in velocity; the oscillator, if it is one, does not.
+    """
+    return 0.0 if k < max(d - 2, 2) else -0.5 * c.lam
 
 
 @fused_njit
@@ -247,3 +291,10 @@ def advance_phase(phase, angle):
     if turned < 0.0:
         turned += TWO_PI
     return turned if turned < TWO_PI else 0.0
+
+
+@by_type(Constants)
+@fused_njit
+def phase_after(c, phase, angle, before, after):
+    """Return the phase of the forcing at a time, from that at a time before and the angle that it turns by since."""
+    return advance_phase(phase, angle)

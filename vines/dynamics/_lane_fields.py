@@ -6,6 +6,8 @@ one array at constant distances of at least the length of a vector it can.
 
 from __future__ import annotations
 
+from vines.dynamics._totals import TOTALS
+
 __all__ = ["LANES", "SIZE", "STRIDE"]
 
 LANES = 64
@@ -114,9 +116,9 @@ SEEK = 69 * STRIDE
 PART = 70 * STRIDE
 
 # The number 1 (see `vines.dynamics._lane_motion.kept`).
-UNIT = 85 * STRIDE
+UNIT = PART + TOTALS * STRIDE
 
 # Square of the steady amplitude over |i Omega - s|: its rounding is that of the integral of |u|^2.
-LARGE = 86 * STRIDE
+LARGE = UNIT + STRIDE
 
-SIZE = 87 * STRIDE
+SIZE = LARGE + STRIDE

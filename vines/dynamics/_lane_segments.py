@@ -35,6 +35,9 @@ __all__ = ["begin_segment", "close_part", "end_segment", "mend", "part_of"]
 LARGEST = f.PART + MAX_ABS_X1 * f.STRIDE
 WHEN_LARGEST = f.PART + T_MAX_ABS_X1 * f.STRIDE
 
+NOWHERE = 0.0
+"""Position of a ball that nothing holds: it has no say in the energies of its flight."""
+
 
 @linked_njit
 def _one_energies(L, i):
@@ -86,7 +89,7 @@ def end_segment(held, L, record, i, length, row):
     first = x1, v1, v2, phase
     while batch[i] < BATCHES - 1 and begins + lasts > (batch[i] + 1) * width:
         cut = min(max((batch[i] + 1) * width - begins, gone), lasts)
-        add_segment(held[i], part, mode, begins + gone, x1, v1, v2, phase, cut - gone)
+        add_segment(held[i], part, mode, begins + gone, x1, v1, NOWHERE, v2, phase, cut - gone)
         close_batch(held[i].mu, part, total[i], values[i, batch[i]])
         batch[i] += 1
         start = zero_vector(col.ROW)
@@ -95,7 +98,7 @@ def end_segment(held, L, record, i, length, row):
         x1, v1, _, v2, phase = segment_state(held[i], start, cut)
         gone = cut
         part[MAX_ABS_X1], part[T_MAX_ABS_X1] = abs(x1), begins + gone
-    add_segment(held[i], part, mode, begins + gone, x1, v1, v2, phase, lasts - gone)
+    add_segment(held[i], part, mode, begins + gone, x1, v1, NOWHERE, v2, phase, lasts - gone)
     if row[col.KIND] == col.IMPACT or row[col.KIND] == col.STICK:
         count_event(held[i], part, row)
     for k in range(TOTALS):
@@ -212,7 +215,7 @@ def _one_by_scalar(held, L, i):
     lasts = L[f.FLIGHT + i] - L[f.FROM_TAU + i]
     phase = advance_phase(math.atan2(L[f.FROM_SIN + i], L[f.FROM_COS + i]), 0.0)
     begins = L[f.LENGTH + i] - L[f.LEFT + i] - lasts
-    add_segment(held[i], part, 0.0, begins, L[f.FROM_X + i], L[f.FROM_V + i], L[f.BEFORE2 + i], phase, lasts)
+    add_segment(held[i], part, 0.0, begins, L[f.FROM_X + i], L[f.FROM_V + i], NOWHERE, L[f.BEFORE2 + i], phase, lasts)
     wall, closing = L[f.WALL + i], L[f.BEFORE1 + i] - L[f.BEFORE2 + i]
     if wall != 0.0:
         part[LOSS_LEFT if wall > 0.0 else LOSS_RIGHT] += L[f.LOSS + i] * closing * closing

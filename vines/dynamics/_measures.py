@@ -45,6 +45,8 @@ class Measures:
         Impacts by wall; of a complete chatter those that were followed one by one.
     sticks_left, sticks_right : int
         Spells of sticking that began in the window, by wall.
+    travel_loss : float
+        Energy lost on the ball's way through the cavity, to a coil or by friction; 0 of a ball that flies freely.
     """
 
     duration: float
@@ -64,6 +66,7 @@ class Measures:
     impacts_right: int
     sticks_left: int
     sticks_right: int
+    travel_loss: float = 0.0
 
     @property
     def periods(self) -> float:
@@ -81,7 +84,7 @@ class Measures:
     @property
     def balance(self) -> float:
         """Base work less losses less change of energy: zero up to rounding."""
-        return self.base_work - self.damper_loss - self.impact_loss - self.energy_change
+        return self.base_work - self.damper_loss - self.impact_loss - self.travel_loss - self.energy_change
 
     @property
     def impacts_per_period(self) -> float:
@@ -146,4 +149,5 @@ def of_the_frame(p: Any, t: list[float]) -> dict[str, Any]:
         "impacts_right": int(t[entry.IMPACTS_RIGHT]),
         "sticks_left": int(t[entry.STICKS_LEFT]),
         "sticks_right": int(t[entry.STICKS_RIGHT]),
+        "travel_loss": t[entry.TRAVEL_LOSS],
     }

@@ -17,14 +17,21 @@ import numpy.typing as npt
 from vines.dynamics._advance import ROW, STATE, set_state
 from vines.dynamics._constants import ParameterTable, constants_kernel
 from vines.dynamics._impact_law import ImpactLaw, impact_law
+from vines.dynamics._scatter import BEGUN, Scatter
+from vines.dynamics._scatter_constants import ROOM
+from vines.dynamics._scatter_table import ScatterTable
 from vines.dynamics._start import check_coordinate, check_gap, check_numbers
 from vines.dynamics._totals import TOTALS
 from vines.errors import StateError, nearest
 from vines.model import Params
 
-__all__ = ["Layout", "Room", "constants", "room_of", "start_of", "table_of"]
+__all__ = ["IN_TURN", "TIES", "TOGETHER", "Layout", "Room", "constants", "room_of", "start_of", "table_of"]
 
 Floats = npt.NDArray[np.float64]
+
+
+IN_TURN, TOGETHER = TIES = ("in_turn", "together")
+"""How balls are struck that arrive at one instant: one after the other by their numbers, or by one law of all."""
 
 
 class Layout(NamedTuple):
@@ -44,10 +51,13 @@ class Room:
     ----------
     trajectory, measures : callable or None
         What makes a run of its rows, and measures of its totals, where one ball is not enough for that.
+    unstruck : str or None
+        Name of a settled motion without impacts, where such a one repeats of itself.
     """
 
     trajectory: Callable[..., Any] | None = None
     measures: Callable[..., Any] | None = None
+    unstruck: str | None = None
 
     def constants(self, values: Sequence[float]) -> Any:
         """Return the constants of the kernels from the values of the parameters, in the order of the declaration."""
@@ -56,6 +66,33 @@ class Room:
     def table(self, points: list[list[float]]) -> Any:
         """Return the table for kernels that run many points."""
         return ParameterTable(np.array(points))
+
+    def scattered(
+        self, values: Floats, scatter: Scatter, streams: npt.NDArray[np.int64], begun: Floats | None = None
+    ) -> tuple[Any, Floats]:
+        """Return the table of runs with scatter, and room that has to be kept as long as it is used.
+
+        Parameters
+        ----------
+        values : ndarray, shape (n, d)
+            Parameters of the runs.
+        scatter : Scatter
+            What is drawn.
+        streams : ndarray of int, shape (n,)
+            Number of each run.
+        begun : ndarray, shape (n,), optional
+            Coloured force at time 0, in units of A; drawn if left out.
+
+        Raises
+        ------
+        ParameterError
+            If the system cannot have such a scatter.
+        """
+        numbers = scatter.numbers(values)
+        if begun is not None:
+            numbers[:, BEGUN] = begun
+        room = np.empty(ROOM)
+        return ScatterTable(values, numbers, streams, room.ctypes.data), room
 
     def layout(self, p: Any) -> Layout:
         """Return the lengths of arrays."""
@@ -73,6 +110,9 @@ class Room:
     def begin(self, c: Any, state: Floats, x1: float, v1: float, x2: Any, v2: Any, phase: float, t: float) -> None:
         """Put a run at its start."""
         set_state(state, float(x1), float(v1), float(x2), float(v2), phase, t)
+
+    def strike_in_turn(self, state: Floats) -> None:
+        """Let balls that arrive at one instant be struck one after the other in a run that has begun."""
 
     def gaps(self, p: Any, at: Mapping[str, Any]) -> Any:
         """Return the gap of each ball over half the length of its cavity, shape (n, balls), of n states by name."""

@@ -1,4 +1,4 @@
-"""The numbers that the kernels need for a run with scatter: also a second harmonic, held forces and draws."""
+"""The numbers that the kernels need for a run with scatter: also a second harmonic, forces that change, and draws."""
 
 from __future__ import annotations
 
@@ -12,14 +12,20 @@ from vines.kernels import doubles_at, linked_njit, njit
 
 __all__ = [
     "AHEAD",
+    "COLOURS",
+    "COSINES",
     "DRAWS",
     "FIRST",
     "FORMS",
+    "JUMPS",
     "NUMBERS",
     "PIECES",
     "ROOM",
+    "SINES",
     "SQUARES",
     "SUMS",
+    "TURNS",
+    "Coloured",
     "Harmonic",
     "Piece",
     "ScatterConstants",
@@ -29,7 +35,7 @@ __all__ = [
 ]
 
 AHEAD = 64
-"""Held forces drawn at once."""
+"""Held forces drawn at once, and turns of the phase."""
 
 NUMBERS = 8
 """Numbers that say how a piece begins: u, G1, G2, the held force, and 0, with which they fill a vector."""
@@ -40,9 +46,15 @@ SQUARES = NUMBERS * NUMBERS
 FORMS = 4
 """Integrals of a whole piece that are quadratic forms in them: of x1^2, of v1^2, the work, the damper loss."""
 
-# Places in a run's room: the number of a draw and the draws from it on, the forms for flight and for sticking, sums of
-# products.
-FIRST, DRAWS, PIECES = 0, 1, 8 + AHEAD
+# Places in a run's room: the number of a piece, and what the base has worked in jumps of its phase; held forces from
+# that piece on, and by what the phase turns at their begin, with its cosine and sine; the coloured force at every
+# second begin; the forms for flight and for sticking, sums of products.
+FIRST, JUMPS, DRAWS = 0, 1, 8
+TURNS = DRAWS + AHEAD
+COSINES = TURNS + AHEAD
+SINES = COSINES + AHEAD
+COLOURS = SINES + AHEAD
+PIECES = COLOURS + AHEAD
 SUMS = PIECES + 2 * FORMS * SQUARES
 ROOM = SUMS + SQUARES
 
@@ -108,11 +120,30 @@ class ScatterOscillator(NamedTuple):
     bi: float
 
 
+class Coloured(NamedTuple):
+    """A coloured force: its standard deviation, the step in units of its memory, and its value at the begin, or nan.
+
+    The others are those of `held_halves`.
+    """
+
+    size: float
+    rate: float
+    begun: float
+    p11: float
+    p12: float
+    p21: float
+    p22: float
+    l11: float
+    l21: float
+    l22: float
+
+
 class ScatterConstants(NamedTuple):
     """As `Constants`, and what is drawn.
 
     ``r`` is the restitution of a slow impact without its deviation; the held forces have the standard deviation
-    ``noise``, one for each ``grid`` of time from ``origin`` on; draws are those of `stream` at the seed `key`.
+    ``noise``, one for each ``grid`` of time from ``origin`` on, where the phase turns by ``diffusion`` times a normal
+    number; ``drawn`` says whether anything changes there. Draws are those of `stream` at the seed `key`.
     ``room`` is the address of `ROOM` doubles, for what is worked out on the way.
     """
 
@@ -131,6 +162,9 @@ class ScatterConstants(NamedTuple):
     sigma_r: float
     r_speed: float
     noise: float
+    diffusion: float
+    colour: Coloured
+    drawn: bool
     grid: float
     origin: float
     second: float
@@ -197,8 +231,8 @@ def scatter_constants(parameters, numbers, stream, origin, address):
     ----------
     parameters : ndarray, shape (5,)
         mu, A, Omega, r, lam.
-    numbers : ndarray, shape (7,)
-        As `Scatter.numbers` gives them.
+    numbers : ndarray, shape (18,)
+        A row of what `Scatter.numbers` gives.
     stream : int
         Number of the run.
     origin : float
@@ -209,12 +243,17 @@ def scatter_constants(parameters, numbers, stream, origin, address):
     room = doubles_at(address, ROOM)
     # Nothing drawn yet, nothing summed.
     room[FIRST] = math.inf
+    room[JUMPS] = 0.0
     for k in range(SUMS, ROOM):
         room[k] = 0.0
     mu, A, Omega, r, lam = parameters[0], parameters[1], parameters[2], parameters[3], parameters[4]
     c = constants_kernel(mu, A, Omega, r, lam)
     grid = c.period / numbers[3]
     second = numbers[4] * A
+    colour = Coloured(
+        numbers[8] * A, numbers[9], numbers[10] * A,
+        numbers[11], numbers[12], numbers[13], numbers[14], numbers[15], numbers[16], numbers[17],
+    )  # fmt: skip
     fastest = max(1.0, 2.0 * Omega if second > 0.0 else Omega)
     return ScatterConstants(
         mu,
@@ -232,6 +271,9 @@ def scatter_constants(parameters, numbers, stream, origin, address):
         numbers[0],
         numbers[1],
         numbers[2] * A,
+        numbers[7],
+        colour,
+        numbers[2] * A > 0.0 or numbers[7] > 0.0 or colour.size > 0.0,
         grid,
         origin,
         second,

@@ -16,9 +16,9 @@ from vines.dynamics._flight import derivatives, flight, modulus, slow_growth, tu
 from vines.dynamics._integrals import NODES, WEIGHTS, energies_between, peak_between, stays_below
 from vines.dynamics._scatter_constants import (
     AHEAD,
-    DRAWS,
     FIRST,
     FORMS,
+    JUMPS,
     NUMBERS,
     PIECES,
     SQUARES,
@@ -26,9 +26,17 @@ from vines.dynamics._scatter_constants import (
     ScatterConstants,
     ScatterOscillator,
 )
-from vines.dynamics._scatter_motion import HELD, INDEX, LEFT, end_of, redraw, sagging, under
+from vines.dynamics._scatter_motion import HELD, INDEX, LEFT, end_of, piece_at, redraw, sagging, under
 from vines.dynamics._sincos import sincos
-from vines.dynamics._totals import add_segment, base_at, event_loss, event_work, stored_energy, window_totals
+from vines.dynamics._totals import (
+    add_segment,
+    base_at,
+    event_loss,
+    event_work,
+    segment_state,
+    stored_energy,
+    window_totals,
+)
 from vines.kernels import (
     cold_njit,
     doubles_at,
@@ -49,7 +57,7 @@ def _base_at(c, phase):
     return c.A * np.sin(phase) + c.second * np.sin(2.0 * phase + c.second_phase)
 
 
-for _name in (event_loss, event_work, stored_energy, window_totals):
+for _name in (event_loss, event_work, segment_state, stored_energy, window_totals):
     _name.register(ScatterConstants)(_name.first)
 
 
@@ -341,19 +349,35 @@ def _highest(o, motion, end):
 
 
 @fused_njit
-def _over_pieces(c, o, motion, gone, length, best):
+def _base(c, o, motion):
+    """Return the displacement of the base, from the forces that it makes."""
+    _, _, pr, pi, qr, qi, _, _, _ = motion
+    return ((o.bi * pr + o.br * pi) + 0.5 * (o.second.bi * qr + o.second.br * qi)) / c.Omega
+
+
+@fused_njit
+def _jump_work(c, o, before, after):
+    """Return what the base works against the spring where its phase turns."""
+    here, there = _base(c, o, before), _base(c, o, after)
+    return (here - there) * ((before[HELD] + before[0]) - 0.5 * (here + there))
+
+
+@fused_njit
+def _over_pieces(c, o, motion, gone, last, best):
     """Go over whole pieces as long as |x1| stays below `best` and draws are at hand: so there is no call in the loop.
 
     Returns (motion, time gone, number of pieces).
     """
-    drawn, sums = doubles_at(c.room, DRAWS + AHEAD), doubles_at(c.room + 8 * SUMS, SQUARES)
+    drawn, sums = doubles_at(c.room, JUMPS + 1), doubles_at(c.room + 8 * SUMS, SQUARES)
     place, pieces = int(motion[INDEX] - drawn[FIRST]) + 1, 0
-    while place < AHEAD and gone + c.grid < length:
+    while place < AHEAD and motion[INDEX] < last:
         end = end_of(c, o, motion, c.grid)
         if not _highest(o, motion, end) <= best:
             break
         _gather(sums, motion)
-        motion = under(c, o, end, c.noise * drawn[DRAWS + place])
+        motion = under(c, o, end, place)
+        if c.diffusion > 0.0:
+            drawn[JUMPS] += _jump_work(c, o, end, motion)
         gone += c.grid
         place += 1
         pieces += 1
@@ -376,25 +400,28 @@ def _book(room, out, stuck, ball):
     out[entry.X1_SQUARE] += x
     out[entry.V1_SQUARE] += v
     out[entry.V2_SQUARE] += v if stuck else ball
-    out[entry.BASE_WORK] += work
+    jumps = doubles_at(room, JUMPS + 1)
+    out[entry.BASE_WORK] += work + jumps[JUMPS]
+    jumps[JUMPS] = 0.0
     out[entry.DAMPER_LOSS] += loss
 
 
 @add_segment.register(ScatterConstants)
 @fused_njit
-def _add_segment(c, out, mode, begins, x1, v1, v2, phase, length):
+def _add_segment(c, out, mode, begins, x1, v1, x2, v2, phase, length):
     stuck = mode != 0.0
     o = c.stuck if stuck else c.free
     motion = flight(c, o, x1, v1, phase, begins)
     gone, pieces = 0.0, 0
+    last = piece_at(c, begins + length) if c.drawn else 0.0
     out[entry.DURATION] += length
     while True:
         if motion[LEFT] == c.grid:
-            motion, gone, more = _over_pieces(c, o, motion, gone, length, out[entry.MAX_ABS_X1])
+            motion, gone, more = _over_pieces(c, o, motion, gone, last, out[entry.MAX_ABS_X1])
             pieces += more
-        lasts = min(length - gone, motion[LEFT])
+        lasts = motion[LEFT] if motion[INDEX] < last else max(length - gone, 0.0)
         end = end_of(c, o, motion, lasts)
-        if lasts == motion[LEFT] == c.grid:
+        if motion[INDEX] < last and lasts == c.grid:
             _gather(doubles_at(c.room + 8 * SUMS, SQUARES), motion)
             pieces += 1
         else:
@@ -409,9 +436,11 @@ def _add_segment(c, out, mode, begins, x1, v1, v2, phase, length):
             if when >= 0.0:
                 out[entry.MAX_ABS_X1] = best
                 out[entry.T_MAX_ABS_X1] = begins + gone + when
-        if length - gone <= lasts:
+        if not motion[INDEX] < last:
             break
         gone += lasts
         motion = redraw(c, o, end)
+        if c.diffusion > 0.0:
+            out[entry.BASE_WORK] += _jump_work(c, o, end, motion)
     if pieces:
         _book(c.room, out, int(stuck), v2 * v2 * c.grid * pieces)

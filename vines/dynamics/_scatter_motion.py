@@ -1,7 +1,8 @@
 """Motion with scatter: two harmonics and a force that is held for a while, drawn again, and held.
 
-A motion is (u, G1, G2, held, left, index): x = held + Re u, and draw `index` holds for a time `left` yet. What a single
-motion does, `turn`, and what is certain of it, is as without scatter; a flight goes over draws, piece by piece.
+A motion is (u, G1, G2, held, left, index): x = held + Re u, and draw `index` holds for a time `left` yet. Where the
+next one is drawn the phase of the forcing may turn, too. What a single motion does, `turn`, and what is certain of it,
+is as without scatter; a flight goes over draws, piece by piece.
 """
 
 from __future__ import annotations
@@ -11,6 +12,8 @@ import math
 from vines.dynamics._advance import advance, begin, law_of
 from vines.dynamics._contact import NO_CONTACT, contact_within, next_contact
 from vines.dynamics._flight import (
+    advance_phase,
+    ball_flown,
     decay,
     derivatives,
     fifth,
@@ -18,37 +21,73 @@ from vines.dynamics._flight import (
     flown,
     forced_fifth,
     free_ball,
+    launched,
     modulus,
+    phase_after,
     pull,
+    relative,
     sixth,
     slow_growth,
     terms,
     turn,
 )
 from vines.dynamics._impact_law import impact_law_kernel
-from vines.dynamics._random import fill_normals, normal
-from vines.dynamics._scatter_constants import AHEAD, DRAWS, FIRST, Piece, ScatterConstants, ScatterOscillator
+from vines.dynamics._random import normal
+from vines.dynamics._scatter_constants import (
+    AHEAD,
+    COSINES,
+    DRAWS,
+    FIRST,
+    SINES,
+    TURNS,
+    Piece,
+    ScatterConstants,
+    ScatterOscillator,
+)
+from vines.dynamics._scatter_draws import fill
 from vines.dynamics._sincos import sincos
 from vines.dynamics._sticking import UNRESOLVED, holds_for, next_release, release_within
 from vines.dynamics._window import write_end
 from vines.kernels import doubles_at, fused_njit, linked_njit, loop_njit
 
-__all__ = ["HELD", "INDEX", "LEFT", "end_of", "redraw", "sagging", "under"]
+__all__ = ["HELD", "INDEX", "LEFT", "end_of", "piece_at", "place_of", "redraw", "sagging", "under"]
 
 HELD, LEFT, INDEX = 6, 7, 8
+
+EARLY = 1e-7
+"""Share of a piece that a time may lie before its begin, by rounding, and count as in it: windows end at such times."""
 
 APART = 1.0 - 1e-12
 """Where |w| is smaller the gap to a wall can be told."""
 
 
 @fused_njit
-def _draw(c, index):
-    drawn = doubles_at(c.room, DRAWS + AHEAD)
+def place_of(c, index):
+    """Return the place of a draw in the room, where it is by then."""
+    drawn = doubles_at(c.room, DRAWS)
     place = index - drawn[FIRST]
     if not 0.0 <= place < AHEAD:
-        drawn[FIRST], place = index, 0.0
-        fill_normals(c.key, c.stream, 2 * int(index) + 1, 2, doubles_at(c.room + 8 * DRAWS, AHEAD))
-    return c.noise * drawn[DRAWS + int(place)]
+        fill(c, index)
+        place = index - drawn[FIRST]
+    return int(place)
+
+
+@fused_njit
+def piece_at(c, t):
+    """Return the number of the draw that holds at a time."""
+    return max(math.floor((t - c.origin) / c.grid + EARLY), 0.0)
+
+
+@phase_after.register(ScatterConstants)
+@linked_njit
+def _phase_after(c, phase, angle, before, after):
+    if c.diffusion > 0.0:
+        turns = doubles_at(c.room + 8 * TURNS, AHEAD)
+        index, last = piece_at(c, before), piece_at(c, after)
+        while index < last:
+            index += 1.0
+            angle += turns[place_of(c, index)]
+    return advance_phase(phase, angle)
 
 
 @flight.register(ScatterConstants)
@@ -61,11 +100,10 @@ def _flight(c, o, x, v, phase, t):
     qr = o.second.gr * along - o.second.gi * twice
     qi = o.second.gr * twice + o.second.gi * along
     held, left, index = 0.0, math.inf, 0.0
-    if c.noise > 0.0:
-        since = t - c.origin
-        index = max(math.floor(since / c.grid), 0.0)
-        left = (index + 1.0) * c.grid - since
-        held = _draw(c, index)
+    if c.drawn:
+        index = piece_at(c, t)
+        left = (index + 1.0) * c.grid - (t - c.origin)
+        held = doubles_at(c.room + 8 * DRAWS, AHEAD)[place_of(c, index)]
     ur = x - held
     return ur, (pr + qr - o.first.half * ur - v) * o.first.inverse, pr, pi, qr, qi, held, left, index
 
@@ -119,21 +157,30 @@ def end_of(c, o, motion, lasts):
 
 
 @fused_njit
-def under(c, o, motion, drawn):
-    """Return the motion under the next held force: position and velocity go on."""
+def under(c, o, motion, place):
+    """Return the motion under the next draw, which is at a place of the room: position and velocity go on."""
     ur, ui, pr, pi, qr, qi, held, _, index = motion
-    ur += held - drawn
-    ui -= o.first.half * o.first.inverse * (held - drawn)
-    return ur, ui, pr, pi, qr, qi, drawn, c.grid, index + 1.0
+    drawn = doubles_at(c.room, SINES + AHEAD)
+    force = drawn[DRAWS + place]
+    ur += held - force
+    ui -= o.first.half * o.first.inverse * (held - force)
+    if c.diffusion > 0.0:
+        cosine, sine = drawn[COSINES + place], drawn[SINES + place]
+        twice, along = 2.0 * sine * cosine, 1.0 - 2.0 * sine * sine
+        before = pr + qr
+        pr, pi = cosine * pr - sine * pi, cosine * pi + sine * pr
+        qr, qi = along * qr - twice * qi, along * qi + twice * qr
+        ui += (pr + qr - before) * o.first.inverse
+    return ur, ui, pr, pi, qr, qi, force, c.grid, index + 1.0
 
 
 @fused_njit
 def redraw(c, o, motion):
     """Return the motion after the next draw."""
-    return under(c, o, motion, _draw(c, motion[INDEX] + 1.0))
+    return under(c, o, motion, place_of(c, motion[INDEX] + 1.0))
 
 
-for _name in (advance, begin, free_ball, pull, write_end):
+for _name in (advance, ball_flown, begin, free_ball, launched, pull, relative, write_end):
     _name.register(ScatterConstants)(_name.first)
 
 

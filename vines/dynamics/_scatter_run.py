@@ -76,8 +76,8 @@ def scatter_block(
     values, spread, total = zero_matrix(BATCHES, PART), zero_vector(3), zero_vector(entry.TOTALS)
     for who in range(parameters.shape[0]):
         s, length = starts[who], lengths[who]
-        c = scatter_constants(parameters[who], numbers, base + who, -first[who], address)
-        if what & lanes.WITH_MEASURES and c.noise > 0.0 and not _is_like_the_last(parameters, who):
+        c = scatter_constants(parameters[who], numbers[who], base + who, -first[who], address)
+        if what & lanes.WITH_MEASURES and c.drawn and not _is_like_the_last(parameters, who):
             fill_forms(c)
         set_state(state, s[0], s[1], s[2], s[3], s[4], -first[who])
         code, end = col.COMPLETE, 0.0

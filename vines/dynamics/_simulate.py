@@ -9,10 +9,10 @@ import numpy as np
 import numpy.typing as npt
 
 from vines.bounds import MOST_EVENTS, check_periods
-from vines.domains import Number, Parameters, Whole, stated
+from vines.domains import Choice, Number, Parameters, Whole, stated
 from vines.dynamics import _advance as col
 from vines.dynamics._advance import begin
-from vines.dynamics._room import constants, room_of, start_of
+from vines.dynamics._room import IN_TURN, TIES, TOGETHER, constants, room_of, start_of
 from vines.dynamics._slices import slices
 from vines.dynamics._trajectory import Trajectory
 from vines.dynamics._window import run_window
@@ -55,6 +55,7 @@ def record(
     phi=Number(least=-1e12, most=1e12),
     periods=Number(above=0),
     max_impacts_per_period=Whole(most=MOST_EVENTS),
+    ties=Choice(TIES),
 )
 def simulate(
     p: Any,
@@ -63,6 +64,7 @@ def simulate(
     phi: float = 0.0,
     periods: float = 500,
     max_impacts_per_period: int = EVENTS_PER_PERIOD,
+    ties: str = TOGETHER,
     **start: Any,
 ) -> Trajectory:
     """Run a system exactly, event by event, and keep every event.
@@ -79,6 +81,9 @@ def simulate(
         Forcing periods to run, > 0.
     max_impacts_per_period : int
         Cap on events in one forcing period; when it is passed the run ends there with status ``impact_cap``.
+    ties : str
+        How several balls are struck that arrive at one instant: ``together`` by one law of all, or ``in_turn``, one
+        after the other in the order of their numbers, as `vines.settle` has it (docs/dynamics.md, "Ties").
     **start : float
         Start state by the names of the system: x1, v1, x2, v2 of oscillator and ball (0, 0, 0, .1 where not given),
         with a gap of at most 1; w, w_dot of the impact pair. A start on a wall with the ball approaching begins
@@ -109,6 +114,8 @@ def simulate(
     layout = room.layout(p)
     state = np.zeros(layout.state)
     room.begin(c, state, *at, float(t))
+    if ties == IN_TURN:
+        room.strike_in_turn(state)
     stop = t + periods * p.period
     stops = slices(t, stop, p.period)
     rows, status = record(c, state, stops, max_impacts_per_period, int(4 * periods) + layout.rows, layout.width)

@@ -10,7 +10,7 @@ from vines.dynamics._flight import derivatives, fifth, forced_fifth, modulus, pu
 from vines.dynamics._steps import leaving_step, only_root, safe_step, taylor_root
 from vines.kernels import by_type, fused_njit, loop_njit
 
-__all__ = ["UNRESOLVED", "holds_for", "merges", "next_release", "release_within"]
+__all__ = ["UNRESOLVED", "ends_chatter", "holds_for", "merges", "next_release", "release_within"]
 
 OMITTED = 1e-16
 """Largest change of the common velocity that a merge may leave out."""
@@ -27,13 +27,20 @@ def merges(c, o, r, correction, side, speed, motion, x2):
     or if its flight is too low for double precision; with no speed at all the sign of the push decides.
     """
     _, _, a, j, k = derivatives(o, c.Omega, *motion)
-    push = side * pull(c, a)
-    jerk = side * j
+    height = UNRESOLVED * (terms(o, *motion) + abs(x2))
+    return ends_chatter(r, correction, speed, side * pull(c, a), side * j, abs(k), height, holds_for(c, *motion))
+
+
+@fused_njit
+def ends_chatter(r, correction, speed, push, jerk, snap, height, holds):
+    """Say the same from how the wall is pushed against the ball: relative acceleration and its first two derivatives.
+
+    `height` is what doubles resolve of a flight's height, `holds` how long the push does not jump.
+    """
     if speed == 0.0:
         return push > 0.0 or (push == 0.0 and jerk >= 0.0)
     if push <= 0.0:
         return False
-    height = UNRESOLVED * (terms(o, *motion) + abs(x2))
     cube = speed * speed * speed
     # The hop comes back after speed/push or, where the push grows, after sqrt(2 speed/jerk) at the latest.
     unresolved = speed * speed < height * push or (jerk > 0.0 and 2.0 * cube < height * height * jerk)
@@ -42,7 +49,7 @@ def merges(c, o, r, correction, side, speed, motion, x2):
     if unresolved and (jerk >= 0.0 or r >= 1.0):
         return True
     rest = 2.0 * speed / (push * (1.0 - r))
-    return rest <= holds_for(c, *motion) and jerk * rest > -0.25 * push and abs(k) * rest * rest < 0.25 * push
+    return rest <= holds and jerk * rest > -0.25 * push and snap * rest * rest < 0.25 * push
 
 
 @by_type(Constants)

@@ -26,6 +26,7 @@ from vines.kernels import by_type, fused_njit, identity, linked_njit, njit, zero
 
 __all__ = [
     "DEAD",
+    "carry_basis",
     "directions",
     "flow_basis",
     "jump_basis",
@@ -69,6 +70,13 @@ def flow_basis(c, mode, tau, Y):
             Y[3, j] = Y[1, j]
         else:
             Y[2, j] += tau * Y[3, j]
+
+
+@by_type(Constants)
+@fused_njit
+def carry_basis(c, row, tau, Y):
+    """Carry the disturbances over a time tau that begins just after a row, before the next one."""
+    flow_basis(c, row[MODE], tau, Y)
 
 
 @by_type(Constants)
@@ -136,7 +144,7 @@ def tangent_product(c, rows, first, last):
     """Return the tangent map, square, from just after row `first` to just after row `last`."""
     Y = identity(len(directions(c)))
     for i in range(first + 1, last + 1):
-        flow_basis(c, rows[i - 1, MODE], rows[i, TAU], Y)
+        carry_basis(c, rows[i - 1], rows[i, TAU], Y)
         jump_basis(c, rows[i], Y)
     return Y
 
@@ -180,7 +188,7 @@ def lyapunov_blocks(c, rows, n, start, stop, blocks, Y):
     width = (stop - start) / blocks
     block = -1
     for i in range(1, n):
-        flow_basis(c, rows[i - 1, MODE], rows[i, TAU], Y)
+        carry_basis(c, rows[i - 1], rows[i, TAU], Y)
         jump_basis(c, rows[i], Y)
         orthonormalise(every, Y, gains)
         t = rows[i, TIME]

@@ -21,13 +21,14 @@ from vines.dynamics._advance import (
     X2,
 )
 from vines.dynamics._constants import Constants
-from vines.dynamics._flight import advance_phase, derivatives, flight, flown, free_ball, phasors, turn
+from vines.dynamics._flight import ball_flown, derivatives, flown, launched, phase_after, phasors, turn
 from vines.dynamics._integrals import energies_between, peak_between, segment_integrals
 from vines.kernels import by_type, entry_njit, linked_njit, njit, zero_matrix, zero_vector
 
 __all__ = [
     "accumulate",
     "add_segment",
+    "add_window",
     "ball_mass",
     "base_at",
     "count_event",
@@ -56,21 +57,23 @@ __all__ = [
     MAX_ABS_X1,
     T_MAX_ABS_X1,
     ENERGY_CHANGE,
-) = range(15)
-TOTALS = 15
+    TRAVEL_LOSS,
+) = range(16)
+TOTALS = 16
 
 
+@by_type(Constants)
 @linked_njit
 def segment_state(c, row, tau):
     """Return (x1, v1, x2, v2, phase) at time tau after a row, before the next one."""
     mode = row[MODE]
     o = c.stuck if mode != 0.0 else c.free
-    motion = flown(c, o, flight(c, o, row[X1], row[A_V1], row[PHASE], row[TIME]), tau)
-    x1, v1, _, _, _ = derivatives(o, c.Omega, *motion)
-    phase = advance_phase(row[PHASE], c.Omega * tau)
+    motion = launched(c, o, row[X1], row[A_V1], row[A_V2], row[PHASE], row[TIME])
+    x1, v1, _, _, _ = derivatives(o, c.Omega, *flown(c, o, motion, tau))
+    phase = phase_after(c, row[PHASE], c.Omega * tau, row[TIME], row[TIME] + tau)
     if mode != 0.0:
         return x1, v1, x1 - mode, v1, phase
-    way, v2 = free_ball(c, row[A_V2], tau)
+    way, v2 = ball_flown(c, motion, row[A_V2], tau)
     return x1, v1, row[X2] + way, v2, phase
 
 
@@ -132,7 +135,7 @@ def count_event(c, out, row):
 
 @by_type(Constants)
 @linked_njit
-def add_segment(c, out, mode, begins, x1, v1, v2, phase, length):
+def add_segment(c, out, mode, begins, x1, v1, x2, v2, phase, length):
     """Add the motion of a segment, given by the state at its start, to the totals."""
     o = c.stuck if mode != 0.0 else c.free
     start = phasors(o, c.Omega, x1, v1, phase)
@@ -158,6 +161,13 @@ def window_totals(c, rows, n, start, stop):
     Events exactly at `start` count only if they belong to the run's first instant.
     """
     out = zero_vector(TOTALS)
+    add_window(c, out, rows, n, start, stop)
+    return out
+
+
+@linked_njit
+def add_window(c, out, rows, n, start, stop):
+    """Add a window to totals that are all 0 as yet; see `window_totals`."""
     opened = False
     energy = 0.0
     for i in range(n):
@@ -191,14 +201,13 @@ def window_totals(c, rows, n, start, stop):
                 energy = stored_energy(c, x1, v1, x2, v2, phase)
             out[MAX_ABS_X1] = abs(x1)
             out[T_MAX_ABS_X1] = begins + low
-        add_segment(c, out, rows[i, MODE], begins + low, x1, v1, v2, phase, length - low)
+        add_segment(c, out, rows[i, MODE], begins + low, x1, v1, x2, v2, phase, length - low)
         if ends >= stop or i == n - 2:
             x1, v1, x2, v2, phase = segment_state(c, rows[i], length)
             if i == n - 2 and ends <= stop:
                 last = rows[n - 1]
                 x1, v1, x2, v2, phase = last[X1], last[A_V1], last[X2], last[A_V2], last[PHASE]
             out[ENERGY_CHANGE] = stored_energy(c, x1, v1, x2, v2, phase) - energy
-    return out
 
 
 @entry_njit

@@ -25,7 +25,8 @@ _ENERGIES = VI_NES.energies
 EVENT = np.dtype(
     [("kind", "i1"), ("side", "i1")] + [(name, "f8") for name in ("t", "phase", *STATE_NAMES, "v1_after", "v2_after")]
 )
-"""Kind 0 start (also a fresh start inside a very long flight), 1 impact, 2 stick, 3 release, 4 end."""
+"""Kind 0 start (also a fresh start inside a very long flight), 1 impact, 2 stick, 3 release, 4 end; with
+friction also 5 stop in mid-cavity, 6 slide: the ball turns, or slides again."""
 
 IMPACT = np.dtype(
     [("t", "f8"), ("side", "i1")]

@@ -22,7 +22,13 @@ from ._diagram_panel import DiagramPanel as DiagramPanel
 from ._energy import FOUND as FOUND
 from ._energy import EnergyCurve as EnergyCurve
 from ._energy import EnergyPanel as EnergyPanel
+from ._exits import HeldCurve as HeldCurve
+from ._exits import HeldRuns as HeldRuns
+from ._exits import HoldingPanel as HoldingPanel
+from ._exits import SharesPanel as SharesPanel
+from ._exits import SurvivalPanel as SurvivalPanel
 from ._finish import finish as finish
+from ._front import FrontPanel as FrontPanel
 from ._look import Look as Look
 from ._look import wearing as wearing
 from ._measures import MeasureCurve as MeasureCurve

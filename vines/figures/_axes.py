@@ -26,6 +26,10 @@ SHOWN = {
     "residual": r"residual of the fit  [$\mu$m]",
     "width": "width of the range",
     "factor": "least worst measure",
+    "T_exit": "forcing periods",
+    "held": "share of runs that hold",
+    "mean_exit": r"mean time to an exit  $[T]$",
+    "held_share": "share",
     "x1": "$x_1$ at the start",
     "v1": r"$\dot x_1$ at the start",
     "x2": "$x_2$ at the start",
@@ -46,7 +50,7 @@ def called(name: str) -> str:
     """
     if name in NAMES:
         return f"{NAMES[name]}  ${SYMBOLS[name]}$"
-    return {**PANELS, **QUANTITIES}.get(name, name)
+    return {**SHOWN, **PANELS, **QUANTITIES}.get(name, name)
 
 
 def name_axis(ax: Axes, along: Literal["x", "y"], name: str, text: str | None = None, *, written: bool = True) -> None:

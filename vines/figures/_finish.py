@@ -12,6 +12,7 @@ from vines.errors import DeclarationError, nearest
 from vines.figures._axes import shown_by
 from vines.figures._fit import LETTER, fit_titles
 from vines.figures._look import worn
+from vines.figures._place import place_in_panels
 from vines.figures._style import look, write_letter
 
 if TYPE_CHECKING:
@@ -66,6 +67,7 @@ def finish(figure: Figure) -> Figure:
         panels = [ax.bbox for ax in figure.axes if shown_by(ax)]
         if own.height is not None and min(min(box.width, box.height) for box in panels) < _LEAST * figure.dpi:
             raise DeclarationError(_TOO_SMALL)
+        place_in_panels(figure)
     return figure
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+import math
 import re
 from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any
@@ -86,20 +87,33 @@ def fit_titles(figure: Figure) -> bool:
     if engine is None:
         return False
     engine.execute(figure)  # places of the panels
+    taller = _break_titles(figure)
+    broke = any([_break_label(ax) for ax in figure.axes])  # noqa: C419 - each of them
+    _heighten(figure, taller)
+    if taller or broke:
+        engine.execute(figure)  # panels are narrower beside a label of two lines: titles and numbers have less room
+    if broke and (taller := _break_titles(figure)):
+        _heighten(figure, taller)
+        engine.execute(figure)
+    thinned = [_thin(ax, figure) for ax in figure.axes]
+    return any(thinned)
+
+
+def _break_titles(figure: Figure) -> float:
+    """Break titles that are longer than there is room, and return the height of the lines that came to them, px."""
     before = after = 0.0
     for title, room in _titles(figure):
         old = _height(title)
         title.set_text(broken(title.get_text(), lambda line, title=title, room=room: _width(title, line) <= room))
         if _height(title) > old:
             before, after = before + old, after + _height(title)
-    broke = [_break_label(ax) for ax in figure.axes]
-    if after > before:
-        width, height = figure.get_size_inches()
-        figure.set_size_inches(width, height + (after - before) / figure.dpi)
-    if after > before or any(broke):
-        engine.execute(figure)  # panels are narrower beside a label of two lines, so that numbers stand closer
-    thinned = [_thin(ax, figure) for ax in figure.axes]
-    return any(thinned)
+    return after - before
+
+
+def _heighten(figure: Figure, taller: float) -> None:
+    """Give a figure so many px of height more."""
+    width, height = figure.get_size_inches()
+    figure.set_size_inches(width, height + taller / figure.dpi)
 
 
 def place_legend(
@@ -165,8 +179,9 @@ def _titles(figure: Figure) -> list[tuple[Text, float]]:
         left: Any = ax._left_title  # pyright: ignore[reportAttributeAccessIssue] # no other way to it
         if left.get_text():
             found.append((left, _room(ax, figure) - edge))
-        if ax.title.get_text():
-            found.append((ax.title, ax.bbox.width))
+        if ax.title.get_text():  # in the middle, so that a letter on the left counts on both sides
+            letter = _extent(left).width + edge if left.get_text() else 0.0
+            found.append((ax.title, ax.bbox.width - 2 * letter))
     return found
 
 
@@ -191,21 +206,51 @@ def _long(label: Text, line: str) -> float:
 
 
 def _thin(ax: Axes, figure: Figure) -> bool:
-    """Take numbers from a linear axis along x until none touches the next; say whether any was taken."""
+    """Take numbers from an axis along x until none touches the next; say whether any was taken."""
     from matplotlib.ticker import MaxNLocator
 
+    if ax.get_xscale() == "log":
+        return _thin_log(ax, figure)
     locator: Any = ax.xaxis.get_major_locator()
     if ax.get_xscale() != "linear" or not isinstance(locator, MaxNLocator) or not ax.xaxis.get_visible():
         return False
     for most in range(7, 1, -1):
-        low, high = sorted(ax.get_xlim())
-        shown = [each for each in ax.get_xticklabels() if low <= each.get_position()[0] <= high and each.get_text()]
-        gap = 0.5 * max((float(each.get_fontsize()) for each in shown), default=0.0) * figure.dpi / 72
-        boxes = [_extent(each) for each in shown]
-        if all(one.x1 + gap <= other.x0 for one, other in itertools.pairwise(boxes)):
+        if _apart(ax.get_xticklabels(), ax, figure):
             return most < 7
         locator.set_params(nbins=most, min_n_ticks=2 if most > 2 else 1)  # else a finer step for a second one
     return True
+
+
+def _thin_log(ax: Axes, figure: Figure) -> bool:
+    """Take numbers from a logarithmic axis along x until none touches the next; say whether any was taken.
+
+    Numbers between powers of ten are left at twice and five times those, then at none; of fixed ones every other.
+    """
+    from matplotlib.ticker import FixedLocator, FuncFormatter
+
+    whole: Any = ax.xaxis.get_minor_formatter()
+
+    def written(value: float, place: int | None = None) -> str:
+        leading = round(value / 10 ** math.floor(math.log10(value)))
+        return whole(value, place) if leading in kept else ""
+
+    for kept in ((2, 5), ()):
+        if _apart(ax.get_xticklabels(which="both"), ax, figure):
+            return kept != (2, 5)
+        ax.xaxis.set_minor_formatter(FuncFormatter(written))
+        whole.set_locs(ax.xaxis.get_minorticklocs())
+    while isinstance(ax.xaxis.get_major_locator(), FixedLocator) and not _apart(ax.get_xticklabels(), ax, figure):
+        ax.xaxis.set_major_locator(FixedLocator(list(ax.xaxis.get_majorticklocs())[::2]))
+    return True
+
+
+def _apart(labels: Sequence[Text], ax: Axes, figure: Figure) -> bool:
+    """Say whether numbers along x that are shown have half a letter between them."""
+    low, high = sorted(ax.get_xlim())
+    shown = [each for each in labels if low <= each.get_position()[0] <= high and each.get_text()]
+    gap = 0.5 * max((float(each.get_fontsize()) for each in shown), default=0.0) * figure.dpi / 72
+    boxes = sorted((_extent(each) for each in shown), key=lambda box: box.x0)
+    return all(one.x1 + gap <= other.x0 for one, other in itertools.pairwise(boxes))
 
 
 def _room(ax: Axes, figure: Figure) -> float:

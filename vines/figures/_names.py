@@ -22,6 +22,8 @@ QUANTITIES = {
     "reduction": r"reduction of $\max|x_1|$",
     "rms_x1": r"root mean square of $x_1$",
     "impact_power": "power lost in impacts",
+    "electric_power": "power of the coil",
+    "electric_share": "share that goes to the coil",
     "impacts_per_period": "impacts in a forcing period",
     "lyapunov": "largest Lyapunov exponent",
     "impact_share": "share lost in impacts",
@@ -45,8 +47,8 @@ _PARAMETERS = [
     *(each for name in system_names() for each in read_system(name, most_balls(name)).parameters),
     *VI_NES.parameters,  # a name that several systems have is called as there
 ]
-SYMBOLS = {each.name: each.symbol for each in _PARAMETERS} | {"V": "V"}
-NAMES = {each.name: each.label for each in _PARAMETERS} | {"V": "velocity at the start"}
+SYMBOLS = {each.name: each.symbol for each in _PARAMETERS} | {"V": "V", "level": r"\ell"}
+NAMES = {each.name: each.label for each in _PARAMETERS} | {"V": "velocity at the start", "level": "factor on the noise"}
 
 ERRORS = {
     "max_abs_x1": r"error of $\max|x_1|$",

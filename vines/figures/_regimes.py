@@ -31,6 +31,8 @@ LEAST = 0.004
 
 ROOM = 0.01
 """Least distance of a name from the edge of its region, in parts of the map's longer side: else names run together."""
+_DEEP = 2.0
+"""Points of a map that it is from the edge of its region at least, whatever their number."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,8 +74,8 @@ class RegimeMap:
 
 
 _MEASURES = {
-    "kinetic_ratio": ("kinetic energy of ball and mass", r"$K_2/K_1$"),
-    "kinetic_ratios": ("kinetic energy of balls and mass", r"$\sum K_2/K_1$"),
+    "kinetic_ratio": ("kinetic energy, ball over mass", r"$K_2/K_1$"),
+    "kinetic_ratios": ("kinetic energy, balls over mass", r"$\sum K_2/K_1$"),
     "impact_power": ("power lost in impacts", "power"),
     "harvested_power": ("power harvested at both ends", "power"),
 }
@@ -175,7 +177,7 @@ def _write_names(ax: Axes, data: RegimeMap) -> None:
         # The frame counts as an edge, so that no name is cut by it.
         depth = np.asarray(distance_transform_edt(np.pad(inside, 1)))[1:-1, 1:-1]
         row, column = np.unravel_index(int(np.argmax(depth)), depth.shape)
-        if depth[row, column] < ROOM * max(depth.shape):
+        if depth[row, column] < max(_DEEP, ROOM * max(depth.shape)):
             continue
         ax.text(
             data.x[column],

@@ -123,10 +123,12 @@ def _draw(axes: Sequence[Axes], panel: EnergyPanel | VelocityPanel, *, first: bo
 
 
 def _draw_velocities(ax: Axes, panel: VelocityPanel) -> None:
+    few = len(np.unique(panel.x)) < _FEW
+    dot = {**_DOT, **(_DOT_OF_FEW if few else {})}
     for ball in () if panel.ball is None else np.unique(panel.ball):
         for side, marker in ((1, "<"), (-1, ">")):
             mine = (panel.side == side) & (panel.ball == ball)
-            look = {**_DOT, "marker": marker, "color": BALLS[(int(ball) - 1) % len(BALLS)]}
+            look = {**dot, "marker": marker, "color": BALLS[(int(ball) - 1) % len(BALLS)]}
             ax.plot(panel.x[mine], panel.w_dot[mine], rasterized=True, zorder=1, **look)
     for light in (True, False) if panel.ball is None else ():
         for side, name in ((1, "L"), (-1, "R")):
@@ -137,13 +139,16 @@ def _draw_velocities(ax: Axes, panel: VelocityPanel) -> None:
                 color=COLOURS[f"{name} light" if light else name],
                 rasterized=True,
                 zorder=1 if light else 2,
-                **_DOT,
+                **dot,
             )
     frame(ax, panel.x, panel.window)
     ax.axhline(0.0, color=COLOURS["mark"], linewidth=0.5, zorder=0)
 
 
 _DOT: Any = {"linestyle": "none", "marker": ".", "markersize": 1.6, "markeredgewidth": 0, "alpha": 0.55}
+_DOT_OF_FEW: Any = {"markersize": 3.2, "alpha": 0.9}
+_FEW = 120
+"""Points along x below which dots are large enough to be seen singly; more of them make lines and clouds."""
 
 
 def _legend(panels: Sequence[EnergyPanel | VelocityPanel]) -> list[tuple[str, tuple[Any, ...]]]:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
+from vines.figures._axes import name_axis
 from vines.figures._colours import COLOURS
 from vines.figures._regimes import REGIME_CLASSES
 from vines.figures._style import font, look, new_figure
@@ -124,8 +125,8 @@ def rig_next_figure(
                 )  # fmt: skip
         ax.set_xlim(*window[0])
         ax.set_ylim(*window[1])
-        ax.set_xlabel("Frequency ratio  $\\Omega$")
-        ax.set_ylabel("Forcing amplitude  $A$")
+        name_axis(ax, "x", "Omega")
+        name_axis(ax, "y", "A")
         top = ax.secondary_xaxis("top", functions=_scaled(units[0]))
         top.set_xlabel("$f$ [Hz]")
         right = ax.secondary_yaxis("right", functions=_scaled(units[1]))

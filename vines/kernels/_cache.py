@@ -45,8 +45,8 @@ DAYS = 30.0
 """A kernel of other sources that was not asked for so long is deleted when a new one is kept."""
 
 
-_WAY = 2
-"""Raised when the same sources come to other machine code: 2, subroutines of numba apart by rounding."""
+_WAY = 3
+"""Raised when the same sources come to other machine code: 3, copies of kernels from before their machine code."""
 
 _DIGEST: dict[FunctionType, str] = {}
 """The digest of a kernel whose cache is being made; numba's interface has no room for it."""
@@ -85,7 +85,9 @@ class _Impl(CompileResultCacheImpl):
 
     def reduce(self, cres: Any) -> Any:
         bodies = went_into(self._function(), cres.signature.args)
-        return symbols_in(cres.library), [(*body, body_digest(body)) for body in sorted(bodies)], super().reduce(cres)
+        # The types of all variables as text nobody reads.
+        rest = super().reduce(cres._replace(type_annotation=""))
+        return symbols_in(cres.library), [(*body, body_digest(body)) for body in sorted(bodies)], rest
 
     def rebuild(self, target_context: Any, payload: Any) -> Any:
         symbols, bodies, rest = payload
@@ -197,6 +199,9 @@ class LazyCache:
                 announce(CACHE)
                 with gathered(self._function, sig), _few_collections():
                     found = compile_it()
+                # Of the kernels it holds copies of, too, as numba does for what it loads.
+                for environment in found._find_referenced_environments():
+                    found.library.codegen.set_env(environment.env_name, environment)
                 # That it can't be written does no harm.
                 with contextlib.suppress(OSError):
                     self._keep(sig, found)

@@ -7,19 +7,28 @@ from collections.abc import Callable
 from typing import Any, TypeVar
 
 from numba import types
+from numba.core.compiler import Compiler, CompilerBase
 from numba.core.config import _OptLevel
 from numba.core.registry import CPUDispatcher
 
 from vines.kernels._bodies import inherit
 from vines.kernels._cache import LazyCache
+from vines.kernels._closures import look_for_closures_where_they_are
+from vines.kernels._copied import CopiedCompiler, read_copied_libraries
 from vines.kernels._declarations import leave_declarations
+from vines.kernels._elements import address_elements_at_once
+from vines.kernels._flags import read_flags_at_once
+from vines.kernels._lifetimes import find_lifetimes_once
 from vines.kernels._linked import Linked
 from vines.kernels._operators import remember_operators
+from vines.kernels._ranges import count_rounds_at_once
 from vines.kernels._references import count_only_what_counts
+from vines.kernels._registries import import_parts_once
 from vines.kernels._settings import numba
 from vines.kernels._subroutines import keep_subroutines_apart
 from vines.kernels._timers import time_no_locks
 from vines.kernels._variables import find_variables_quickly
+from vines.kernels._whole import pass_tuples_whole
 
 __all__ = ["cold_njit", "entry_njit", "fused_njit", "linked_njit", "loop_njit", "njit"]
 
@@ -31,6 +40,14 @@ time_no_locks()
 find_variables_quickly()
 leave_declarations()
 keep_subroutines_apart()
+read_copied_libraries()
+find_lifetimes_once()
+import_parts_once()
+address_elements_at_once()
+pass_tuples_whole()
+count_rounds_at_once()
+look_for_closures_where_they_are()
+read_flags_at_once()
 
 _FUSED = {"contract", "nsz"}
 _FULL = _OptLevel(3)
@@ -39,12 +56,12 @@ _LITTLE = _OptLevel(1)
 
 def njit(function: _Function) -> _Function:
     """Compile a small function: IEEE division, GIL released; a kernel that calls it has a copy of it."""
-    return _compiled(function, _LITTLE)  # pyright: ignore[reportReturnType]
+    return _copied(function)
 
 
 def fused_njit(function: _Function) -> _Function:
     """Compile the inside of a hot loop: a product with a sum may be rounded once, and it is always inlined."""
-    return _compiled(function, _LITTLE, fastmath=_FUSED, forceinline=True)  # pyright: ignore[reportReturnType]
+    return _copied(function, fastmath=_FUSED, forceinline=True)
 
 
 def loop_njit(function: _Function) -> _Function:
@@ -96,16 +113,23 @@ class _Dispatcher(CPUDispatcher):
         return self.from_python(*arguments)
 
 
-def _compiled(function: Any, level: _OptLevel, **options: Any) -> Any:
+def _compiled(function: Any, level: _OptLevel, compiler: type[CompilerBase] = Compiler, **options: Any) -> Any:
     """Return a dispatcher for a function that is called by kernels."""
-    return _dispatcher(_Dispatcher, function, level, no_cpython_wrapper=True, **options)
+    return _dispatcher(_Dispatcher, function, level, compiler, no_cpython_wrapper=True, **options)
 
 
-def _dispatcher(kind: type, function: Any, level: _OptLevel, **options: Any) -> Any:
+def _copied(function: Any, **options: Any) -> Any:
+    """Return a dispatcher for a function of which kernels hold copies."""
+    return _compiled(function, _LITTLE, CopiedCompiler, **options)
+
+
+def _dispatcher(
+    kind: type, function: Any, level: _OptLevel, compiler: type[CompilerBase] = Compiler, **options: Any
+) -> Any:
     """Return a dispatcher with a cache of ours and a level of optimisation of its own."""
     settings = {"nopython": True, "boundscheck": None, "error_model": "numpy", "nogil": True, "no_cfunc_wrapper": True}
-    dispatcher = kind(function, locals={}, targetoptions={**settings, **options})
-    cache = LazyCache(function, {**dispatcher.targetoptions, "level": int(level)})
+    dispatcher = kind(function, locals={}, targetoptions={**settings, **options}, pipeline_class=compiler)
+    cache = LazyCache(function, {**dispatcher.targetoptions, "level": int(level), "compiler": compiler.__name__})
     dispatcher._cache = cache
     compile_it = dispatcher._compiler.compile
 

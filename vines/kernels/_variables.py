@@ -22,15 +22,20 @@ def find_variables_quickly() -> None:
     look = ir.Inst._rec_list_vars
 
     def rec_list_vars(self: Any, val: Any) -> list[Any]:
-        if type(val) is not dict:
+        kind = type(val)
+        if kind is dict:
+            val = val.values()
+        elif kind is not list and kind is not tuple:
             return look(self, val)
         found = []
-        for each in val.values():
+        for each in val:
             kind = type(each)
             if kind is ir.Var:
                 found.append(each)
+            elif kind is ir.Expr:
+                found += rec_list_vars(each, each._kws)
             elif kind not in _HOLDS_NONE:
-                found += look(self, each)
+                found += rec_list_vars(self, each)
         return found
 
     rec_list_vars.by_class = True  # pyright: ignore[reportFunctionMemberAccess]

@@ -3,6 +3,7 @@
 from vines.model._conversion import dimensionless
 from vines.model._declared import most_balls, read_system, system_names
 from vines.model._expression import Expression
+from vines.model._letters import STOPS
 from vines.model._parameters import Parameters
 from vines.model._params import Params
 from vines.model._physical import PhysicalParams
@@ -35,6 +36,7 @@ __all__ = [
     "RESTITUTION",
     "START_NAMES",
     "STATE_NAMES",
+    "STOPS",
     "V1",
     "V2",
     "VI_NES",

@@ -68,7 +68,7 @@ def system_names() -> tuple[str, ...]:
     Examples
     --------
     >>> system_names()
-    ('impact_pair', 'parallel', 'vi_nes')
+    ('cubic_barriers', 'drag', 'friction', 'impact_pair', 'parallel', 'vi_nes')
     """
     return tuple(sorted(path.stem for path in (shipped("schemas") / "systems").glob("*.toml")))
 
@@ -120,6 +120,9 @@ def _system(form: Mapping[str, Any], balls: int) -> System:
         energies=Energies(**{key: tuple(names) for key, names in energies.items()}),
         met=tuple(_coordinate(each[key], 0) for each in form["bodies"] for key in ("position", "velocity")),
         without=tuple(form.get("without", ())),
+        order=form.get("order", 0),
+        stops=form.get("stops", False),
+        starred=form.get("starred", True),
     )
 
 

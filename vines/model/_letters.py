@@ -5,12 +5,15 @@ from __future__ import annotations
 import re
 from collections.abc import Collection, Iterable
 
-__all__ = ["STICKS", "ball_of", "impacts", "renamed", "roles", "rotated"]
+__all__ = ["STICKS", "STOPS", "ball_of", "impacts", "renamed", "roles", "rotated"]
 
 STICKS = "*"
 """Behind the letter of a contact that is a complete chatter, after which the ball sticks."""
 
-_CONTACT = re.compile(r"[A-Z][1-9]?\*?")
+STOPS = "s"
+"""The letter of a stop in mid-cavity, which friction may bring about."""
+
+_CONTACT = re.compile(r"[A-Zs][1-9]?\*?")
 
 
 def impacts(letters: str) -> list[str]:

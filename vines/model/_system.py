@@ -210,6 +210,12 @@ class System(msgspec.Struct, frozen=True, dict=True):
         As `state`, of an impact: coordinates of the ball that hits, without a number.
     without : tuple of str
         Columns of the common tables that the tables of this system do not have.
+    order : int
+        Of the Taylor series by which it moves between events; 0 where closed forms are exact.
+    stops : bool
+        Whether a ball may stop in mid-cavity.
+    starred : bool
+        Whether orbits that stick are computed.
     """
 
     name: str
@@ -226,6 +232,9 @@ class System(msgspec.Struct, frozen=True, dict=True):
     energies: Energies
     met: tuple[Coordinate, ...]
     without: tuple[str, ...] = ()
+    order: int = 0
+    stops: bool = False
+    starred: bool = True
 
     @property
     def state(self) -> tuple[Coordinate, ...]:
@@ -298,6 +307,7 @@ class System(msgspec.Struct, frozen=True, dict=True):
             [(each.letter, each.sign, each.ball) for each in self.contacts],
             [self.mirror.sign, self.mirror.shift, sorted(self.mirror.letters.items()), self.mirror.broken_by],
             [self.energies.stored, self.energies.gained, self.energies.lost],
+            *([self.order] if self.order else []),
         ]
         return hashlib.sha256(json.dumps(form, separators=(",", ":")).encode()).hexdigest()[:16]
 

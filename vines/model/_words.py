@@ -8,15 +8,15 @@ from dataclasses import dataclass
 
 from vines.bounds import shown
 from vines.errors import ParameterError
-from vines.model._letters import STICKS, ball_of, impacts, renamed, roles, rotated
+from vines.model._letters import STICKS, STOPS, ball_of, impacts, renamed, roles, rotated
 from vines.model._system import System
 from vines.model._vi_nes import VI_NES
 
 __all__ = ["Word", "of_moderate_length", "word_for"]
 
 _LEFT, _RIGHT = (contact.letter for contact in VI_NES.contacts)
-_SIGNS = {contact.letter: contact.sign for contact in VI_NES.contacts}
-_SHAPE = re.compile(rf"((?:[{VI_NES.alphabet}]\*?)+|(?:[{VI_NES.alphabet}][1-9]\*?)+)(?:/([1-9][0-9]*)?T)?")
+_SIGNS = {contact.letter: contact.sign for contact in VI_NES.contacts} | {STOPS: 0}
+_SHAPE = re.compile(rf"((?:[{VI_NES.alphabet}]\*?|{STOPS})+|(?:[{VI_NES.alphabet}][1-9]\*?)+)(?:/([1-9][0-9]*)?T)?")
 _LONGEST = 5000
 """Most impacts of a word, and most forcing periods: what a simulation settles to may have many."""
 
@@ -40,6 +40,8 @@ class Word:
     A star behind a letter is a complete chatter: all impacts of the ball on that wall since it last hit elsewhere or
     was let go, infinitely many, after which it sticks to the wall until the contact force vanishes. They count as one
     contact at the time of the first: ``L*R*`` is a 1:1 orbit that sticks on both sides, ``LR`` one that never does.
+
+    With friction a ball may stop in mid-cavity: ``s``, ``LsRs``. A stop counts as a contact, but as no impact.
 
     Where a system has several balls, each letter has the number of the ball that hits: ``L1L2R1R2``. A system with one
     ball writes no number.
@@ -159,7 +161,7 @@ class Word:
 
     @property
     def sides(self) -> tuple[int, ...]:
-        """The wall of each impact: +1 for L, -1 for R.
+        """The wall of each impact: +1 for L, -1 for R; 0 for a stop in mid-cavity.
 
         Examples
         --------
@@ -291,8 +293,7 @@ def word_for(text: str | Word, system: System, *, sticking: bool = True) -> Word
     Raises
     ------
     ParameterError
-        If the text is no word, has impacts that the system does not have, or a star where none may be: balls with
-        numbers have no orbits that stick.
+        If the text is no word, has impacts that the system does not have, or a star where none may be.
 
     Examples
     --------
@@ -302,6 +303,8 @@ def word_for(text: str | Word, system: System, *, sticking: bool = True) -> Word
     """
     word = of_moderate_length(Word(text))
     known = [contact.letter for contact in system.contacts]
+    if system.stops:
+        known.append(STOPS)
     if system.balls == 1:
         known += sorted({letter[0] for letter in known})
     if not {each.rstrip(STICKS) for each in impacts(word.letters)} <= set(known):
@@ -310,10 +313,10 @@ def word_for(text: str | Word, system: System, *, sticking: bool = True) -> Word
         )
     if word.sticking and not sticking:
         raise ParameterError(f"{str(text)!r} sticks, for which this is not made; give a word without a star")
-    if word.sticking and system.balls:
+    if word.sticking and not system.starred:
         raise ParameterError(
-            f"{str(text)!r} sticks, and orbits that stick are those of systems whose ball has no number, not of "
-            f"{system.name!r}; give a word without a star, or follow it by simulation"
+            f"{str(text)!r} sticks, and orbits that stick are not computed for {system.name!r}; give a word without a "
+            "star, or follow it by simulation"
         )
     return word
 

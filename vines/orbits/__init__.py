@@ -2,6 +2,7 @@
 
 from vines.orbits import _balls as _balls
 from vines.orbits import _capsule as _capsule
+from vines.orbits import _dragged as _dragged
 from vines.orbits._all import Orbits, all_orbits
 from vines.orbits._branch import Bifurcation, Branch
 from vines.orbits._carry import carry_orbit, of_two_mirror_images, one_of
@@ -19,6 +20,7 @@ from vines.orbits._own_word import own_word
 from vines.orbits._partners import partners
 from vines.orbits._reduced import Reduced, manifold_amplitude, manifold_range, reduced_orbits, reduced_range
 from vines.orbits._rows import bifurcation_row, branch_row, orbit_outline, orbit_row
+from vines.orbits._shooting import shoots
 from vines.orbits._switch import switch_branch
 from vines.orbits._symmetric import symmetric_fold, symmetric_orbits
 from vines.orbits._table import symmetric_table
@@ -58,6 +60,7 @@ __all__ = [
     "partners",
     "reduced_orbits",
     "reduced_range",
+    "shoots",
     "switch_branch",
     "symmetric_fold",
     "symmetric_orbits",

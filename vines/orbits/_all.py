@@ -21,8 +21,13 @@ from vines.orbits._joined import mirror_image
 from vines.orbits._orbit import Orbit
 from vines.orbits._own_word import sticking_word, whole_word
 from vines.orbits._seeds import base_word, doubled_times, harvested_times, random_times, simplex_times
+from vines.orbits._shooting import shoots
+from vines.orbits._shooting_search import gather_shots, of_the_vi_nes
+from vines.orbits._slid import slid_orbits, slides
 from vines.orbits._sticking_capsule import capsule_orbits, rides_capsule
+from vines.orbits._sticking_of_balls import rides_in_parallel
 from vines.orbits._sticking_search import search_sticking
+from vines.orbits._sticking_search_of_balls import search_balls
 from vines.orbits._values import marks_of, unit_of
 
 __all__ = ["Orbits", "all_orbits"]
@@ -112,8 +117,14 @@ def all_orbits(word: str | Word, p: Any, *, proof: bool = False) -> Orbits:
         if rides_capsule(p):
             found, how = capsule_orbits(word, p)
             return Orbits(found, complete=True, remark=how, nearest=np.inf)
+        if rides_in_parallel(p):
+            found, how = search_balls(word, p)
+            return Orbits(_in_order(found), complete=False, remark=how, nearest=np.inf)
         found, how = search_sticking(word, p)
         return Orbits(_in_order(found), complete=word.n == 0 or word.m == 0, remark=how, nearest=np.inf)
+    if slides(p):
+        found, how = slid_orbits(word, p)
+        return Orbits(_in_order(found), complete=False, remark=how, nearest=np.inf)
     refuse_resonance(p)
     if len(word) > LONGEST:
         raise ParameterError(
@@ -155,12 +166,27 @@ def all_orbits(word: str | Word, p: Any, *, proof: bool = False) -> Orbits:
 
 def _searched(word: Word, p: Any) -> Orbits:
     """Return the orbits of a word of another system that simulations and random flight times lead to."""
+    if shoots(p):
+        return _shot(word, p)
     gathered = _Gathered(word, p)
     for t in (*harvested_times(word, p), *random_times(word, p, _SIMPLEX)):
         gathered.solve(t)
     gathered.add_mirror_images()
     remark = f"Newton's method from {gathered.tried} starts (simulations, random flight times): there may be more"
     return Orbits(_in_order(gathered.orbits), complete=False, remark=remark, nearest=gathered.nearest)
+
+
+def _shot(word: Word, p: Any) -> Orbits:
+    """Return the orbits of a word that are shot for."""
+    if not p.walls:
+        raise ParameterError("walls is 0: a word tells of impacts; vines.settle finds what there is without barriers")
+    found, tried = gather_shots(word, p, all_orbits(word, of_the_vi_nes(p)))
+    gathered = _Gathered(word, p)
+    for orbit in found:
+        gathered.add(orbit.t, orbit.states)
+    gathered.add_mirror_images()
+    remark = f"Newton's method from {tried} starts (simulations, orbits of the VI-NES): there may be more"
+    return Orbits(_in_order(gathered.orbits), complete=False, remark=remark, nearest=np.inf)
 
 
 def _in_order(orbits: list[Orbit]) -> list[Orbit]:

@@ -9,14 +9,15 @@ import numpy.typing as npt
 
 from vines.dynamics.kernels import constants
 from vines.orbits._assemble import assemble
-from vines.orbits._closing import Closed, Closing
+from vines.orbits._closing import Closed
 from vines.orbits._curve_equations import CurveEquations
 from vines.orbits._floquet import FIXED_TIME, half_map, monodromy
 from vines.orbits._orbit import Orbit
+from vines.orbits._shooting import closing_of
 from vines.orbits._survey import survey_kernel
 from vines.orbits._turnings_of_balls import gap_kernel, turnings_kernel
 
-__all__ = ["ChainCurve"]
+__all__ = ["ChainCurve", "second_compound"]
 
 Floats = npt.NDArray[np.float64]
 
@@ -39,7 +40,7 @@ class ChainCurve(CurveEquations):
 
     def __init__(self, kind: str, orbit: Orbit, parameters: tuple[str, str], spans: tuple[float, float]) -> None:
         super().__init__(kind, orbit, parameters, spans)
-        self._closing = Closing(orbit, parameters, self.symmetric)
+        self._closing = closing_of(orbit, parameters, self.symmetric)
         self._n = len(self._closing.start) - 2
         self._wall = 0
         self.start = self._closing.start
@@ -100,16 +101,16 @@ class ChainCurve(CurveEquations):
             return np.nan
         size = 1.0 + float(np.linalg.norm(M))
         if self.kind == "neimark_sacker":
-            return float(np.linalg.det(np.eye(len(M) * (len(M) - 1) // 2) - _second_compound(M))) / size**2
+            return float(np.linalg.det(np.eye(len(M) * (len(M) - 1) // 2) - second_compound(M))) / size**2
         return float(np.linalg.det(np.eye(len(M)) + (-M if self.kind == "fold" else M))) / size
 
 
-def _second_compound(M: Floats) -> Floats:
+def second_compound(M: Floats) -> Floats:
     """Return the matrix whose eigenvalues are the products of pairs of those of M.
 
     Examples
     --------
-    >>> _second_compound(np.diag([2.0, 3.0, 5.0])).diagonal()
+    >>> second_compound(np.diag([2.0, 3.0, 5.0])).diagonal()
     array([ 6., 10., 15.])
     """
     i, j = np.array(list(combinations(range(len(M)), 2))).T

@@ -6,8 +6,9 @@ import numpy as np
 import numpy.typing as npt
 
 from vines.orbits._assemble import assemble
-from vines.orbits._closing import Closing, difference, stays_symmetric
+from vines.orbits._closing import difference, stays_symmetric
 from vines.orbits._orbit import Orbit
+from vines.orbits._shooting import closing_of
 
 __all__ = ["ChainProblem"]
 
@@ -36,7 +37,7 @@ class ChainProblem:
         self.word = orbit.word
         self.parameter = parameter
         kept = stays_symmetric(orbit, parameter) if symmetric is None else symmetric
-        self._closing = Closing(orbit, (parameter,), kept)
+        self._closing = closing_of(orbit, (parameter,), kept)
         self.start = self._closing.start
 
     def equations(self, y: Floats) -> tuple[Floats, Floats]:

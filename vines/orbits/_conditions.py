@@ -63,7 +63,8 @@ class Condition(NamedTuple):
 def grazing_margin(point: Point) -> float:
     """Return the least of the clearances of turning points and the speeds at which the walls are met."""
     orbit = point.orbit
-    return min(orbit.min_clearance, float(np.min(orbit.side * orbit.w_dot)))
+    speeds = (orbit.side * orbit.w_dot)[orbit.side != 0]
+    return min(orbit.min_clearance, float(np.min(speeds)))
 
 
 def tie_margin(point: Point) -> float:

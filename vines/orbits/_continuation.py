@@ -29,10 +29,13 @@ from vines.orbits._family import GeneralProblem
 from vines.orbits._general import origin
 from vines.orbits._orbit import Orbit
 from vines.orbits._problem import Point, Problem, ZeroSet
+from vines.orbits._slid import SlidProblem, slides
 from vines.orbits._sticking_capsule import CapsuleSticking, rides_capsule
 from vines.orbits._sticking_curve import bound_beside
 from vines.orbits._sticking_ends import end_of
 from vines.orbits._sticking_family import StickingProblem
+from vines.orbits._sticking_family_of_balls import BallsProblem
+from vines.orbits._sticking_of_balls import rides_in_parallel
 from vines.orbits._symmetric import SymmetricProblem
 
 __all__ = ["continue_orbit"]
@@ -144,6 +147,10 @@ def continue_orbit(
 def _problem(orbit: Orbit, parameter: str) -> Problem:
     if orbit.word.sticking and rides_capsule(orbit.params):
         return CapsuleSticking(orbit, parameter)
+    if orbit.word.sticking and rides_in_parallel(orbit.params):
+        return BallsProblem(orbit, parameter)
+    if slides(orbit.params):
+        return SlidProblem(orbit, parameter)
     if not isinstance(orbit.params, Params):
         return ChainProblem(orbit, parameter)
     if orbit.word.sticking:

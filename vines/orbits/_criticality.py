@@ -9,11 +9,13 @@ import numpy as np
 import numpy.typing as npt
 
 from vines.model import PARAMETER_NAMES, Params, Word
-from vines.orbits._closing import Closing
 from vines.orbits._family import closing_at
 from vines.orbits._joined import unfolded
 from vines.orbits._orbit import Orbit
+from vines.orbits._release_of_balls import run_round
+from vines.orbits._shooting import closing_of
 from vines.orbits._sticking_family import closing_of_round
+from vines.orbits._sticking_of_balls import rides_in_parallel
 from vines.orbits._sticking_orbit import Round, release_of
 from vines.orbits._values import frequency_of, values_of
 
@@ -37,14 +39,14 @@ def _equations(kind: str, orbit: Orbit, names: tuple[str, str], direction: Float
     orbit = unfolded(kind, orbit)
     phases = orbit.t * frequency_of(orbit.params)
     if not isinstance(orbit.params, Params):
-        closing = Closing(orbit, names, symmetric=False)
+        closing = closing_of(orbit, names, symmetric=False)
         begin = closing.start[-len(names) :]
 
         def at(z: Floats, shift: float = 0.0) -> tuple[Floats, Floats]:
             closed = closing.at(z, begin + shift * direction)
             return (closed.defect, closed.slope) if closed else (z * np.nan, np.outer(z, z) * np.nan)
 
-        return at, phases
+        return at, closing.start[: -len(names)]
     values = values_of(orbit.params)
     where = [PARAMETER_NAMES.index(name) for name in names]
     side = np.array(orbit.word.sides, dtype=np.int64)
@@ -60,8 +62,19 @@ def _equations(kind: str, orbit: Orbit, names: tuple[str, str], direction: Float
 def _of_rounds(kind: str, orbit: Orbit, names: tuple[str, str], direction: Floats) -> tuple[Equations, Floats]:
     """Return the same of an orbit that sticks, the unknowns being phase and velocity of a release."""
     twice = f"{orbit.word.letters * 2}/{2 * orbit.word.p}T"
-    way = Round(Word(twice) if kind == "period_doubling" else orbit.word)
+    word = Word(twice) if kind == "period_doubling" else orbit.word
     values = np.array([orbit.params.as_dict()[name] for name in names])
+    if rides_in_parallel(orbit.params):
+        section, start = orbit.release
+
+        def of_balls(z: Floats, shift: float = 0.0) -> tuple[Floats, Floats]:
+            p = orbit.params.replace(**dict(zip(names, (values + shift * direction).tolist(), strict=True)))
+            span = word.p * p.period
+            ran = run_round(p, section, span, z, section)
+            return (z * np.nan, np.outer(z, z) * np.nan) if ran is None else section.closing(p, ran, span, z, 1.0)
+
+        return of_balls, start
+    way = Round(word)
     begin = release_of(orbit)
 
     def of_rounds(z: Floats, shift: float = 0.0) -> tuple[Floats, Floats]:

@@ -14,8 +14,12 @@ from vines.orbits._all import Orbits, all_orbits
 from vines.orbits._general import refine, search
 from vines.orbits._orbit import Orbit
 from vines.orbits._own_word import sticking_word, whole_word
+from vines.orbits._shooting import shoots
+from vines.orbits._slid import refine_slid, slides
 from vines.orbits._sticking_capsule import capsule_sticks, rides_capsule
+from vines.orbits._sticking_of_balls import rides_in_parallel
 from vines.orbits._sticking_search import no_sticking_orbit, refine_sticking
+from vines.orbits._sticking_search_of_balls import refine_balls
 from vines.orbits._symmetric import no_symmetric_orbit
 
 __all__ = ["find_orbit"]
@@ -44,7 +48,9 @@ def find_orbit(word: str | Word, p: Any, guess: Orbit | npt.ArrayLike | None = N
     guess : Orbit or (N,) array, optional
         An orbit of the word at nearby parameters, or times of the impacts in the canonical order of the word, for a
         forcing of phase zero at t = 0; for a word with a star time and v1 of the release after the first one, two
-        numbers. The solution that Newton's method finds from there is returned.
+        numbers; where flights have no closed form (`systems.CubicBarriers`) an orbit, or an (N, 5) array of t, x1, v1,
+        x2, v2 just before each impact; where a ball slides with friction x1, v1, v2 and t just before the first impact,
+        four. The solution that Newton's method finds from there is returned.
 
     Returns
     -------
@@ -68,8 +74,12 @@ def find_orbit(word: str | Word, p: Any, guess: Orbit | npt.ArrayLike | None = N
     """
     word = whole_word(word, p)
     if guess is not None:
+        if slides(p) and not word.sticking:
+            return refine_slid(word, p, guess)
         if word.sticking and rides_capsule(p):
             return capsule_sticks(word, p)
+        if word.sticking and rides_in_parallel(p):
+            return refine_balls(word, p, guess)
         return refine_sticking(sticking_word(word, p), p, guess) if word.sticking else refine(word, p, guess)
     found = all_orbits(word, p)
     if found:
@@ -82,6 +92,10 @@ def find_orbit(word: str | Word, p: Any, guess: Orbit | npt.ArrayLike | None = N
         raise no_symmetric_orbit(p, word)
     if isinstance(p, Params) and (word.n == 0 or word.m == 0):
         raise OrbitNotFound(f"no {word} orbit at any parameters: {found.remark}; give a word with both L and R")
+    if shoots(p):
+        raise OrbitNotFound(f"no {word} orbit at {p}: {found.remark}; give one at nearby parameters as guess")
+    if slides(p):
+        raise OrbitNotFound(f"no {word} orbit at {p} ({found.remark}); vines.settle says what one settles to")
     nearest = search(word, p)[1] if found.complete else found.nearest
     how = "there is none that never sticks (all flight times were searched); " if found.complete else ""
     raise OrbitNotFound(

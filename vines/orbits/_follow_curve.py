@@ -24,6 +24,8 @@ from vines.orbits._own_word import sticking_word
 from vines.orbits._problem import Point, ZeroSet
 from vines.orbits._special import END, Special, special_functions
 from vines.orbits._sticking_curve import StickingCurve
+from vines.orbits._sticking_curve_of_balls import BallsCurve
+from vines.orbits._sticking_of_balls import rides_in_parallel
 
 __all__ = ["follow_curve"]
 
@@ -189,7 +191,7 @@ def _problem(bifurcation: Bifurcation, parameters: tuple[str, str], spans: Float
     form = CurveProblem if isinstance(orbit.params, Params) else ChainCurve
     if orbit.word.sticking:
         sticking_word(orbit.word, orbit.params)
-        form = StickingCurve
+        form = BallsCurve if rides_in_parallel(orbit.params) else StickingCurve
     return form(bifurcation.type, orbit, parameters, tuple(spans.tolist()))
 
 

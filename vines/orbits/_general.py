@@ -16,6 +16,7 @@ from vines.orbits._assemble import assemble, asymmetry
 from vines.orbits._closed_form import refuse_resonance
 from vines.orbits._equations import newton_kernel
 from vines.orbits._orbit import Orbit
+from vines.orbits._shooting import shoots, shot_from
 from vines.orbits._values import frequency_of, marks_of, unit_of
 
 __all__ = ["ITERATIONS", "check_word", "origin", "proper", "refine", "same", "search"]
@@ -50,6 +51,26 @@ def refine(word: Word, p: Any, guess: Orbit | npt.ArrayLike) -> Orbit:
     refuse_resonance(p)
     if isinstance(guess, Orbit):
         check_word(guess, word)
+    if shoots(p):
+        converged, t, defect, states = shot_from(word, p, guess)
+    else:
+        times = _times_of(word, p, guess)
+        converged, t, defect, states = newton_kernel(constants(p), word.p * p.period, marks_of(word), times, ITERATIONS)
+    if not converged:
+        raise OrbitNotFound(
+            f"no {word} orbit from this guess at {p}: Newton's method stopped at a defect of {defect / unit_of(p):.2g};"
+            " give a nearer guess, such as an orbit at nearby parameters"
+        )
+    if not proper(word, word.p * p.period, t, states):
+        raise OrbitNotFound(
+            f"no {word} orbit from this guess at {p}: it leads to a solution that passes through a wall or has a "
+            "shorter period; give another guess"
+        )
+    return assemble(word, p, t, states)
+
+
+def _times_of(word: Word, p: Any, guess: Orbit | npt.ArrayLike) -> Floats:
+    if isinstance(guess, Orbit):
         times = guess.t * frequency_of(guess.params) / frequency_of(p)
     else:
         Numbers(most=2 * len(word)).check("guess", guess, ParameterError)
@@ -60,18 +81,7 @@ def refine(word: Word, p: Any, guess: Orbit | npt.ArrayLike) -> Orbit:
             f"the guess for {word} has to be {len(word)} increasing times within {word.p} forcing periods, "
             f"{duration:.6g}; it is {np.array2string(times, precision=4, threshold=8)}"
         )
-    converged, t, defect, states = newton_kernel(constants(p), duration, marks_of(word), times, ITERATIONS)
-    if not converged:
-        raise OrbitNotFound(
-            f"no {word} orbit from this guess at {p}: Newton's method stopped at a defect of {defect / unit_of(p):.2g};"
-            " give a nearer guess, such as an orbit at nearby parameters"
-        )
-    if not proper(word, duration, t, states):
-        raise OrbitNotFound(
-            f"no {word} orbit from this guess at {p}: it leads to a solution that passes through a wall or has a "
-            "shorter period; give another guess"
-        )
-    return assemble(word, p, t, states)
+    return times
 
 
 def search(word: Word, p: Any) -> tuple[list[Orbit], float]:

@@ -16,7 +16,10 @@ from vines.orbits._family import GeneralProblem
 from vines.orbits._general import origin, refine
 from vines.orbits._orbit import Orbit
 from vines.orbits._problem import ZeroSet
+from vines.orbits._shooting import shoots
+from vines.orbits._slid import SlidProblem, slid_image, slides
 from vines.orbits._sticking_capsule import capsule_sticks, rides_capsule
+from vines.orbits._sticking_of_balls import mirrored_balls, rides_in_parallel
 from vines.orbits._sticking_orbit import mirrored_sticking
 from vines.orbits._values import frequency_of
 
@@ -40,7 +43,9 @@ def mirror_image(orbit: Orbit) -> Orbit:
     if orbit.word.sticking and rides_capsule(orbit.params):
         return capsule_sticks(orbit.word.mirror, orbit.params)
     if orbit.word.sticking:
-        return mirrored_sticking(orbit)
+        return (mirrored_balls if rides_in_parallel(orbit.params) else mirrored_sticking)(orbit)
+    if slides(orbit.params):
+        return slid_image(orbit)
     word, t, states = orbit.word.mirror, orbit.t + orbit.params.period / 2, -orbit.states
     if any(word.balls):
         word, names = word.relabelled(getattr(orbit.params, "alike", ()))
@@ -52,8 +57,10 @@ def mirror_image(orbit: Orbit) -> Orbit:
     return assemble(word, orbit.params, t, states, orbit.remark)
 
 
-def family_through(orbit: Orbit, parameter: str, *, symmetric: bool) -> GeneralProblem | ChainProblem:
+def family_through(orbit: Orbit, parameter: str, *, symmetric: bool) -> GeneralProblem | ChainProblem | SlidProblem:
     """Return the family of an orbit in a parameter, by the closing equations that hold for any word."""
+    if slides(orbit.params):
+        return SlidProblem(orbit, parameter, symmetric)
     form = GeneralProblem if isinstance(orbit.params, Params) else ChainProblem
     return form(orbit, parameter, symmetric=symmetric)
 
@@ -91,12 +98,29 @@ def left_family(joint: Bifurcation) -> Orbit:
     if orbit.word.sticking:
         raise OrbitNotFound(f"what {joint} comes out of sticks; find it by its own word and follow it to there")
     n = len(orbit.word) // 2
+    if shoots(orbit.params):
+        return _left_by_shots(joint)
     if joint.type == "period_doubling":
         word = Word(f"{orbit.word.letters[: len(orbit.word.letters) // 2]}/{orbit.word.p // 2}T")
         return refine(word, orbit.params, (orbit.t[:n] + orbit.t[n:] - orbit.period / 2) / 2)
     problem = family_through(orbit, joint.parameter, symmetric=True)
     phases = (orbit.t[:n] + orbit.t[n:] - orbit.period / 2) / 2 * frequency_of(orbit.params)
     y = ZeroSet(problem, 1.0).at_value(np.append(phases, joint.value), joint.value)
+    if y is None:
+        raise OrbitNotFound(f"the symmetric orbit at {joint} was lost; follow the symmetric family to it")
+    return problem.orbit(y)
+
+
+def _left_by_shots(joint: Bifurcation) -> Orbit:
+    """Return the same of an orbit whose states at the impacts are all unknown."""
+    orbit, halves = joint.orbit, joint.type == "symmetry_breaking"
+    word = orbit.word if halves else Word(f"{orbit.word.letters[: len(orbit.word) // 2]}/{orbit.word.p // 2}T")
+    if not halves:
+        n = len(word)
+        mean = (orbit.t[:n] + orbit.t[n:] - orbit.period / 2) / 2, (orbit.states[:n] + orbit.states[n:]) / 2
+        return refine(word, orbit.params, assemble(word, orbit.params, *mean))
+    problem = family_through(orbit, joint.parameter, symmetric=True)
+    y = ZeroSet(problem, 1.0).at_value(problem.start, joint.value)
     if y is None:
         raise OrbitNotFound(f"the symmetric orbit at {joint} was lost; follow the symmetric family to it")
     return problem.orbit(y)

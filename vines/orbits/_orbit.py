@@ -83,10 +83,15 @@ class Orbit:
     spells : structured array, shape (K,)
         Spells of sticking, one for each contact of the word with a star: `contact`, its place in the word; `side`;
         `impacts` of the chatter that were followed one by one; times and phases [rad] at which the chatter accumulates
-        and the ball is let go (`t_start`, `t_release`, `phase_start`, `phase_release`); `x1` and `v1` at the release;
+        and the ball is let go (`t_start`, `t_release`, `phase_start`, `phase_release`; of several balls those of the
+        last merge, and where it is kicked off or struck if it is not let go); `x1` and `v1` at the release;
         and how near the spell is to its end as a family: `slowest`, the least speed of an impact of the chatter that a
         faster one follows (inf if none), `least_force`, the least contact force at a minimum within the spell (inf if
         none), and `falls`, the rate at which the force falls at the release.
+    instant : (2 + 2 balls,) float array or None
+        Of balls in parallel that stick: x1, v1, and x2, v2 of each, after all that happens at the first contact.
+    release : object or None
+        Of balls in parallel that stick: the release from which the orbit was run.
     """
 
     word: Word
@@ -105,6 +110,8 @@ class Orbit:
     measures: Measures
     remark: str = ""
     spells: npt.NDArray[np.void] = field(default_factory=lambda: _NO_SPELLS)
+    instant: Floats | None = field(default=None, repr=False)
+    release: Any = field(default=None, repr=False)
 
     @property
     def name(self) -> str:
@@ -155,7 +162,7 @@ class Orbit:
     def energy_imbalance(self) -> float:
         """What base work less damper and impact losses leaves over, relative to the base work: rounding."""
         m = self.measures
-        lost = m.damper_loss + m.impact_loss
+        lost = m.damper_loss + m.impact_loss + m.travel_loss
         return (m.base_work - lost) / max(abs(m.base_work), lost)
 
     @cached_property
@@ -187,8 +194,13 @@ class Orbit:
         dict
             The coordinates of the system (x1, v1, x2, v2) and t: arguments of `vines.simulate`.
         """
-        (x1, _, x2, _), (v1, v2) = self.states[0].tolist(), self._after()[0].tolist()
-        at = room_of(self.params).leave(self.params, (x1, v1, x2, v2), float(self.phase[0]), self._balls())
+        if self.instant is not None:
+            x1, v1, *balls = self.instant.tolist()
+            (x2, v2), more = balls[:2], [1.0, 0.0, 0.0, *balls]
+        else:
+            (x1, _, x2, _), (v1, v2) = self.states[0].tolist(), self._after()[0].tolist()
+            more = self._balls()
+        at = room_of(self.params).leave(self.params, (x1, v1, x2, v2), float(self.phase[0]), more)
         return {**at, "t": float(self.t[0])}
 
     def _balls(self) -> list[float]:

@@ -5,8 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from vines.errors import OrbitNotFound, ParameterError
-from vines.model import Params, Word, of_moderate_length
-from vines.orbits._sticking_capsule import rides_capsule
+from vines.model import STOPS, Word, of_moderate_length
 
 __all__ = ["own_word", "sticking_word", "whole_word"]
 
@@ -48,6 +47,8 @@ def whole_word(word: str | Word, p: Any) -> Word:
     vines.errors.ParameterError: L2R2 has impacts of ball 2, the system has balls 1 … 2; give a word in which each hits
     """
     word = of_moderate_length(own_word(word, p))
+    if STOPS in word.letters and not p.system.stops:
+        raise ParameterError(f"{word} has stops, and a ball of the system {p.system.name!r} never stops in mid-cavity")
     balls = getattr(p, "balls", 1)
     numbers = sorted(set(word.balls))
     if numbers != (list(range(1, balls + 1)) if balls > 1 else [0]):
@@ -58,16 +59,15 @@ def whole_word(word: str | Word, p: Any) -> Word:
 
 
 def sticking_word(word: Word, p: Any) -> Word:
-    """Return a word with a star if its orbits can be computed: those of the VI-NES and of the impact pair.
+    """Return a word with a star if the orbits of its system that stick are computed.
 
     Raises
     ------
     OrbitNotFound
-        For another system.
+        If they are not.
     """
-    if not (isinstance(p, Params) or rides_capsule(p)):
+    if not p.system.starred:
         raise OrbitNotFound(
-            f"{word} sticks, and orbits that stick are computed for the VI-NES and the impact pair, not for "
-            f"{p.system.name!r}; follow it by simulation"
+            f"{word} sticks, and orbits that stick are not computed for {p.system.name!r}; follow it by simulation"
         )
     return word

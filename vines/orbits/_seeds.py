@@ -15,7 +15,16 @@ from vines.orbits._flights import start_kernel
 from vines.orbits._floquet import monodromy
 from vines.orbits._orbit import Orbit
 
-__all__ = ["STARTS", "base_word", "doubled_times", "harvested_times", "random_times", "simplex_times"]
+__all__ = [
+    "STARTS",
+    "base_word",
+    "doubled_times",
+    "harvested_times",
+    "random_times",
+    "simplex_times",
+    "starts_of",
+    "stretches",
+]
 
 Floats = npt.NDArray[np.float64]
 
@@ -38,8 +47,13 @@ _KICKS = (0.01, 0.05, 0.2)
 
 def harvested_times(word: Word, p: Any) -> Iterator[Floats]:
     """Yield the times of stretches of simulations that read as the word and almost come back."""
+    yield from (times for times, _ in stretches(word, p))
+
+
+def stretches(word: Word, p: Any) -> Iterator[tuple[Floats, npt.NDArray[np.void]]]:
+    """Yield these times with the impacts that they are of."""
     duration, N = word.p * p.period, len(word)
-    for start in _starts(p):
+    for start in starts_of(p):
         hits = simulate(p, **start, periods=_PERIODS, max_impacts_per_period=200).impacts
         if len(hits) <= N:
             continue
@@ -55,15 +69,16 @@ def harvested_times(word: Word, p: Any) -> Iterator[Floats]:
         for k in [k for k in np.argsort(change, kind="stable") if reads[k] and change[k] < 0.5][:_BEST]:
             flights = np.diff(t[k : k + N + 1])
             # The stretch is made to close after pT exactly.
-            yield t[k] % p.period + np.concatenate([[0.0], np.cumsum(flights[:-1])]) * duration / flights.sum()
+            begins = np.concatenate([[0.0], np.cumsum(flights[:-1])])
+            yield t[k] % p.period + begins * duration / flights.sum(), hits[k : k + N]
 
 
-def _starts(p: Any) -> Iterator[dict[str, float]]:
+def starts_of(p: Any) -> Iterator[dict[str, Any]]:
     """Yield the starts of simulations: of another system with all in the middle, at several speeds of the balls."""
     if isinstance(p, Params):
         yield from (dict(zip(STATE_NAMES, start, strict=True)) for start in STARTS)
         return
-    balls = [body.velocity.name for body in p.system.bodies if body.name.startswith("ball")]
+    balls = [body.velocity.name for body in p.system.bodies if body.name != "oscillator"]
     for *_, speed in STARTS:
         yield {name: speed / (1 + k) for k, name in enumerate(balls)}
 

@@ -13,6 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from vines.orbits._conditions import TIE, tie_margin
 from vines.orbits._problem import Point
 
 __all__ = [
@@ -110,13 +111,22 @@ def _stick(point: Point) -> float:
     spells, r = point.orbit.spells, point.orbit.params.r
     lengths = spells["t_release"] - spells["t_start"]
     shortest = float(np.min(lengths[lengths > 0], initial=math.inf))
+    if isinstance(r, tuple):
+        ball = point.orbit.word.balls[int(spells["contact"][np.argmin(lengths)])]
+        r = r[max(ball, 1) - 1]
     return max(shortest, 0.0) ** (1 / chatter_exponent(r)) if 0 < r < 1 else shortest
+
+
+def _apart(point: Point) -> float:
+    """Return the least time between contacts of several balls, inf of one alone."""
+    return tie_margin(point) if any(point.orbit.word.balls) else math.inf
 
 
 _MARGINS: tuple[tuple[str, Callable[[Point], float]], ...] = (
     (GRAZING, lambda point: point.orbit.min_clearance),
     (GRAZING, _speeds),
     (INCOMPLETE_CHATTER, _stick),
+    (TIE, _apart),
     (RELEASE_TANGENCY, lambda point: float(np.min(point.orbit.spells["falls"]))),
     (RELEASE_TANGENCY, lambda point: float(np.min(point.orbit.spells["least_force"]))),
 )

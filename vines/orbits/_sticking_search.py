@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -19,7 +20,7 @@ from vines.orbits._seeds import STARTS
 from vines.orbits._sticking_map import ROOM, search_rounds
 from vines.orbits._sticking_orbit import Release, Round, mirrored_sticking, release_of, sticking_orbit
 
-__all__ = ["no_sticking_orbit", "refine_sticking", "search_sticking"]
+__all__ = ["no_sticking_orbit", "refine_sticking", "repeats", "search_sticking"]
 
 Floats = npt.NDArray[np.float64]
 
@@ -56,12 +57,8 @@ def search_sticking(word: Word, p: Params) -> tuple[list[Orbit], str]:
     found: list[Orbit] = []
     if word.n == 0 or word.m == 0:
         return found, "every contact on one wall pushes the ball the same way, and nothing brings it back"
-    runs = [
-        simulate(
-            p, **dict(zip(STATE_NAMES, start, strict=True)), periods=_PERIODS + 20 * word.p, max_impacts_per_period=2000
-        )
-        for start in STARTS
-    ]
+    starts: list[dict[str, Any]] = [dict(zip(STATE_NAMES, start, strict=True)) for start in STARTS]
+    runs = [simulate(p, **start, periods=_PERIODS + 20 * word.p, max_impacts_per_period=2000) for start in starts]
     for release in _of_runs(way, p, runs):
         _add(found, word, p, release)
     fastest = _fastest(runs, p)
@@ -89,11 +86,11 @@ def _add(found: list[Orbit], word: Word, p: Params, release: Release) -> None:
         orbit = sticking_orbit(word, p, release)
     except OrbitNotFound:
         return
-    if not _repeats(orbit) and not any(same(known, orbit.t, orbit.states) for known in found):
+    if not repeats(orbit) and not any(same(known, orbit.t, orbit.states) for known in found):
         found.append(orbit)
 
 
-def _repeats(orbit: Orbit) -> bool:
+def repeats(orbit: Orbit) -> bool:
     """Say whether an orbit is the repetition of one with a shorter period."""
     word = orbit.word
     for shift in word.rotations()[1:]:
@@ -170,14 +167,14 @@ def refine_sticking(word: Word, p: Params, guess: Orbit | npt.ArrayLike) -> Orbi
         left = "other contacts come" if math.isinf(defect) else f"Newton's method stopped at a defect of {defect:.2g}"
         raise OrbitNotFound(f"no {word} orbit from this guess at {p}: {left}; give a nearer guess")
     orbit = sticking_orbit(word, p, found)
-    if _repeats(orbit):
+    if repeats(orbit):
         raise OrbitNotFound(f"no {word} orbit from this guess at {p}: it has a shorter period; give another guess")
     return orbit
 
 
 def no_sticking_orbit(word: Word, p: Params, how: str) -> OrbitNotFound:
     """Return the exception for a word with a star of which none was found."""
-    return OrbitNotFound(
-        f"no {word} orbit at {p} ({how}); try other parameters, or simulate there and give time and v1 of the release "
-        "after its first star as guess"
-    )
+    guess = "simulate there and give time and v1 of the release after its first star as guess"
+    if any(word.balls):
+        guess = "follow an orbit of this word to there, or settle there and take its word"
+    return OrbitNotFound(f"no {word} orbit at {p} ({how}); try other parameters, or {guess}")

@@ -9,10 +9,11 @@ from vines.dynamics.kernels import (
     after_impact_kernel,
     derivatives,
     directions,
-    flight,
     free_ball,
     jacobian_kernel,
+    launched,
     pull,
+    relative,
     segment_state,
     tangent_product,
     turn,
@@ -59,8 +60,9 @@ def inspect_flight(c, beta, side, x1, v1, x2, v2, phase, tau):
         Least distance of a turning point to the wall it points at, negative beyond it; time and side of the
         first contact within the flight, nan and 0 if there is none.
     """
-    motion = flight(c, c.free, x1, v1, phase, 0.0)
-    _, speed, push = _gap(c, motion, x2, v2, 0.0)
+    motion = launched(c, c.free, x1, v1, v2, phase, 0.0)
+    seen = relative(c)
+    _, speed, push = _gap(seen, motion, x2, v2, 0.0)
     clearance = NO_TURNING
     violation = math.nan
     wall = 0
@@ -68,14 +70,14 @@ def inspect_flight(c, beta, side, x1, v1, x2, v2, phase, tau):
         violation = 0.0
         wall = side
     before = 0.0
-    for at in turning_points_kernel(c, motion, v2, tau):
-        w, _, bend = _gap(c, motion, x2, v2, at)
+    for at in turning_points_kernel(seen, motion, v2, tau):
+        w, _, bend = _gap(seen, motion, x2, v2, at)
         towards = 1 if bend < 0.0 else -1
         distance = beta - towards * w
         clearance = min(clearance, distance)
         if distance <= 0.0 and wall == 0:
             wall = towards
-            violation = _crossing(c, beta, motion, x2, v2, towards, before, at)
+            violation = _crossing(seen, beta, motion, x2, v2, towards, before, at)
         before = at
     return clearance, violation, wall
 

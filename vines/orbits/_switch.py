@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -16,7 +17,10 @@ from vines.orbits._joined import BRANCHING, family_through, is_joint, left_famil
 from vines.orbits._orbit import Orbit
 from vines.orbits._problem import Problem
 from vines.orbits._sticking_family import StickingProblem
+from vines.orbits._sticking_family_of_balls import BallsProblem
+from vines.orbits._sticking_of_balls import rides_in_parallel
 from vines.orbits._sticking_search import refine_sticking
+from vines.orbits._sticking_search_of_balls import refine_balls
 
 __all__ = ["switch_branch"]
 
@@ -94,7 +98,8 @@ def _unfolded(bifurcation: Bifurcation) -> Problem:
         return family_through(unfolded(bifurcation.type, orbit), parameter, symmetric=False)
     twice = bifurcation.type == "period_doubling"
     word = Word(f"{orbit.word.letters * 2}/{2 * orbit.word.p}T") if twice else orbit.word
-    return StickingProblem(orbit, parameter, word=word, symmetric=False)
+    form = BallsProblem if rides_in_parallel(orbit.params) else StickingProblem
+    return form(orbit, parameter, word=word, symmetric=False)
 
 
 def _pair(orbit: Orbit) -> list[Orbit]:
@@ -128,12 +133,17 @@ def _step_off(problem: Problem, step: float) -> Orbit | None:
         return None
     try:
         here = problem.orbit(y)
-        solve = refine_sticking if here.word.sticking else refine
-        orbit = solve(here.word, here.params, here)
+        orbit = _solver(here)(here.word, here.params, here)
     except OrbitNotFound:
         return None
     allowed = (_STICKING if orbit.word.sticking else _RESIDUAL) * (1.0 + _size(orbit.params))
     return orbit if orbit.residual <= allowed and origin(orbit) is None and not orbit.symmetric else None
+
+
+def _solver(orbit: Orbit) -> Callable[[Word, Any, Orbit], Orbit]:
+    if not orbit.word.sticking:
+        return refine
+    return refine_balls if rides_in_parallel(orbit.params) else refine_sticking
 
 
 def _size(p: Any) -> float:

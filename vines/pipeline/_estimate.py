@@ -12,6 +12,7 @@ import numpy as np
 
 from vines.cores import cores
 from vines.pipeline._jobs import Job, Points
+from vines.pipeline._links import with_links
 from vines.pipeline._plan import Planner, Prepared
 from vines.pipeline._processes import WORTH_SECONDS
 from vines.pipeline._worker import body_of
@@ -22,9 +23,12 @@ if TYPE_CHECKING:
 
 __all__ = ["estimate", "seconds_a_point"]
 
-_ENOUGH = 0.3
-"""Seconds of points that are measured; beside them the clock and the start of a call are small."""
+_ENOUGH, _LEAST = 1.0, 120
+"""Seconds of points, and how many of them, that are measured: few say little where some take a hundred times longer."""
+_MOST = 5.0
+"""Seconds after which no more are computed, however few there were."""
 _GROWTH = 8
+_SEED = 0
 
 
 def estimate(
@@ -38,9 +42,8 @@ def estimate(
 ) -> dict[str, float]:
     """Return how many seconds the points of each stage would take that a run would compute.
 
-    A point from the middle of what is missing is computed, and more of them until the clock tells them well; nothing is
-    stored. Stages of the whole shape, and those whose points fail, are left out; what a refinement would add is not
-    counted.
+    Points drawn from what is missing are computed until the clock tells them well; nothing is stored. Stages of the
+    whole shape, and those whose points fail, are left out; what a refinement would add is not counted.
 
     Parameters
     ----------
@@ -70,49 +73,66 @@ def estimate(
 
 
 def _seconds_a_point(prepared: Prepared, places: np.ndarray) -> float:
-    """Return how long a point of a stage takes that is not there yet."""
+    """Return how long a point of a stage takes that is not there yet.
+
+    What a point takes differs a hundredfold between a motion that repeats and chaos, which lie in regions: so the
+    points are drawn from all that are missing, always the same ones. Carried ones are taken in the order of their
+    chains, each from where the one before it that was drawn ended.
+    """
     stage, grid = prepared.stage, prepared.grid
-    middle = int(places[len(places) // 2])
+    drawn = np.random.default_rng(_SEED).permutation(places)
+    ranks = np.empty(len(grid), np.int64)
     if stage.carry is not None:
-        chain = next(chain.places for chain in grid.chains if middle in chain.places)
-        order = np.asarray(chain[chain.index(middle) :])
-    else:
-        order = np.roll(places, -(len(places) // 2))
+        ranks[np.concatenate([np.asarray(chain.places) for chain in grid.chains])] = np.arange(len(grid))
     body = body_of(stage.kind.body)
 
-    def compute(count: int) -> int:
-        taken = order[:count]
-        points = Points(grid.fixed(), grid.columns(taken), grid.ids.take(taken))
+    def compute(first: int, count: int) -> None:
+        taken = drawn[first : first + count]
+        if stage.carry is not None:
+            taken = taken[np.argsort(ranks[taken])]
+        points = Points(grid.fixed(), with_links(stage, grid.columns(taken)), grid.ids.take(taken))
         carry = stage.carry.axis if stage.carry is not None else None
         with tempfile.TemporaryDirectory() as folder:
             body(Job(stage.options, points, carry, None, Path(folder), prepared.ingredients.provenance("")))
-        return len(taken)
 
-    return seconds_a_point(compute)
+    return seconds_a_point(compute, len(drawn))
 
 
-def seconds_a_point(compute: Callable[[int], int], clock: Callable[[], float] = time.perf_counter) -> float:
+def seconds_a_point(
+    compute: Callable[[int, int], object], total: int, clock: Callable[[], float] = time.perf_counter
+) -> float:
     """Return how long a point takes, without what the first one loads and compiles.
 
     Parameters
     ----------
     compute : callable
-        Computes so many points, or all there are where those are fewer, and returns how many.
+        ``compute(first, count)`` computes so many points of those that were drawn, from the first on.
+    total : int
+        How many there are, > 0.
     clock : callable
         Tells the time in seconds.
 
     Examples
     --------
-    >>> passed = [0.0, 0.5]
-    >>> seconds_a_point(lambda count: count, iter(passed).__next__)
-    0.5
+    >>> passed = []
+    >>> compute = lambda first, count: passed.extend([0.01] * count)
+    >>> round(seconds_a_point(compute, 1000, lambda: sum(passed)), 6), len(passed) < 200
+    (0.01, True)
     """
-    compute(1)
-    size = 1
+    compute(0, 1)
+    took, done, size = 0.0, 0, 1
+    batches: list[tuple[int, float]] = []
     while True:
         began = clock()
-        done = compute(size)
-        took = clock() - began
-        if took >= _ENOUGH or done < size:
-            return took / done
-        size *= _GROWTH
+        compute(done, size)
+        batches.append((size, clock() - began))
+        took, done = took + batches[-1][1], done + size
+        if (took >= _ENOUGH and done >= _LEAST) or took >= _MOST or done == total:
+            break
+        rate = done / max(took, 1e-9)
+        wanted = max((_ENOUGH - took) * rate, _LEAST - done)
+        size = max(1, min(_GROWTH * size, int(min(wanted, (_MOST - took) * rate)), total - done))
+    # Many points go other ways than few, whose code the first of them load too: the large batches tell.
+    largest = max(size for size, _ in batches)
+    large = [each for each in batches if 2 * each[0] >= largest]
+    return sum(seconds for _, seconds in large) / sum(size for size, _ in large)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Literal
 
 from vines.errors import RunFailed
@@ -29,6 +30,8 @@ class Event:
         Processes at work.
     text : str
         The reason why the stage runs, failed, or was skipped.
+    logs : tuple of Path
+        Of ``progress``, the logs that the chunk brought.
     """
 
     what: Literal["waiting", "up_to_date", "started", "progress", "done", "failed", "skipped"]
@@ -38,6 +41,7 @@ class Event:
     failed: int = 0
     jobs: int = 1
     text: str = ""
+    logs: tuple[Path, ...] = ()
 
 
 Report = Callable[[Event], None]

@@ -182,7 +182,16 @@ class Sweep:
         self._done += done.points
         self._failed += len(done.failed)
         self.report(
-            Event("progress", self.prepared.stage.name, len(self.grid), self._done, self._failed, processes, done.why)
+            Event(
+                "progress",
+                self.prepared.stage.name,
+                len(self.grid),
+                self._done,
+                self._failed,
+                processes,
+                done.why,
+                done.logs,
+            )
         )
 
     def _work(self, wanted: np.ndarray, absent: np.ndarray, failed: np.ndarray) -> Work:

@@ -82,6 +82,8 @@ class Done:
         The last row if carried and not failed.
     why : str
         Why the first of those that failed did; empty if none did.
+    logs : tuple of Path
+        The logs that it brought, in their place in the pool.
     """
 
     number: int
@@ -90,6 +92,7 @@ class Done:
     seconds: float
     last: dict[str, Any] | None
     why: str = ""
+    logs: tuple[Path, ...] = ()
 
 
 @dataclass
@@ -170,7 +173,7 @@ def compute_task(task: Task) -> Done:
 
         tables = {name: pa.concat_tables(pieces) for name, pieces in gathered.tables.items()}
         failed = gathered.failed
-        commit_part(
+        kept = commit_part(
             task.pool,
             part,
             task.number,
@@ -184,7 +187,8 @@ def compute_task(task: Task) -> Done:
     if task.carry is not None and task.points.key.take([-1]).text() not in failed:
         last = _last_row(tables[task.tables[0]])
     why = next(iter(failed.values()), "")
-    return Done(task.number, len(task.points), tuple(failed), time.perf_counter() - began, last, why)
+    logs = tuple(kept / name for name in gathered.logs.values())
+    return Done(task.number, len(task.points), tuple(failed), time.perf_counter() - began, last, why, logs)
 
 
 def compute_apart(function: Callable[[Any], Any], work: Any) -> Any:

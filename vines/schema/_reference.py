@@ -9,10 +9,12 @@ __all__ = ["reference"]
 _HEAD = """\
 # Reference: the tables
 
-Made from `schemas/*.toml` by `vines schema --markdown > docs/reference_tables.md`; don't edit it by hand.
+Every table of results: what a row is, and each column with its unit, meaning and allowed values.
 [tables.md](tables.md) explains the words and how tables are stored. Units: `1` dimensionless, `rad`, `T` forcing
 periods, `1/T`, `B` bytes; SI units where a table holds measurements. Empty values are allowed everywhere but in
 `point_id`.
+
+Made from `schemas/*.toml` by `vines schema --markdown > docs/reference_tables.md`; don't edit it by hand.
 """
 
 

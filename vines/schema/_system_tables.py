@@ -6,7 +6,7 @@ import functools
 import tomllib
 from typing import Any
 
-from vines.model import VI_NES, most_balls, read_system, system_names
+from vines.model import VI_NES, System, most_balls, read_system, system_names
 from vines.places import shipped
 from vines.schema._columns import Column, Table
 from vines.schema._declared import expand
@@ -14,9 +14,13 @@ from vines.schema._declared import expand
 __all__ = ["OF_EACH_SYSTEM", "of_system", "of_systems", "system_table"]
 
 OF_EACH_SYSTEM = (
-    "attractors", "basins", "bifurcations", "branches", "curves", "impacts", "orbits", "points", "transients"
+    "attractors", "basins", "bifurcations", "branches", "curves", "exit_points", "exit_regimes", "exits", "impacts",
+    "orbits", "points", "transients",
 )  # fmt: skip
 """Tables that every system has: the VI-NES under these names, another one with its name before them."""
+
+WITH_SCATTER = ("impact_pair",)
+"""Systems beside the VI-NES whose runs can have noise."""
 
 
 @functools.cache
@@ -27,9 +31,11 @@ def of_systems() -> dict[str, tuple[str, str]]:
 
 
 def _tables_of(system: str) -> list[str]:
-    """Return the tables that a system has: only what has a damper of its own decays."""
+    """Return the tables that a system has: only what has a damper of its own decays, and few can have scatter."""
     decays = "damper_loss" in read_system(system, most_balls(system)).energies.lost
-    return [base for base in OF_EACH_SYSTEM if decays or base != "transients"]
+    none = set() if decays else {"transients"}
+    none |= set() if system in WITH_SCATTER else {"exit_points", "exit_regimes", "exits"}
+    return [base for base in OF_EACH_SYSTEM if base not in none]
 
 
 def system_table(system: str, base: str) -> str:
@@ -51,20 +57,25 @@ def of_system(name: str) -> Table:
     form = tomllib.loads((folder / f"{base}.toml").read_text("utf-8"))
     more = folder / "systems" / "columns" / f"{base}.toml"
     entries = [*form["columns"], *(tomllib.loads(more.read_text("utf-8"))["columns"] if more.exists() else ())]
+    # what only some systems have says which
+    entries = [each for each in entries if called in each.pop("only", (called,))]
     # a coordinate may be called as a column that the common table has anyhow
-    expanded = [each for entry in entries for own in _of_balls(entry, system.balls) for each in expand(own, system)]
+    expanded = [each for entry in entries for own in _of_balls(entry, system) for each in expand(own, system)]
     columns = {each["name"]: each for each in reversed(expanded)}
     kept = [each for each in reversed(columns.values()) if each["name"] not in system.without]
     about = f"Of the system {called}: {form['description'][:1].lower()}{form['description'][1:]}"
     return Table(name, about, form["version"], tuple(Column(**each) for each in kept), True, called)
 
 
-def _of_balls(entry: dict[str, Any], balls: int) -> list[dict[str, Any]]:
-    """Return an entry, or one a ball where it is said to be there for each."""
+def _of_balls(entry: dict[str, Any], system: System) -> list[dict[str, Any]]:
+    """Return an entry, one a ball where it is said to be there for each, none where its parameter is not there."""
+    entry = dict(entry)
+    if entry.pop("beside", None) not in (None, *(each.name for each in system.parameters)):
+        return []
     if "each" not in entry:
         return [entry]
     rest = {key: value for key, value in entry.items() if key != "each"}
     return [
         rest | {"name": f"{rest['name']}_{ball}", "description": f"{rest['description']}, ball {ball}"}
-        for ball in range(1, balls + 1)
+        for ball in range(1, system.balls + 1)
     ]

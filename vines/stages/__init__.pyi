@@ -16,6 +16,8 @@ from .api._export import export as export
 from .api._finding import all_logs as all_logs
 from .api._finding import find_logs as find_logs
 from .api._finding import recordings_folder as recordings_folder
+from .api._finding import stages_of_logs as stages_of_logs
+from .api._found import MOST_ABREAST as MOST_ABREAST
 from .api._found import found as found
 from .api._home import Home as Home
 from .api._home import current as current

@@ -239,8 +239,8 @@ def commit_part(
     failed: Iterable[str],
     logs: Mapping[str, str],
     code: str = "",
-) -> None:
-    """Write tables beside the log files in `source` and make the folder a part of the pool.
+) -> Path:
+    """Write tables beside the log files in `source`, make the folder a part of the pool, and return its place.
 
     Called by worker processes. The name says number and points, so that a part which comes late, from a
     worker whose run was killed, cannot stand in the way of another.
@@ -276,7 +276,9 @@ def commit_part(
         "files": describe_files(source),
     }
     (source / "part.json").write_text(canonical(seal(about)) + "\n", encoding="utf-8")
-    commit_folder(source, pool / f"{number:08d}-{key_of(text)[:12]}")
+    place = pool / f"{number:08d}-{key_of(text)[:12]}"
+    commit_folder(source, place)
+    return place
 
 
 def _read_part(folder: Path) -> Part:

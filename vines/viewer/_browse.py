@@ -6,8 +6,9 @@ import contextlib
 import os
 import shutil
 import tempfile
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
+from types import MappingProxyType
 
 from vines.errors import ViewerError
 from vines.viewer._cache import cached_rrd
@@ -17,7 +18,9 @@ __all__ = ["browse", "catalogue_of"]
 
 
 @contextlib.contextmanager
-def catalogue_of(logs: Sequence[str | os.PathLike[str]], cache: Path) -> Iterator[str]:
+def catalogue_of(
+    logs: Sequence[str | os.PathLike[str]], cache: Path, stages: Mapping[Path, str] = MappingProxyType({})
+) -> Iterator[str]:
     """Run Rerun's catalogue server on 127.0.0.1 over logs and give its address; it ends with the context.
 
     Parameters
@@ -26,6 +29,8 @@ def catalogue_of(logs: Sequence[str | os.PathLike[str]], cache: Path) -> Iterato
         At least one; each becomes a row of the dataset ``runs``.
     cache : Path
         Where the recordings of the logs are kept.
+    stages : mapping of Path to str
+        Of logs, by their real paths, the ``<pipeline>.<stage>`` that they are of.
 
     Raises
     ------
@@ -36,7 +41,8 @@ def catalogue_of(logs: Sequence[str | os.PathLike[str]], cache: Path) -> Iterato
     """
     if not logs:
         raise ViewerError("there are no logs to browse; `vines run quickstart` makes some")
-    recordings = [cached_rrd([log], cache) for log in dict.fromkeys(Path(log).resolve() for log in logs)]
+    paths = dict.fromkeys(Path(log).resolve() for log in logs)
+    recordings = [cached_rrd([path], cache, stages=[stages.get(path, "")]) for path in paths]
     # The server shows a folder: one that holds these recordings and no others. It passes symbolic links over.
     with tempfile.TemporaryDirectory(dir=cache, prefix="browse-") as name:
         folder = Path(name) / "runs"
@@ -65,7 +71,12 @@ def _table(address: str, dataset: str) -> str:
 
 
 def browse(
-    logs: Sequence[str | os.PathLike[str]], cache: Path, *, web: bool = False, tell: Callable[[str], object] = print
+    logs: Sequence[str | os.PathLike[str]],
+    cache: Path,
+    *,
+    stages: Mapping[Path, str] = MappingProxyType({}),
+    web: bool = False,
+    tell: Callable[[str], object] = print,
 ) -> None:
     """Show many logs in the viewer as a table whose rows open as runs, until it is closed (or Ctrl-C).
 
@@ -75,6 +86,8 @@ def browse(
         The logs.
     cache : Path
         Where the recordings of the logs are kept.
+    stages : mapping of Path to str
+        As for :func:`catalogue_of`.
     web : bool
         Serve the web viewer instead of opening a window.
     tell : callable
@@ -87,7 +100,7 @@ def browse(
     ViewerError
         If there is no log, no display, or a program cannot start.
     """
-    with catalogue_of(logs, cache) as address:
+    with catalogue_of(logs, cache, stages) as address:
         tell(f"catalogue of {len(logs)} logs; any Rerun viewer on this machine opens {address}")
         if web:
             with served(address) as (url, wait):

@@ -15,7 +15,12 @@ __all__ = ["cached_rrd"]
 
 
 def cached_rrd(
-    logs: Sequence[str | os.PathLike[str] | Log], folder: Path, *, at: float | None = None, full: bool = False
+    logs: Sequence[str | os.PathLike[str] | Log],
+    folder: Path,
+    *,
+    at: float | None = None,
+    full: bool = False,
+    stages: Sequence[str] = (),
 ) -> Path:
     """Return a recording of logs from a folder, made if the logs or the layout have changed since.
 
@@ -29,8 +34,8 @@ def cached_rrd(
         One run, or several to be shown side by side.
     folder : Path
         Where recordings are kept; made if it is missing.
-    at, full : float or None, bool
-        What is drawn of a long run, as in :func:`vines.viewer.save_rrd`.
+    at, full, stages : float or None, bool, sequence of str
+        What is drawn of a long run, and where runs come from, as in :func:`vines.viewer.save_rrd`.
 
     Raises
     ------
@@ -43,7 +48,7 @@ def cached_rrd(
     """
     paths = [os.path.realpath(log.path if isinstance(log, Log) else log) for log in logs]
     place = hashlib.sha256("\0".join(paths).encode()).hexdigest()[:12]
-    content = hashlib.sha256(f"{version('rerun-sdk')} {_drawing()} {at} {full}".encode())
+    content = hashlib.sha256(f"{version('rerun-sdk')} {_drawing()} {at} {full} {' '.join(stages)}".encode())
     for log in logs:
         sha256 = log.sha256 if isinstance(log, Log) else hashlib.sha256(bytes_of_file(Path(log))).hexdigest()
         content.update(bytes.fromhex(sha256))
@@ -52,7 +57,7 @@ def cached_rrd(
     if kept:
         return kept[0]
     folder.mkdir(parents=True, exist_ok=True)
-    made = save_rrd(logs, folder / f"{name}.rrd", at=at, full=full)
+    made = save_rrd(logs, folder / f"{name}.rrd", at=at, full=full, stages=stages)
     target = made.rename(folder / f"{name}-{_own_digest(made)}.rrd")
     for other in folder.glob(f"{place}-*.rrd"):
         if other != target:

@@ -9,6 +9,7 @@ import numpy as np
 from vines.logs import Log
 from vines.packages import need
 from vines.viewer._clock import Clock
+from vines.viewer._scene import DRIVEN
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -51,8 +52,10 @@ class Film:
         longest = max(halves)
         reach = float(np.abs(self._x1).max())
         self._mount = -(reach + longest + 0.9)
+        sprung = run.system not in DRIVEN
         above, below = figure.subplots(2, 1, height_ratios=[0.9 + 0.5 * len(tables), 1.2])
-        above.set(xlim=(self._mount - 0.3, reach + longest + 0.4), ylim=(-len(tables) * _TRACK + 0.5, 0.55))
+        left = self._mount - 0.3 if sprung else -(reach + longest + 0.4)
+        above.set(xlim=(left, reach + longest + 0.4), ylim=(-len(tables) * _TRACK + 0.5, 0.55))
         above.set(aspect="equal", yticks=[], xlabel="displacement / b", title=run.name)
         self._moving = []
         self._springs = []
@@ -69,9 +72,11 @@ class Film:
             disc = Circle((0.0, y), _RADIUS, color=colour, zorder=5)
             above.add_patch(disc)
             self._balls.append((disc, y))
+            if not sprung:
+                continue
             coil = y + 0.12 * np.concatenate([[0.0, 0.0], (-1.0) ** np.arange(11), [0.0, 0.0]])
             self._springs.append((above.plot(np.zeros(15), coil, color=_SPRING, lw=1)[0], -inner - 0.08))
-        (self._wall,) = above.plot([0.0, 0.0], [-len(tables) * _TRACK + 0.6, 0.4], color=_BASE, lw=5)
+        (self._wall,) = above.plot([0.0, 0.0], [-len(tables) * _TRACK + 0.6, 0.4], color=_BASE, lw=5, visible=sprung)
         shown = (t >= times[0]) & (t <= times[-1])
         cycles = clock.cycles(t[shown])
         for (ball, table), half in zip(tables.items(), halves, strict=True):
@@ -84,7 +89,8 @@ class Film:
         below.set(xlabel="forcing cycles", ylabel="w/β" if run.balls else "w = (x1 − x2)/b", ylim=(-1.15, 1.15))
         below.set(xlim=(self._cycles[0], self._cycles[-1]))
         if run.balls:
-            below.legend(loc="upper right", ncols=len(tables), fontsize="small")
+            place = {"loc": "lower right", "bbox_to_anchor": (1.0, 1.0), "borderaxespad": 0.2}
+            below.legend(ncols=len(tables), fontsize="small", frameon=False, **place)
 
     def show(self, k: int) -> None:
         """Put everything where it is in frame `k`."""

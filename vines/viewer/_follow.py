@@ -81,7 +81,7 @@ def follow(
                 tell(f"{tail.path} is finished")
             if picture is not None:
                 show.picture(picture)
-            while how in ("window", "web") and time.monotonic() < until:
+            while how in ("window", "web") and show.alive and time.monotonic() < until:
                 time.sleep(_LOOK)
         except KeyboardInterrupt:
             return

@@ -72,6 +72,8 @@ class Shown:
         Whether the run goes on: curves show the last cycles.
     timeline : str
         That by which curves are drawn.
+    beside : bool
+        Whether other runs stand beside it.
     brief : bool
         Whether there is room for short titles only.
     """
@@ -89,6 +91,7 @@ class Shown:
     longest: float = 1.0
     following: bool = False
     timeline: str = CYCLE
+    beside: bool = False
     brief: bool = False
 
     @property
@@ -97,7 +100,7 @@ class Shown:
         return self.kind != "rig" and bool(self.parts)
 
 
-def blueprint(runs: Sequence[Shown], *, still: bool = False) -> rrb.Blueprint:
+def blueprint(runs: Sequence[Shown], *, still: bool = False, playing: bool = False) -> rrb.Blueprint:
     """Return the layout for one run, or for several side by side with one time cursor.
 
     Parameters
@@ -106,17 +109,20 @@ def blueprint(runs: Sequence[Shown], *, still: bool = False) -> rrb.Blueprint:
         At least one.
     still : bool
         For a picture that nobody can pan: curves leave room for their legends, the top bar is hidden.
+    playing : bool
+        Whether it plays from the start on.
     """
     # A rig has seconds and no cycles that are known.
     timeline = SIM_TIME if any(run.kind == "rig" for run in runs) else CYCLE
-    runs = [replace(run, timeline=timeline, brief=len(runs) >= _ABREAST) for run in runs]
+    many = {"beside": len(runs) > 1, "brief": len(runs) >= _ABREAST}
+    runs = [replace(run, timeline=timeline, **many) for run in runs]
     # One period of an orbit is there to be watched going round.
     looping = not still and all(run.kind == "orbit" for run in runs)
     panel = rrb.TimePanel(
         state="collapsed",
         timeline=timeline,
         fps=FPS,
-        play_state="playing" if looping else "paused",
+        play_state="playing" if looping or playing else "paused",
         loop_mode="all",
         playback_speed=0.5 if looping else 1.0,
     )
@@ -213,7 +219,7 @@ def _drawn(run: Shown, origin: str, name: str, more: float = 0.0) -> rrb.Spatial
         origin=origin,
         name=name if run.brief else f"{CAVITY}: {name}",
         background=_DARK,
-        visual_bounds=rrb.VisualBounds2D(x_range=(left, right), y_range=(top, bottom + (_LOW if run.brief else more))),
+        visual_bounds=rrb.VisualBounds2D(x_range=(left, right), y_range=(top, bottom + (_LOW if run.beside else more))),
     )
 
 
@@ -253,7 +259,7 @@ def _series(
         )
     elif still:
         start = boundary.absolute(**_moment(run, 0.0))
-        end = boundary.absolute(**_moment(run, 1.0 + _LEGEND))
+        end = boundary.absolute(**_moment(run, 1.0 + (0.0 if run.beside else _LEGEND)))
     else:
         # Without numbers, since they would be those of one timeline only.
         start, end = boundary.infinite(), boundary.infinite()
@@ -310,7 +316,7 @@ def _dial(run: Shown) -> rrb.Spatial2DView:
     (left, right), (top, bottom) = DIAL_BOUNDS
     return rrb.Spatial2DView(
         origin=f"{run.root}/dial",
-        name="Phases" if run.brief else "Phase at impacts: L outside, R inside",
+        name="Phases" if run.beside else "Phase at impacts: L outside, R inside",
         background=_DARK,
         visual_bounds=rrb.VisualBounds2D(x_range=(left, right), y_range=(top, bottom)),
     )

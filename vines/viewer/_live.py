@@ -22,6 +22,8 @@ from vines.viewer._style import BALL, BASE, LEFT, LINE, PARAMETERS, RIGHT
 if TYPE_CHECKING:
     from rerun.experimental import ViewerClient
 
+    from vines.logs import Log
+
 __all__ = ["Live", "live"]
 
 RUN_TIME = "run_time"
@@ -47,16 +49,36 @@ class Live:
         ``send(recording, blueprint)`` connects a recording to what shows it.
     client : callable, optional
         Connects to the viewer, where it can be asked for a picture.
+    alive : callable
+        Says whether what shows it is still there.
     """
 
     def __init__(
         self,
         send: Callable[[rr.RecordingStream, rrb.Blueprint], object],
         client: Callable[[], ViewerClient] | None = None,
+        alive: Callable[[], bool] = lambda: True,
     ):
-        self._send, self._client = send, client
+        self._send, self._client, self._alive = send, client, alive
         self._rec: rr.RecordingStream | None = None
         self._paths: dict[str, str] = {}
+
+    @property
+    def alive(self) -> bool:
+        """Whether what shows it is still there: a window may have been closed."""
+        return self._alive()
+
+    def show(self, log: Log) -> None:
+        """Show a run of the simulator, whole and playing; what was shown before stays in the list of recordings.
+
+        Raises
+        ------
+        ViewerError
+            If the log has no state.
+        """
+        from vines.viewer._recording import send_run
+
+        send_run(log, self.recording)
 
     def begin(self, name: str, sensors: Mapping[str, str], about: str = "") -> None:
         """Begin a recording.
@@ -209,11 +231,13 @@ def live(
         finally:
             shown.end()
         return
-    with listening(how, size) as (url, page, client):
+    with listening(how, size) as (url, page, client, alive):
         if page:
             tell(f"open {page} in a browser")
         shown = Live(
-            lambda rec, layout: rec.connect_grpc(url, default_blueprint=layout), client if how == "headless" else None
+            lambda rec, layout: rec.connect_grpc(url, default_blueprint=layout),
+            client if how == "headless" else None,
+            alive,
         )
         try:
             yield shown

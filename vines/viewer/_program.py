@@ -134,7 +134,9 @@ def served(what: Path | str) -> Iterator[tuple[str, Callable[[], object]]]:
 
 
 @contextlib.contextmanager
-def listening(how: str, size: tuple[int, int]) -> Iterator[tuple[str, str, Callable[[], ViewerClient]]]:
+def listening(
+    how: str, size: tuple[int, int]
+) -> Iterator[tuple[str, str, Callable[[], ViewerClient], Callable[[], bool]]]:
     """Run a viewer that shows what is sent to it; it ends with the context.
 
     Parameters
@@ -146,8 +148,9 @@ def listening(how: str, size: tuple[int, int]) -> Iterator[tuple[str, str, Calla
 
     Yields
     ------
-    tuple of (str, str, callable)
-        Where to send, the page to open (empty if there is none), and a function that connects a client to it.
+    tuple of (str, str, callable, callable)
+        Where to send, the page to open (empty if there is none), a function that connects a client to it, and one that
+        says whether it still runs.
 
     Raises
     ------
@@ -172,9 +175,10 @@ def listening(how: str, size: tuple[int, int]) -> Iterator[tuple[str, str, Calla
     with contextlib.ExitStack() as stack:
         memory = stack.enter_context(tempfile.TemporaryDirectory())
         more = {"XDG_DATA_HOME": memory, "XDG_CONFIG_HOME": memory, "RUST_LOG": "error"} if how == "headless" else {}
-        stack.enter_context(_running(command, [data, page] if how == "web" else [data], more))
+        process = stack.enter_context(_running(command, [data, page] if how == "web" else [data], more))
         port = stack.enter_context(guarded(page)) if how == "web" else 0
-        yield url, f"http://127.0.0.1:{port}/?url={quote(url, safe='')}&theme=dark" if port else "", client
+        address = f"http://127.0.0.1:{port}/?url={quote(url, safe='')}&theme=dark" if port else ""
+        yield url, address, client, lambda: process.poll() is None
 
 
 @contextlib.contextmanager

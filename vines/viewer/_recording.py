@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 import math
 import re
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 import pyarrow as pa
 import rerun as rr
+import rerun.blueprint as rrb
 
 from vines.errors import ViewerError
 from vines.logs import Log
@@ -26,10 +27,10 @@ from vines.viewer._layout import Shown, blueprint
 from vines.viewer._overlay import check_overlay, overlaid, send_overlay
 from vines.viewer._remarks import is_foreign
 from vines.viewer._rig import is_rig, send_rig, shown_rig
-from vines.viewer._scene import cavity, phase_plane
+from vines.viewer._scene import DRIVEN, cavity, phase_plane
 from vines.viewer._text import about, send_impact_log
 
-__all__ = ["APPLICATION", "write_recording"]
+__all__ = ["APPLICATION", "send_run", "write_recording"]
 
 APPLICATION = "vines"
 """Application id under which the viewer keeps layouts."""
@@ -43,6 +44,7 @@ def write_recording(
     overlay: bool = False,
     at: float | None = None,
     full: bool = False,
+    stages: Sequence[str] = (),
 ) -> None:
     """Write runs as one recording, side by side or laid over each other, with the layout that shows them.
 
@@ -60,6 +62,8 @@ def write_recording(
         Time around which a long run is drawn with all its states; the middle if left out.
     full : bool
         Whether every state is drawn, however long a run is.
+    stages : sequence of str
+        The ``<pipeline>.<stage>`` of each log, empty where there is none.
 
     Raises
     ------
@@ -74,23 +78,57 @@ def write_recording(
         write_foreign(logs, out)
         return
     roots = _roots([log.name for log in logs])
-    shown: list[Shown] = []
-    for root, log in zip(roots, logs, strict=True):
-        shown.append(_shown(root, log))
+    shown = [_shown(root, log) for root, log in zip(roots, logs, strict=True)]
     parts = [drawn(log, at=at, full=full) for log in logs]
     rec = rr.RecordingStream(APPLICATION, recording_id=_identity(logs), send_properties=False)
     rec.save(out, default_blueprint=overlaid(shown, still=still) if overlay else blueprint(shown, still=still))
+    _send_all(rec, logs, roots, parts, full=full, stages=stages)
+    if overlay:
+        send_overlay(rec, parts, [_columns(part.log.states) for part in parts])
+    rec.flush()
+    rec.disconnect()
+
+
+def send_run(log: Log, begin: Callable[[str, rrb.Blueprint], rr.RecordingStream]) -> None:
+    """Send a run of the simulator to a viewer, which plays it from its start.
+
+    Parameters
+    ----------
+    log : Log
+        The run.
+    begin : callable
+        ``begin(name, blueprint)`` begins a recording that is shown.
+
+    Raises
+    ------
+    ViewerError
+        If the log has no state.
+    """
+    roots = _roots([log.name])
+    shown = _shown(roots[0], log)
+    parts = [drawn(log, at=None, full=False)]
+    rec = begin(log.name, blueprint([shown], playing=True))
+    _send_all(rec, [log], roots, parts, full=False)
+    rec.flush()
+
+
+def _send_all(
+    rec: rr.RecordingStream,
+    logs: Sequence[Log],
+    roots: Sequence[str],
+    parts: Sequence[Drawn],
+    *,
+    full: bool,
+    stages: Sequence[str] = (),
+) -> None:
+    """Send what is known and what is drawn of runs."""
     rec.send_recording_name(", ".join(log.name for log in logs))
-    for group, values in _properties(logs).items():
+    for group, values in _properties(logs, stages or [""] * len(logs)).items():
         rec.send_property(group, values)
     for root, log, part in zip(roots, logs, parts, strict=True):
         told = about(log, "" if full else thinning(log))
         rec.log(f"{root}/about", rr.TextDocument(told, media_type=rr.MediaType.MARKDOWN), static=True)
         _send(rec, root, part)
-    if overlay:
-        send_overlay(rec, parts, [_columns(part.log.states) for part in parts])
-    rec.flush()
-    rec.disconnect()
 
 
 def _shown(root: str, log: Log) -> Shown:
@@ -128,7 +166,7 @@ def _send(rec: rr.RecordingStream, root: str, part: Drawn) -> None:
         send_balls(rec, root, part, states, impacts, clock)
         send_impact_log(rec, f"{root}/impacts", impacts, clock)
         return
-    cavity(rec, f"{root}/cavity", states, clock)
+    cavity(rec, f"{root}/cavity", states, clock, sprung=log.system not in DRIVEN)
     phase_plane(rec, f"{root}/phase", states, impacts, clock, part.parts)
     curves(rec, root, states, impacts, clock)
     dial(rec, f"{root}/dial", states, impacts, clock)
@@ -167,18 +205,18 @@ def _identity(logs: Sequence[Log]) -> str:
     return digest.hexdigest()[:32]
 
 
-def _properties(logs: Sequence[Log]) -> dict[str, rr.AnyValues]:
+def _properties(logs: Sequence[Log], stages: Sequence[str]) -> dict[str, rr.AnyValues]:
     """Return what a catalogue of recordings shows as columns, in groups.
 
     The catalogue sorts columns by the names of their groups: these are named so that the run comes first, then its
     parameters, then its attractor and impacts, then the rest.
     """
-    stages = [log.name.partition("/")[0].partition(".") for log in logs]
+    parts = [stage.partition(".") for stage in stages]
     parameters = dict.fromkeys(key for log in logs for key in log.parameters)
     groups: dict[str, dict[str, Any]] = {
         "from": {
-            "pipeline": [pipeline if dot else "" for pipeline, dot, _ in stages],
-            "stage": [stage or pipeline for pipeline, _, stage in stages],
+            "pipeline": [pipeline for pipeline, _, _ in parts],
+            "stage": [stage for _, _, stage in parts],
         },
         "given": {key: [log.parameters.get(key, math.nan) for log in logs] for key in parameters},
         "got": {

@@ -21,6 +21,7 @@ def save_rrd(
     overlay: bool = False,
     at: float | None = None,
     full: bool = False,
+    stages: Sequence[str] = (),
 ) -> Path:
     """Write runs as one Rerun recording with its layout.
 
@@ -39,6 +40,8 @@ def save_rrd(
     full : bool
         Whether every state is drawn, however long a run is; else of more than 60 000 the peaks of each curve, and all
         states in three stretches.
+    stages : sequence of str
+        The ``<pipeline>.<stage>`` of each log, empty where there is none; kept as properties of the recording.
 
     Returns
     -------
@@ -57,7 +60,7 @@ def save_rrd(
         If there is nothing to show.
     """
     with replacing(Path(out)) as partial:
-        record(logs, partial, overlay=overlay, at=at, full=full)
+        record(logs, partial, overlay=overlay, at=at, full=full, stages=stages)
     return Path(out)
 
 
@@ -74,6 +77,7 @@ def record(
     overlay: bool = False,
     at: float | None = None,
     full: bool = False,
+    stages: Sequence[str] = (),
 ) -> None:
     """Write a recording of runs; a still one has no time that runs."""
     runs = logs_of(logs)
@@ -82,7 +86,7 @@ def record(
     os.environ.setdefault("RERUN_ANALYTICS", "0")
     from vines.viewer._recording import write_recording
 
-    write_recording(runs, out, still=still, overlay=overlay, at=at, full=full)
+    write_recording(runs, out, still=still, overlay=overlay, at=at, full=full, stages=stages)
 
 
 def _check_time(at: float, runs: Sequence[Log]) -> None:

@@ -13,8 +13,20 @@ import rerun as rr
 from vines.viewer._clock import Clock
 from vines.viewer._style import BALL, BASE, GRID, LEFT, LINE, MASS, RIGHT, SPRING, TRAIL
 
-__all__ = ["PHASE_BOUNDS", "cavity", "cavity_bounds", "move", "phase_frame", "phase_plane", "stretch_of", "write"]
+__all__ = [
+    "DRIVEN",
+    "PHASE_BOUNDS",
+    "cavity",
+    "cavity_bounds",
+    "move",
+    "phase_frame",
+    "phase_plane",
+    "stretch_of",
+    "write",
+]
 
+DRIVEN = frozenset({"impact_pair"})
+"""Systems whose capsule moves as it is driven: they have neither base nor spring."""
 _RADIUS = 0.09
 _WALL = 0.07
 _HEIGHT = 0.34
@@ -62,6 +74,7 @@ def cavity(
     longest: float = 1.0,
     colour: tuple[int, int, int] = BALL,
     reach: float | None = None,
+    sprung: bool = True,
 ) -> None:
     """Draw the shaken base, the spring, the mass with its cavity, and the ball.
 
@@ -81,6 +94,8 @@ def cavity(
         Of the ball.
     reach : float, optional
         Largest displacement of the mass; that of these states if left out.
+    sprung : bool
+        Whether there are base and spring; else the mass moves as it is driven.
     """
     x1, x2, base = states["x1"], states["x2"], states["base"]
     mount = -_mount((float(np.abs(x1).max()) if reach is None else reach) + (longest - 1.0))
@@ -102,16 +117,17 @@ def cavity(
     rec.log(f"{root}/ball", rr.Points2D([(0.0, 0.0)], radii=_RADIUS, colors=colour, draw_order=40.0), static=True)
     move(rec, f"{root}/ball", indexes, x2)
 
-    wall = [[(0.0, -_HEIGHT - 0.1), (0.0, _HEIGHT + 0.1)]]
-    rec.log(f"{root}/base", rr.LineStrips2D(wall, radii=0.05, colors=BASE), static=True)
-    move(rec, f"{root}/base", indexes, mount + base)
+    if sprung:
+        wall = [[(0.0, -_HEIGHT - 0.1), (0.0, _HEIGHT + 0.1)]]
+        rec.log(f"{root}/base", rr.LineStrips2D(wall, radii=0.05, colors=BASE), static=True)
+        move(rec, f"{root}/base", indexes, mount + base)
 
-    turns = np.concatenate([[0.0, 0.12], np.linspace(0.16, 0.84, 13), [0.88, 1.0]])
-    sway = np.concatenate([[0.0, 0.0], 0.14 * (-1.0) ** np.arange(13), [0.0, 0.0]])
-    coil = np.column_stack([turns, sway])
-    rec.log(f"{root}/spring", rr.LineStrips2D([coil], radii=rr.Radius.ui_points(1.2), colors=SPRING), static=True)
-    length = x1 - outer - (mount + base)
-    move(rec, f"{root}/spring", indexes, mount + base, scale=length)
+        turns = np.concatenate([[0.0, 0.12], np.linspace(0.16, 0.84, 13), [0.88, 1.0]])
+        sway = np.concatenate([[0.0, 0.0], 0.14 * (-1.0) ** np.arange(13), [0.0, 0.0]])
+        coil = np.column_stack([turns, sway])
+        rec.log(f"{root}/spring", rr.LineStrips2D([coil], radii=rr.Radius.ui_points(1.2), colors=SPRING), static=True)
+        length = x1 - outer - (mount + base)
+        move(rec, f"{root}/spring", indexes, mount + base, scale=length)
 
     reach = max(2.0, float(np.ceil(np.abs(np.concatenate([x1, x2])).max())))
     ticks = np.arange(-reach, reach + 0.5)

@@ -13,10 +13,13 @@ import numpy as np
 
 from vines.dynamics._impact_law import ImpactLaw, impact_law
 from vines.dynamics._room import Layout, Room
+from vines.dynamics._scatter import Scatter
 from vines.dynamics._start import check_gap
 from vines.dynamics.impact_pair import _energies as _energies
 from vines.dynamics.impact_pair import _motion as _motion
 from vines.dynamics.impact_pair._constants import PairConstants, PairTable, pair_constants
+from vines.dynamics.impact_pair._scatter import PairScatterTable
+from vines.errors import ParameterError
 
 __all__ = ["ROOM", "PairConstants"]
 
@@ -29,6 +32,16 @@ class _Pair(Room):
 
     def table(self, points: list[list[float]]) -> PairTable:
         return PairTable(np.array(points))
+
+    def scattered(
+        self, values: Any, scatter: Scatter, streams: Any, begun: Any = None
+    ) -> tuple[PairScatterTable, np.ndarray]:
+        if wrong := [name for name in scatter.parts if name not in ("sigma_r", "spread")]:
+            raise ParameterError(
+                f"scatter of the impact pair has {', '.join(wrong)}; it can have sigma_r and spread: its capsule moves "
+                "as it is driven"
+            )
+        return PairScatterTable(values, scatter.sigma_r, scatter.seed, streams), np.empty(0)
 
     def layout(self, p: Any) -> Layout:
         return Layout(directions=2)

@@ -12,6 +12,7 @@ from vines.dynamics._totals import (
     base_at,
     event_loss,
     event_work,
+    segment_state,
     stored_energy,
     window_totals,
 )
@@ -21,7 +22,8 @@ from vines.kernels import linked_njit, njit
 __all__: list[str] = []
 
 
-window_totals.register(PairConstants)(window_totals.first)
+for _name in (segment_state, window_totals):
+    _name.register(PairConstants)(_name.first)
 
 
 @ball_mass.register(PairConstants)
@@ -73,7 +75,7 @@ def _segment_integrals(c, mode, x1, v1, v2, phase, length):
 
 @add_segment.register(PairConstants)
 @linked_njit
-def _add_segment(c, out, mode, begins, x1, v1, v2, phase, length):
+def _add_segment(c, out, mode, begins, x1, v1, x2, v2, phase, length):
     x_square, v_square, ball, work, _ = segment_integrals(c, mode, x1, v1, v2, phase, length)
     out[entry.DURATION] += length
     out[entry.X1_SQUARE] += x_square

@@ -11,14 +11,20 @@ import math
 from vines.dynamics._advance import A_V2, IMPACT, KIND, SIDE, STICK, V1, V2, X1, X2, advance, begin, law_of
 from vines.dynamics._contact import next_contact
 from vines.dynamics._flight import (
+    ball_flown,
     derivatives,
+    drift,
     fifth,
     flight,
     flown,
     forced_fifth,
     fourth_bound,
     free_ball,
+    launched,
+    phase_after,
     pull,
+    rate_alone,
+    relative,
     ringing,
     sixth,
     speed_terms,
@@ -28,7 +34,7 @@ from vines.dynamics._flight import (
 from vines.dynamics._impact_law import after_impact_kernel
 from vines.dynamics._sincos import sincos
 from vines.dynamics._sticking import holds_for, next_release
-from vines.dynamics._tangent import directions, flow_basis, jump_basis, offset
+from vines.dynamics._tangent import carry_basis, directions, flow_basis, jump_basis, offset
 from vines.dynamics._tilt import falling_ball, pull_of_tilt
 from vines.dynamics._window import width_of, write_end
 from vines.dynamics.impact_pair._constants import Capsule, PairConstants, PairTable
@@ -36,7 +42,22 @@ from vines.kernels import fused_njit, njit
 
 __all__: list[str] = []
 
-for _name in (advance, begin, write_end, law_of, next_contact, next_release, flown):
+for _name in (
+    advance,
+    begin,
+    carry_basis,
+    write_end,
+    law_of,
+    next_contact,
+    next_release,
+    flown,
+    launched,
+    ball_flown,
+    phase_after,
+    drift,
+    rate_alone,
+    relative,
+):
     _name.register(PairConstants)(_name.first)
 
 width_of.register(PairTable)(width_of.first)
@@ -110,7 +131,7 @@ pull.register(PairConstants)(pull_of_tilt)
 
 @ringing.register(PairConstants)
 @njit
-def _ringing(c, x1, v1, phase):
+def _ringing(c, x1, v1, v2, phase):
     return 0.0
 
 

@@ -17,12 +17,17 @@ from vines.dynamics._constants import (
 )
 from vines.dynamics._contact import CONTACT
 from vines.dynamics._flight import (
+    ball_flown,
     derivatives,
+    drift,
     flight,
     fourth_bound,
     free_ball,
+    launched,
     phasors,
     pull,
+    rate_alone,
+    relative,
     ringing,
     speed_terms,
     turn,
@@ -36,10 +41,19 @@ from vines.dynamics._impact_law import (
     reversing_kernel,
 )
 from vines.dynamics._integrals import largest_displacement, segment_integrals
-from vines.dynamics._room import constants, room_of, table_of
+from vines.dynamics._room import Room, constants, room_of, table_of
 from vines.dynamics._saltation import jacobian_kernel
+from vines.dynamics._scatter_table import colour_at
 from vines.dynamics._sticking import next_release
-from vines.dynamics._tangent import directions, flow_basis, jump_basis, lyapunov_blocks, offset, tangent_product
+from vines.dynamics._tangent import (
+    carry_basis,
+    directions,
+    flow_basis,
+    jump_basis,
+    lyapunov_blocks,
+    offset,
+    tangent_product,
+)
 from vines.dynamics._totals import ball_mass, segment_state, window_totals
 from vines.dynamics._window import open_window, run_window, width_of, with_room
 
@@ -48,16 +62,21 @@ __all__ = [
     "KNOWN_CORRELATION",
     "Constants",
     "ParameterTable",
+    "Room",
     "advance",
     "after_impact",
     "after_impact_kernel",
+    "ball_flown",
     "ball_mass",
     "begin",
+    "carry_basis",
+    "colour_at",
     "constants",
     "constants_at",
     "constants_kernel",
     "derivatives",
     "directions",
+    "drift",
     "flight",
     "flow_basis",
     "fourth_bound",
@@ -67,6 +86,7 @@ __all__ = [
     "jacobian_kernel",
     "jump_basis",
     "largest_displacement",
+    "launched",
     "lyapunov_blocks",
     "next_release",
     "offset",
@@ -75,6 +95,8 @@ __all__ = [
     "pass_over",
     "phasors",
     "pull",
+    "rate_alone",
+    "relative",
     "reversing",
     "reversing_kernel",
     "ringing",

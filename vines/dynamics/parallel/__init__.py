@@ -17,7 +17,7 @@ from vines.dynamics.parallel import _frame as _frame
 from vines.dynamics.parallel import _tangent as _tangent
 from vines.dynamics.parallel._advance import set_balls
 from vines.dynamics.parallel._constants import ParallelConstants, ParallelTable, parallel_constants
-from vines.dynamics.parallel._layout import row_width, state_size
+from vines.dynamics.parallel._layout import S_IN_TURN, row_width, state_size
 from vines.dynamics.parallel._run import BallMeasures, ParallelMeasures, ParallelRun, parallel_measures
 from vines.dynamics.parallel._strike import PASSES
 
@@ -56,6 +56,9 @@ class _Parallel(Room):
     def begin(self, c: Any, state: npt.NDArray[np.float64], x1: float, v1: float, x2: Any, v2: Any,
               phase: float, t: float) -> None:  # fmt: skip
         set_balls(c, state, float(x1), float(v1), x2, v2, phase, t)
+
+    def strike_in_turn(self, state: npt.NDArray[np.float64]) -> None:
+        state[S_IN_TURN] = 1.0
 
     def gaps(self, p: Any, at: Mapping[str, Any]) -> Any:
         return np.stack([(at["x1"] - at[f"x2_{k}"]) / p.beta[k - 1] for k in range(1, p.balls + 1)], axis=-1)

@@ -6,15 +6,20 @@ import math
 
 from vines.dynamics._flight import (
     derivatives,
+    drift,
     fifth,
     flight,
     flown,
     forced_fifth,
     fourth_bound,
     free_ball,
+    launched,
     modulus,
+    phase_after,
     phasors,
     pull,
+    rate_alone,
+    relative,
     ringing,
     sixth,
     speed_terms,
@@ -100,14 +105,16 @@ def _speed_terms(c, ur, ui, gr, gi):
     return abs(ur) + abs(ui) + (1.0 + c.Omega) * (abs(gr) + abs(gi)) + abs(c.G)
 
 
-holds_for.register(ParallelConstants)(holds_for.first)
+for _name in (drift, holds_for, launched, phase_after, rate_alone, relative):
+    _name.register(ParallelConstants)(_name.first)
+
 free_ball.register(ParallelConstants)(falling_ball)
 pull.register(ParallelConstants)(pull_of_tilt)
 
 
 @ringing.register(ParallelConstants)
 @njit
-def _ringing(c, x1, v1, phase):
+def _ringing(c, x1, v1, v2, phase):
     o = c.free.own
     cosine, sine = math.cos(phase), math.sin(phase)
     q_re, q_im = o.qr * cosine - o.qi * sine, o.qr * sine + o.qi * cosine

@@ -1,7 +1,8 @@
 """Where the state of a run and the rows of its events hold what belongs to each ball.
 
 Both begin as those of one ball do. In a row MODE is the number of the set of balls that ride on a wall, bit i for ball
-i, with the sign of the wall: they all ride on the same one.
+i, with the sign of the wall: they all ride on the same one. RUN of an impact is the set of the balls that are struck at
+once, with a sign in all rows of theirs but the first, and 0 for one alone.
 """
 
 from __future__ import annotations
@@ -10,8 +11,8 @@ from vines.dynamics._advance import ROW, STATE
 
 __all__ = [
     "BALL", "BALLS", "BEFORE", "B_BETA", "B_DECIDE", "B_FOUND", "B_MODE", "B_RELEASED", "B_RUN", "B_RUN_SIDE",
-    "B_STEP", "B_V2", "B_WALL", "B_X2", "EACH", "R_V2", "R_X2", "S_NEXT", "S_TIES", "TIES", "at", "row_width",
-    "state_size",
+    "B_STEP", "B_V2", "B_WALL", "B_X2", "EACH", "R_V2", "R_X2", "S_IN_TURN", "S_NEXT", "S_TIES", "TIES", "at",
+    "row_width", "state_size",
 ]  # fmt: skip
 
 from vines.kernels import fused_njit
@@ -22,7 +23,10 @@ S_TIES = STATE
 S_NEXT = STATE + 1
 """The ball that came to a wall first after the last event, had nothing bent its way: where the search begins."""
 
-BALLS = STATE + 2
+S_IN_TURN = STATE + 2
+"""Whether balls that arrive together are struck one after the other, in the order of their numbers, not at once."""
+
+BALLS = STATE + 3
 B_X2, B_V2, B_MODE, B_WALL, B_RELEASED, B_DECIDE, B_RUN, B_RUN_SIDE, B_STEP, B_FOUND, B_BETA = range(11)
 """Of each ball: position, velocity, the wall it rides on, the wall just left, whether it was let go there, whether it
 may stick from now on, impacts of the present chatter and their wall; room of the search for contacts; half the length

@@ -1,13 +1,14 @@
 """What happens at one instant: balls hit, perhaps together, and those that ride on a wall are struck or left behind.
 
 Balls that arrive together are struck by the law of all of them at once, ``dv1 = -sum mu_i (1 + r_i) w_i' / (1 + sum
-mu_i)`` and ``w_i' -> -r_i w_i'``. One that arrives while others ride on the other wall has its own impact first; they
-are struck then, all at once, with the velocity that it has given the frame. Those on its own wall are left behind.
+mu_i)`` and ``w_i' -> -r_i w_i'``, or one after the other where the state says so. One that arrives while others ride on
+the other wall has its own impact first; they are struck then, all at once, with the velocity that it has given the
+frame. Those on its own wall are left behind.
 """
 
 from __future__ import annotations
 
-from vines.dynamics._advance import IMPACT, RELEASE, S_DECIDE, S_IMPACTS, S_MODE, S_V1
+from vines.dynamics._advance import IMPACT, RELEASE, RUN, S_DECIDE, S_IMPACTS, S_MODE, S_V1
 from vines.dynamics._impact_law import after_impact_kernel
 from vines.dynamics.parallel._constants import MU, R, law_of_ball, of_ball
 from vines.dynamics.parallel._layout import (
@@ -19,6 +20,7 @@ from vines.dynamics.parallel._layout import (
     B_STEP,
     B_V2,
     B_WALL,
+    S_IN_TURN,
     S_TIES,
     at,
 )
@@ -79,12 +81,19 @@ def strike(c, state, hits, tau, rows, count):
         Whether no ball approached a wall any more when PASSES was reached.
     """
     n = c.balls
+    arrived = 0
     for i in range(n):
         if hits & (1 << i):
             state[at(i, B_WALL)] = state[at(i, B_STEP)]
+            arrived += 1
+    if arrived > 1:
+        state[S_TIES] += 1.0
     now = hits
     modes = state[S_MODE]
     for _ in range(PASSES):
+        if state[S_IN_TURN] != 0.0:
+            # Had they come one after the other, those that ride would have been struck between two of them.
+            now = now & ~hits if now & ~hits else now & -now
         together = 0
         momentum, mass, only = 0.0, 1.0, 0
         before = state[S_V1]
@@ -97,9 +106,8 @@ def strike(c, state, hits, tau, rows, count):
         after = before - momentum / mass
         if together == 1:
             after, _ = after_impact_kernel(law_of_ball(c.each, only), before, state[at(only, B_V2)])
-        elif now == hits:
-            state[S_TIES] += 1.0
         state[S_V1] = after
+        group = now if together > 1 else 0
         for i in range(n):
             if now & (1 << i):
                 wall, v2 = state[at(i, B_WALL)], state[at(i, B_V2)]
@@ -112,7 +120,10 @@ def strike(c, state, hits, tau, rows, count):
                 state[at(i, B_MODE)] = 0.0
                 count_riding(c.balls, state)
                 state[at(i, B_DECIDE)] = state[S_DECIDE] = 1.0
-                write(c.balls, rows[count], state, IMPACT, wall, tau, i, before, v2, together - 1.0, modes)
+                others = arrived - 1.0 if hits & (1 << i) else together - 1.0
+                write(c.balls, rows[count], state, IMPACT, wall, tau, i, before, v2, others, modes)
+                rows[count, RUN] = group
+                group = -abs(group)
                 tau, modes = 0.0, 0.0
                 count += 1
         now = 0

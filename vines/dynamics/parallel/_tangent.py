@@ -1,21 +1,33 @@
 """Disturbances of the frame and of several balls, (x1, v1, x2_1, v2_1, …), at fixed time.
 
 At an impact the balls that ride are kicked off or struck: they follow the frame until the disturbed impact and fly
-freely after it. Balls that hit together are taken one after the other, the flow being discontinuous there.
+freely after it. Of balls that are struck at once disturbances are taken that keep them together: at others the flow is
+discontinuous.
 """
 
 from __future__ import annotations
 
-from vines.dynamics._advance import A_V1, A_V2, IMPACT, KIND, PHASE, SIDE, STICK, V1, V2, X1, X2
+from vines.dynamics._advance import A_V1, A_V2, IMPACT, KIND, PHASE, RUN, SIDE, STICK, V1, V2, X1, X2
 from vines.dynamics._flight import decay, derivatives, flight
 from vines.dynamics._impact_law import after_impact_kernel
 from vines.dynamics._sincos import sincos
-from vines.dynamics._tangent import directions, flow_basis, jump_basis, offset
-from vines.dynamics.parallel._constants import BETA, MU, ParallelConstants, frame_with, law_of_ball, of_ball, riding
-from vines.dynamics.parallel._layout import BALL, BEFORE
+from vines.dynamics._tangent import carry_basis, directions, flow_basis, jump_basis, offset
+from vines.dynamics.parallel._constants import (
+    BETA,
+    MU,
+    ParallelConstants,
+    R,
+    frame_with,
+    law_of_ball,
+    of_ball,
+    riding,
+)
+from vines.dynamics.parallel._layout import BALL, BEFORE, R_V2
 from vines.kernels import fused_njit, linked_njit, njit
 
 __all__: list[str] = []
+
+carry_basis.register(ParallelConstants)(carry_basis.first)
 
 
 @directions.register(ParallelConstants)
@@ -27,6 +39,9 @@ def _directions(c):
 @flow_basis.register(ParallelConstants)
 @fused_njit
 def _flow_basis(c, mode, tau, Y):
+    if tau == 0.0:
+        # Between two events of one instant who still counts as riding is on the point of being kicked off or struck.
+        return
     o = c.free.own if mode == 0.0 else frame_with(c, mode).own
     ride = int(abs(mode))
     size = decay(o.half * tau)
@@ -49,13 +64,45 @@ def _acceleration(c, o, row, v):
     return derivatives(o, c.Omega, *flight(c, o, row[X1], v, row[PHASE], 0.0))[2]
 
 
+@linked_njit
+def _struck_at_once(c, row, group, ride, Y):
+    """Apply an impact of a group of balls, of which this is the first row: the others are as they were before."""
+    b = int(row[BALL]) - 1
+    v1, after1 = row[V1], row[A_V1]
+    a = _acceleration(c, frame_with(c, row[BEFORE]), row, v1)
+    a_after = _acceleration(c, c.free, row, after1)
+    closing = v1 - row[V2]
+    for j in range(Y.shape[1]):
+        shift = (Y[0, j] - Y[2 + 2 * b, j]) / closing if closing != 0.0 else 0.0
+        x1, w1 = Y[0, j] - v1 * shift, Y[1, j] - a * shift
+        momentum, mass = 0.0, 1.0
+        for i in range(c.balls):
+            if group & (1 << i):
+                mu = of_ball(c.each, i, MU)
+                momentum += mu * (1.0 + of_ball(c.each, i, R)) * (w1 - (Y[3 + 2 * i, j] + c.G * shift))
+                mass += mu
+            elif ride & (1 << i):
+                Y[3 + 2 * i, j] = Y[1, j] - (a + c.G) * shift
+        after = w1 - momentum / mass
+        for i in range(c.balls):
+            if group & (1 << i):
+                r, v2 = of_ball(c.each, i, R), row[V2] if i == b else row[R_V2 + 2 * i]
+                Y[2 + 2 * i, j] += (after1 + r * (v1 - v2) - v2) * shift
+                Y[3 + 2 * i, j] = after + r * (w1 - (Y[3 + 2 * i, j] + c.G * shift)) - c.G * shift
+        Y[0, j] = x1 + after1 * shift
+        Y[1, j] = after + a_after * shift
+
+
 @jump_basis.register(ParallelConstants)
 @linked_njit
 def _jump_basis(c, row, Y):
     b = int(row[BALL]) - 1
     before = row[BEFORE]
     ride = int(abs(before))
-    if row[KIND] == IMPACT:
+    if row[KIND] == IMPACT and row[RUN] != 0.0:
+        if row[RUN] > 0.0:
+            _struck_at_once(c, row, int(row[RUN]), ride, Y)
+    elif row[KIND] == IMPACT:
         v1, v2 = row[V1], row[V2]
         law = law_of_ball(c.each, b)
         after1, after2 = after_impact_kernel(law, v1, v2)

@@ -9,7 +9,7 @@ from vines.dynamics._ensemble import (
     threads_allowed,
 )
 from vines.dynamics._measures import measures_from
-from vines.dynamics._room import start_of
+from vines.dynamics._room import IN_TURN, TIES, TOGETHER, start_of
 from vines.dynamics._simulate import EVENTS_PER_PERIOD, STATUS
 from vines.dynamics._slices import slices
 from vines.dynamics._start import LARGEST
@@ -19,9 +19,12 @@ from vines.dynamics._warm_up import timed
 __all__ = [
     "EVENTS_PER_PERIOD",
     "IMPACT",
+    "IN_TURN",
     "LARGEST",
     "STATUS",
     "STATUS_NAMES",
+    "TIES",
+    "TOGETHER",
     "each_thread",
     "impacts_of",
     "measures_from",

@@ -5,6 +5,7 @@ from vines.rig.ball._momentum import SWAPPED, MomentumFit
 from vines.rig.ball._rebound import (
     FRICTION,
     LINEARITY,
+    ROLLS,
     TILT,
     Rebounds,
     mean_restitution,
@@ -16,6 +17,7 @@ from vines.rig.ball._rebound import (
 __all__ = [
     "FRICTION",
     "LINEARITY",
+    "ROLLS",
     "SWAPPED",
     "TILT",
     "BallMotion",

@@ -28,6 +28,9 @@ u is more than the standard deviation of that, .05, since it is skew."""
 TILT = Uncertain(0.0, 0.02)
 """Acceleration along the cavity: a tenth of a degree [m/s^2]."""
 
+ROLLS = 0.2
+"""Largest deceleration of a ball that slides on its guide [m/s^2]."""
+
 _CENTROID = Uncertain(5.5e-5, 1.6e-5)
 """Centroid of the force of a contact of 70 to 200 us after the touch [s]."""
 

@@ -4,7 +4,7 @@ from vines.rig.impacts._oscillator import Response, measure_response
 from vines.rig.impacts._pulses import find_pulses, pulses_of
 from vines.rig.impacts._ringing import Mode, rung
 from vines.rig.impacts._search import threshold
-from vines.rig.impacts._undisturbed import still_rings, undisturbed
+from vines.rig.impacts._undisturbed import still_rings, undisturbed, without_ringing
 
 __all__ = [
     "Mode",
@@ -16,4 +16,5 @@ __all__ = [
     "still_rings",
     "threshold",
     "undisturbed",
+    "without_ringing",
 ]

@@ -105,6 +105,7 @@ def measure_response(
     u_natural: tuple[float, float] = (1e-5, 1e-3),
     impacts: tuple[Floats, Floats] | None = None,
     seen: Train | None = None,
+    gain: complex | None = None,
     seed: int = 0,
 ) -> Response:
     """Find the impacts and fit the oscillator's motion.
@@ -128,6 +129,9 @@ def measure_response(
         Times [s] on the clock of the oscillator's channel and velocity jumps [m/s], if they are known otherwise.
     seen : Train, optional
         Impacts that a sensor of the ball showed: those among them that the oscillator's do not show are taken over.
+    gain : complex, optional
+        Of the accelerometer, relative to the second derivative of the displacement, where that is known: what rings
+        after impacts, and the pulses that begin it, are nearly nothing at the forcing frequency, but each alone is not.
     seed : int
         Of the draws for uncertainties.
 
@@ -150,7 +154,7 @@ def measure_response(
         train = inside(bins, Train.alike(*impacts, U_PULSE))
         found = Search(fitter, train, candidates=len(train))
     elif order == 0:
-        found = search_displacement(fitter, channel, accelerometer)
+        found = search_displacement(fitter, channel, accelerometer, gain)
     else:
         found = search_acceleration(fitter, channel)
         fitter = found.fitter

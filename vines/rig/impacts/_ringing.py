@@ -7,17 +7,19 @@ damped sines of whatever frequency can.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
 
-from vines.rig.fit import Bins, Fitter, JumpFit, JumpModel, Train
+from vines.rig.fit import Bins, Fitter, JumpFit, JumpModel, Train, bins_of
 from vines.rig.impacts._pulses import pulses_of
+from vines.rig.impacts._resonances import resonances
 from vines.rig.recording import ROLES, Sampled
 from vines.rig.uncertainty import robust_deviation
 
-__all__ = ["Mode", "less_modes", "mean_ringing", "modes_heard", "modes_seen", "rung", "unpredicted"]
+__all__ = ["Mode", "less_modes", "mean_ringing", "modes_felt", "modes_heard", "modes_seen", "rung", "unpredicted"]
 
 Floats = npt.NDArray[np.float64]
 
@@ -55,6 +57,16 @@ _APART = 4e-3
 """[s]"""
 _LOOSE = 1.5e-4
 """[s] Standard uncertainty of the times that prediction gives."""
+_UNDAMPED = 3e-3
+"""Damping ratio below which a sine may be a harmonic of the forcing, or hum."""
+_HARMONIC = 0.02
+"""How near to one, in parts of the forcing's frequency."""
+_HARMONICS = 24
+"""Of the forcing, in a channel of the base."""
+_SEEN = 0.2
+"""Least size of a mode after the usual impact, relative to the noise."""
+_BEFORE = 10.0
+"""So many usual jumps at once ring a mode as much as all that came before a record, at most."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,6 +81,8 @@ class Mode:
         [Hz] and damping ratio.
     s, size : complex
         After an impact with velocity jump dv the channel has Re(size dv exp(s t)) more.
+    since, before : float and complex
+        What rings on of impacts before the record is Re(before exp(s (t - since))).
     usual : float
         |size| times the usual |dv|, in the unit of the channel.
     """
@@ -79,7 +93,16 @@ class Mode:
     damping: float
     s: complex
     size: complex
+    since: float
+    before: complex
     usual: float
+
+    def signal(self, t: Floats, times: Floats, dv: Floats) -> Floats:
+        """Return what the channel has more at times on its clock, with impacts on that clock."""
+        own = times > self.since + _EDGE
+        return (
+            self.size * rung(t, times[own], dv[own], self.s)[0] + self.before * np.exp(self.s * (t - self.since))
+        ).real
 
     @property
     def text(self) -> str:
@@ -112,6 +135,7 @@ def modes_seen(fitter: Fitter, channel: Sampled, train: Train, known: tuple[Mode
     poles = [mode.s for mode in known if mode.name == channel.name]
     if poles:
         poles, fit = _tuned(model, part, fit, poles)
+    free = [] if poles else _free(model, part.t)
     for _ in range(3):
         if fit.residual < _CLEAN * fit.noise:
             break
@@ -119,7 +143,8 @@ def modes_seen(fitter: Fitter, channel: Sampled, train: Train, known: tuple[Mode
         new = _apart([*poles, *new])[len(poles) : _MOST]
         # A slow mode is half taken up by the flights, so that what they leave does not tell its pole.
         slow = [[_begun(2 * np.pi * f * complex(-_USUAL, 1.0))] for f in _SLOW]
-        starts = [new, *slow] if poles else [new, *([*new, *one] for one in slow)]
+        starts = [free] if free else [new, *slow] if poles else [new, *([*new, *one] for one in slow)]
+        free = []
         begun = [_apart([*poles, *start]) for start in starts if start]
         fits = [_with_modes(model, part, fit.jumps.dv, start) for start in begun if len(start) > len(poles)]
         if not fits:
@@ -131,9 +156,32 @@ def modes_seen(fitter: Fitter, channel: Sampled, train: Train, known: tuple[Mode
         poles, fit = tried, again
     if not poles or fit.residual > _BETTER * plain.residual:
         return ()
-    sizes = fit.extra[0::2] + 1j * fit.extra[1::2]
-    bare = [complex(size / model.bins.response(s)) for s, size in zip(poles, sizes, strict=True)]
-    return _told(channel, fit.jumps.dv, poles, bare)
+    # The whole record tells the sizes, and what rings at its begin.
+    whole = fitter.model
+    since = float(whole.bins.t[0])
+    part = train.between(since + _EDGE, float(whole.bins.t[-1]) - _EDGE)
+    fit = _with_modes(whole, part, part.dv, poles)
+    sizes = np.abs(_complex(fit.extra)[: len(poles)]) * np.median(np.abs(part.dv))
+    if np.any(sizes < _SEEN * fit.noise):
+        poles = [s for s, size in zip(poles, sizes, strict=True) if size >= _SEEN * fit.noise]
+        fit = _with_modes(whole, part, part.dv, poles)
+    bare = [each / whole.bins.response(s) for s, each in zip([*poles, *poles], _complex(fit.extra), strict=True)]
+    return _told(channel, fit.jumps.dv, poles, bare, since)
+
+
+def _free(model: JumpModel, times: Floats) -> list[complex]:
+    """Return poles by what the flights are made of: those that are neither the motion, its harmonics nor hum."""
+    own = []
+    for s in resonances(model.bins, times):
+        ratio, beside = -s.real / abs(s), abs(s) / model.omega - round(abs(s) / model.omega)
+        undamped = ratio < _UNDAMPED and (abs(beside) < _HARMONIC or _of_mains(abs(s) / (2 * np.pi)))
+        if 2 * np.pi * _LOWEST < abs(s) < 2 * np.pi * _HIGHEST and -_UNDAMPED < ratio < _MOST_DAMPED and not undamped:
+            own.append(_nearby(complex(s), 0j))
+    return _apart(own)[:_MOST]
+
+
+def _of_mains(frequency: float) -> bool:
+    return min(abs(frequency / f - round(frequency / f)) for f in (50.0, 60.0)) < 0.01
 
 
 def _stretch(bins: Bins) -> Bins:
@@ -144,11 +192,17 @@ def _stretch(bins: Bins) -> Bins:
 
 
 def _with_modes(model: JumpModel, train: Train, dv: Floats, poles: list[complex], moved: bool = False) -> JumpFit:
-    """Fit the motion with modes beside it, and with their derivatives by the poles where these are to be moved."""
-    waves = [rung(model.bins.t, train.t, dv, s) for s in poles]
-    columns = np.vstack([_pair(each) for both in waves for each in (both if moved else both[:1])])
-    u = np.concatenate([_widths(s, moved) for s in poles])
-    return replace(model, extra=(columns, u)).fit(train, draws=0)
+    """Fit the motion with modes beside it, and with their derivatives by the poles where these are to be moved.
+
+    Sizes of what rings on from before the record come last.
+    """
+    t = model.bins.t
+    waves = [rung(t, train.t, dv, s) for s in poles]
+    columns = [_pair(each) for both in waves for each in (both if moved else both[:1])]
+    columns += [_pair(np.exp(s * (t - t[0]))) for s in poles]
+    u = [_widths(s, moved) for s in poles]
+    u += [np.full(2, _BEFORE * float(np.median(np.abs(dv))) / abs(s)) for s in poles]
+    return replace(model, extra=(np.vstack(columns), np.concatenate(u))).fit(train, draws=0)
 
 
 def _tuned(model: JumpModel, train: Train, fit: JumpFit, poles: list[complex]) -> tuple[list[complex], JumpFit]:
@@ -159,8 +213,7 @@ def _tuned(model: JumpModel, train: Train, fit: JumpFit, poles: list[complex]) -
     dv = fit.jumps.dv
     best = _with_modes(model, train, dv, poles)
     for _ in range(_TURNS):
-        free = _with_modes(model, train, dv, poles, moved=True).extra
-        sizes = free[0::2] + 1j * free[1::2]
+        sizes = _complex(_with_modes(model, train, dv, poles, moved=True).extra)
         for part in (1.0, 0.4, 0.15):
             moved = [_nearby(s, part * _step(sizes, k)) for k, s in enumerate(poles)]
             moved = _apart(moved)
@@ -220,12 +273,11 @@ def modes_heard(
 
     def tried(poles: list[complex], moved: bool) -> tuple[npt.NDArray[np.complex128], float]:
         waves = [rung(t, times, dv, s) for s in poles]
-        columns = np.vstack([_pair(each) for both in waves for each in (both if moved else both[:1])])
-        columns = np.vstack([columns, own])
+        parts = [_pair(each) for both in waves for each in (both if moved else both[:1])]
+        columns = np.vstack([*parts, *(_pair(np.exp(s * (t - t[0]))) for s in poles), own])
         scale = np.linalg.norm(columns, axis=1)
         linear = np.linalg.lstsq((columns / scale[:, None]).T, left, rcond=1e-10)[0] / scale
-        rung_by = linear[: -len(own)]
-        return rung_by[0::2] + 1j * rung_by[1::2], float(np.std(left - linear @ columns))
+        return _complex(linear[: -len(own)]), float(np.std(left - linear @ columns))
 
     sizes, size = tried(poles, False)
     for _ in range(_TURNS):
@@ -243,9 +295,46 @@ def modes_heard(
             break
     if size > _BETTER * before:
         return ()
-    bare = [complex(each) / np.exp(0.5 * (s * pulses.smooth) ** 2) for s, each in zip(poles, sizes, strict=True)]
-    kept = [k for k, each in enumerate(bare) if abs(each) > _HEARD]
-    return _told(channel, dv, [poles[k] for k in kept], [bare[k] for k in kept])
+    bare = [each / np.exp(0.5 * (s * pulses.smooth) ** 2) for s, each in zip([*poles, *poles], sizes, strict=True)]
+    kept = [k for k in range(len(poles)) if abs(bare[k]) > _HEARD]
+    bare = [bare[k] for k in (*kept, *(len(poles) + k for k in kept))]
+    return _told(channel, dv, [poles[k] for k in kept], bare, float(t[0]))
+
+
+def modes_felt(channel: Sampled, omega: float, poles: Sequence[complex], times: Floats, dv: Floats) -> tuple[Mode, ...]:
+    """Return the modes that ring in a channel of the base, beside harmonics of the forcing; none if they are little.
+
+    Parameters
+    ----------
+    channel : Sampled
+        On the base.
+    omega : float
+        Of the forcing [rad/s].
+    poles : sequence of complex
+        Of the modes, as the oscillator's channels tell them.
+    times, dv : ndarray, shape (n,)
+        Impacts on the channel's clock.
+    """
+    bins = bins_of(channel)
+    t = bins.t
+    turn = np.exp(1j * omega * t)
+    own = np.vstack([np.ones(len(t)), *(_pair(turn**n) for n in range(1, _HARMONICS + 1))])
+    waves = np.vstack(
+        [*(_pair(rung(t, times, dv, s)[0]) for s in poles), *(_pair(np.exp(s * (t - t[0]))) for s in poles)]
+    )
+
+    def left(columns: Floats) -> tuple[Floats, float]:
+        scale = np.linalg.norm(columns, axis=1)
+        columns = columns / scale[:, None]
+        linear = np.linalg.solve(columns @ columns.T, columns @ bins.mean)
+        return linear / scale, float(np.std(bins.mean - linear @ columns))
+
+    linear, size = left(np.vstack([waves, own]))
+    if size > _BETTER * left(own)[1]:
+        return ()
+    sizes = _complex(linear[: len(waves)])
+    bare = [each / bins.response(s) for s, each in zip([*poles, *poles], sizes, strict=True)]
+    return _told(channel, dv, list(poles), bare, float(t[0]))
 
 
 def less_modes(channel: Sampled, modes: tuple[Mode, ...], times: Floats, dv: Floats) -> Sampled:
@@ -254,7 +343,7 @@ def less_modes(channel: Sampled, modes: tuple[Mode, ...], times: Floats, dv: Flo
     t = channel.times
     for mode in modes:
         if mode.name == channel.name:
-            values -= (mode.size * rung(t, times, dv, mode.s)[0]).real
+            values -= mode.signal(t, times, dv)
     return replace(channel, values=values)
 
 
@@ -304,12 +393,17 @@ def unpredicted(bins: Bins) -> Train:
     return Train.alike(t[_LAGS + which], height[which] * size / bins.width, _LOOSE)
 
 
-def _told(channel: Sampled, dv: Floats, poles: list[complex], sizes: list[complex]) -> tuple[Mode, ...]:
+def _told(channel: Sampled, dv: Floats, poles: list[complex], sizes: list[complex], since: float) -> tuple[Mode, ...]:
+    """Return modes by their poles; their sizes come first, then what rings on from before the record."""
     usual = float(np.median(np.abs(dv))) if len(dv) else 0.0
+    own, before = sizes[: len(poles)], sizes[len(poles) :]
     return tuple(
-        Mode(channel.role, channel.name, abs(s) / (2 * np.pi), -s.real / abs(s), s, size, abs(size) * usual)
-        for s, size in sorted(zip(poles, sizes, strict=True), key=lambda each: abs(each[0]))
-    )
+        Mode(
+            channel.role, channel.name, abs(s) / (2 * np.pi), -s.real / abs(s), s, complex(size), since, complex(first),
+            abs(size) * usual,
+        )
+        for s, size, first in sorted(zip(poles, own, before, strict=True), key=lambda each: abs(each[0]))
+    )  # fmt: skip
 
 
 def mean_ringing(fit: JumpFit, width: float) -> tuple[float, tuple[float, ...]]:
@@ -419,6 +513,10 @@ def rung(t: Floats, times: Floats, dv: Floats, s: complex) -> tuple[npt.NDArray[
 
 def _pair(column: npt.NDArray[np.complex128]) -> Floats:
     return np.stack([column.real, -column.imag])
+
+
+def _complex(pairs: Floats) -> npt.NDArray[np.complex128]:
+    return pairs[0::2] + 1j * pairs[1::2]
 
 
 def _widths(s: complex, moved: bool) -> Floats:

@@ -80,7 +80,7 @@ def _kink(bins: Bins, fit: JumpFit, order: int, t: Floats, start: float) -> tupl
         turn = np.exp(-s * (tau - start)) / (bins.response(s) * s.imag)
         return float(tau[np.argmin(_left_by_kinks(t, y, two, tau, (turn.imag, -turn.real), apart))])
 
-    near = scanned(coarse) + _GRID * np.arange(1 - _COARSE, _COARSE)
+    near = scanned(coarse) + _GRID * np.arange(1 - _COARSE, _COARSE, dtype=np.float64)
     tau = scanned(near[(near >= low) & (near < high)])
     after = np.where(t > tau, (s**order * np.exp(s * (t - tau))).imag / s.imag, 0.0)
     fair = np.abs(t - tau) > apart

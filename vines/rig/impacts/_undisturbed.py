@@ -10,10 +10,18 @@ import numpy as np
 from vines.errors import RigError
 from vines.rig.fit import Train, bins_of
 from vines.rig.impacts._oscillator import Response
-from vines.rig.impacts._ringing import Mode, less_modes, mean_ringing, modes_heard, modes_seen, unpredicted
+from vines.rig.impacts._ringing import (
+    Mode,
+    less_modes,
+    mean_ringing,
+    modes_felt,
+    modes_heard,
+    modes_seen,
+    unpredicted,
+)
 from vines.rig.recording import Recording
 
-__all__ = ["still_rings", "undisturbed"]
+__all__ = ["still_rings", "undisturbed", "without_ringing"]
 
 _CLEAN = 1.25
 """Most that a fit leaves, relative to the noise, before modes are looked for."""
@@ -32,7 +40,7 @@ _LOOSE, _TIGHT = 1e-4, 2e-5
 
 
 def undisturbed(
-    recording: Recording, measure: Callable[[Recording], Response]
+    recording: Recording, measure: Callable[[Recording, complex | None], Response]
 ) -> tuple[Recording, Response, tuple[Mode, ...]]:
     """Return the response with modes of the frame taken off, the recording without them, and the modes.
 
@@ -40,14 +48,15 @@ def undisturbed(
     ----------
     recording : Recording
     measure : callable
-        Finds the impacts in a recording and fits the motion.
+        Finds the impacts in a recording and fits the motion; the second argument is the gain of the accelerometer where
+        that is known.
 
     Notes
     -----
     They are looked for where the fit of a displacement leaves more than its noise and that rings after impacts, or no
     impacts are found.
     """
-    best = measure(recording)
+    best = measure(recording, None)
     found: tuple[Recording, Response, tuple[Mode, ...]] = (recording, best, ())
     if best.order != 0 or (len(best.fit.jumps.t) >= _FEW and best.fit.residual < _CLEAN * best.fit.noise):
         return found
@@ -67,7 +76,7 @@ def undisturbed(
 
 
 def _taken_off(
-    recording: Recording, best: Response, train: Train, measure: Callable[[Recording], Response]
+    recording: Recording, best: Response, train: Train, measure: Callable[[Recording, complex | None], Response]
 ) -> tuple[Recording, Response, tuple[Mode, ...]]:
     """Return recording, response and modes, found and taken off in turns, begun with given impacts."""
     channel, heard = recording.channels[best.channel.name], recording.role("lo_acc")
@@ -81,20 +90,20 @@ def _taken_off(
                 break
             channels = dict(recording.channels)
             channels[channel.name] = less_modes(channel, modes, train.t, train.dv)
-            again = measure(replace(recording, channels=channels))
+            again = measure(replace(recording, channels=channels), best.gain)
             if heard is not None and best.gain is not None:
                 fit, delay = again.fit, again.delay
                 if len(fit.jumps.t) < _FEW:
                     # Its own modes hide the pulses; what the displacement's past does not predict tells when they ring.
                     less = replace(best.begun.model, bins=bins_of(channels[channel.name]))
                     fit, delay = less.fit(train, draws=0), best.delay
-                more = modes_heard(fit, delay, heard, again.gain or best.gain, modes)
+                more = modes_heard(fit, delay, heard, best.gain, modes)
                 if more:
                     times, dv = fit.jumps.t, fit.jumps.dv
                     channels[channel.name] = less_modes(channel, modes, times, dv)
                     channels[heard.name] = less_modes(heard, more, times - delay, dv)
                     modes = (*modes, *more)
-                    again = measure(replace(recording, channels=channels))
+                    again = measure(replace(recording, channels=channels), best.gain)
         except (RigError, np.linalg.LinAlgError):
             break
         better = len(again.fit.jumps.t) >= _FEW and (
@@ -107,6 +116,33 @@ def _taken_off(
             break
         train = Train(again.fit.jumps.t, again.fit.jumps.dv, np.full(len(again.fit.jumps.t), _TIGHT))
     return found
+
+
+def without_ringing(recording: Recording, response: Response, modes: tuple[Mode, ...]) -> Recording:
+    """Return a recording without modes of the frame, in the base's displacement and velocity neither.
+
+    An acceleration has pulses that set the modes moving; without their ringing these would count for the base's motion.
+
+    Parameters
+    ----------
+    recording : Recording
+        As it was before they were looked for.
+    response : Response
+        By which they are known, with its impacts.
+    modes : tuple of Mode
+        Of the oscillator's channels.
+    """
+    jumps, channels = response.fit.jumps, dict(recording.channels)
+    poles = tuple(mode.s for mode in modes if mode.name == response.channel.name)
+    for name, channel in recording.channels.items():
+        if channel.role in ("base_disp", "base_vel"):
+            late = response.late
+            own = modes_felt(channel, response.fit.motion.omega, poles, jumps.t - late, jumps.dv)
+        else:
+            late = response.delay if channel.role == "lo_acc" else 0.0
+            own = tuple(mode for mode in modes if mode.name == name)
+        channels[name] = less_modes(channel, own, jumps.t - late, jumps.dv)
+    return replace(recording, channels=channels)
 
 
 def still_rings(response: Response) -> tuple[float, tuple[float, ...]] | None:

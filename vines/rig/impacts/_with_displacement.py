@@ -54,7 +54,9 @@ class _Displaced(Search):
     known: float
 
 
-def search_displacement(fitter: Fitter, channel: Sampled, accelerometer: Sampled | None) -> Search:
+def search_displacement(
+    fitter: Fitter, channel: Sampled, accelerometer: Sampled | None, gain: complex | None = None
+) -> Search:
     """Find the impacts where the displacement is measured.
 
     Parameters
@@ -65,11 +67,13 @@ def search_displacement(fitter: Fitter, channel: Sampled, accelerometer: Sampled
         That channel.
     accelerometer : Sampled or None
         On the oscillator, which hears impacts better.
+    gain : complex, optional
+        Of it, relative to the second derivative of the displacement, where that is known.
     """
     corners = pulses_of(channel, 0)
     if accelerometer is None:
         return search(_LASER_ALONE, _begun(fitter, corners, corners, LOOSE, 0.0, None))
-    gain = _gain(fitter.bins, accelerometer, fitter.model.omega)
+    gain = gain or _gain(fitter.bins, accelerometer, fitter.model.omega)
     pulses = pulses_of(accelerometer)
     pulses = replace(pulses, values=pulses.values / (abs(gain) * np.sign(gain.real)))
     # What the alignment of the two sensors leaves open; the impacts that both see may say more.

@@ -15,7 +15,7 @@ import numpy as np
 import numpy.typing as npt
 from scipy.signal import csd
 
-from vines.rig.ball import FRICTION, Rebounds, stated
+from vines.rig.ball import FRICTION, ROLLS, Rebounds, stated
 from vines.rig.fit import bins_of
 from vines.rig.impacts import Mode, Response, pulses_of, rung
 from vines.rig.quantities._forcing import Base, Tuning
@@ -45,9 +45,6 @@ _GIVES = 1e-3
 
 _TURNS_ROUND = 0.3
 """A base that moves more than that beside the oscillator drives it: floor and fan, no reaction."""
-
-_ROLLS = 0.2
-"""Largest deceleration of a ball that slides on its guide [m/s^2]."""
 
 _SURE = 3.5
 """Standard deviations by which a limit must be passed."""
@@ -128,7 +125,7 @@ def limits(
     # What else acts on the oscillator would pass for friction.
     if all(one.passed for one in found):
         rubs = ball.rubbing
-        most = _ROLLS
+        most = ROLLS
         given = recording.run.more.get("friction")
         if given is not None:
             known = stated(given, FRICTION)
@@ -256,8 +253,8 @@ class Ringing:
     dv: Floats
 
     def waves(self, t: Floats) -> Floats:
-        """Return the two phases of each mode and of its derivative by the exponent, one a row."""
-        waves = [wave for s in self.s for wave in rung(t, self.t, self.dv, s)]
+        """Return the two phases of each mode, its derivative by the exponent and what rings on at first, one a row."""
+        waves = [wave for s in self.s for wave in (*rung(t, self.t, self.dv, s), np.exp(s * (t - t[0])))]
         return np.array([part for wave in waves for part in (wave.real, wave.imag)]).reshape(-1, len(t))
 
     def away(self, f: Floats) -> npt.NDArray[np.bool_]:

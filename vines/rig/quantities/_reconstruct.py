@@ -12,6 +12,7 @@ from vines.errors import RigError
 from vines.rig.ball import (
     FRICTION,
     LINEARITY,
+    ROLLS,
     SWAPPED,
     TILT,
     BallMotion,
@@ -24,7 +25,7 @@ from vines.rig.ball import (
 )
 from vines.rig.camera import see_ball
 from vines.rig.fit import Forced, JumpModel, Push, Train, forced_response, push, root, slide
-from vines.rig.impacts import Mode, Response, measure_response, still_rings, undisturbed
+from vines.rig.impacts import Mode, Response, measure_response, still_rings, undisturbed, without_ringing
 from vines.rig.quantities._budget import length_parts, quotient, source_values, tuned
 from vines.rig.quantities._camera import with_camera
 from vines.rig.quantities._cycle import Track, slots
@@ -98,6 +99,7 @@ def _reconstructed(
     if run.protocol == "ringdown" or not run.ball:
         raise RigError(f"run {run.run_id!r} has no ball in it; a ring-down gives omega0 and lam, see ring_down")
     base = measure_base(recording)
+    recorded = recording
     recording, hum = without_hum(recording, base.f.value)
     if hum is not None:
         base = measure_base(recording)
@@ -106,19 +108,26 @@ def _reconstructed(
     s = root(omega0.value, lam.value)
     forced = _harmonics(base, recording, s)
     friction = stated(run.more.get("friction"), FRICTION)
+    assumed = friction.value
     mu = run.m.value / run.M.value
     sight = see_ball(recording, s, omega)
 
-    def measure(recording: Recording) -> Response:
+    def measure(recording: Recording, gain: complex | None = None) -> Response:
         return measure_response(
             recording, s, omega, forced, seen=None if sight is None else sight.train(mu),
-            friction=mu * friction.value, u_natural=(omega0.u / omega0.value, lam.u / lam.value),
-            driven=complex(forced_response(base.e[0], omega, s)), impacts=impacts, seed=seed,
+            friction=mu * assumed, u_natural=(omega0.u / omega0.value, lam.u / lam.value),
+            driven=complex(forced_response(base.e[0], omega, s)), impacts=impacts, gain=gain, seed=seed,
         )  # fmt: skip
 
     modes: tuple[Mode, ...] = ()
     if impacts is None:
         recording, response, modes = undisturbed(recording, measure)
+        if modes:
+            # Beside modes that ring hum is read wrongly, and the base moves as its sensor's stand does.
+            recording, hum = without_hum(without_ringing(recorded, response, modes), base.f.value)
+            base = measure_base(recording)
+            forced = _harmonics(base, recording, s)
+            response = measure(recording, response.gain)
     else:
         response = measure(recording)
     if len(response.fit.jumps.t) < 6:
@@ -128,7 +137,13 @@ def _reconstructed(
     side = -np.sign(response.fit.jumps.dv)
     bend = stiffened(ringdowns, response)
     omega0 = combined(omega0.value, omega0.u, omega0.value * bend.value, omega0.value * bend.u)
-    tuning = _tuned(base, omega0, lam, response, forced, mu, run.b.value, friction)
+    tuning = _tuned(base, omega0, lam, response, forced, mu, run.b.value, friction, assumed)
+    if impacts is None and tuning.rubbing.value - tuning.rubbing.u > ROLLS:
+        # What so much friction does to the oscillator would pass for jumps that are smaller.
+        assumed = tuning.rubbing.value
+        response = measure(recording, response.gain)
+        side = -np.sign(response.fit.jumps.dv)
+        tuning = _tuned(base, omega0, lam, response, forced, mu, run.b.value, friction, assumed)
     span = (response.bins.t[0] - response.late, response.bins.t[-1] - response.late)
     phase = omega * (response.fit.jumps.t - response.late) + base.phase.value + tuning.phase
     bounds = tuple(omega * t + base.phase.value + tuning.phase for t in span)
@@ -236,6 +251,7 @@ def _tuned(
     mu: float,
     b: float,
     friction: Uncertain,
+    assumed: float,
 ) -> Tuning:
     """Lay the forced response beside the base; its slopes by omega0, lam and friction are differences of more fits."""
     omega, fit = base.fit.omega, response.fit
@@ -256,7 +272,7 @@ def _tuned(
     here = again(omega0.value, lam.value)
     by_omega0 = (again(omega0.value * (1 + step), lam.value) - here) / step
     by_lam = (again(omega0.value, lam.value * 1.02) - here) / 0.02
-    assumed = 0.0 if response.pushed is None else friction.value
+    assumed = 0.0 if response.pushed is None else assumed
     sliding = slide(fit.motion, fit.jumps.x + np.sign(fit.jumps.dv) * b)
     size = mu * (assumed + 1.0) / abs(s) ** 2
     more = push(sliding, fit.motion.starts[1:], response.bins.t, s, size, response.order)

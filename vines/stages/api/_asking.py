@@ -11,6 +11,7 @@ from vines import schema
 from vines.catalogue import connect
 from vines.errors import QueryError, UnknownNameError, nearest
 from vines.stages.api._home import Home, current
+from vines.stages.api._uncomputed import uncomputed
 
 if TYPE_CHECKING:
     import pyarrow as pa
@@ -75,6 +76,8 @@ def table(name: str, *, study: Home | None = None) -> pa.Table:
     """
     study = study or current()
     with connect(study.store) as catalogue:
+        if name not in catalogue.names and (why := uncomputed(name, study)):
+            raise UnknownNameError(why)
         found = catalogue.table(name)
     if not found.num_rows:
         remedy = "'vines run NAME' computes a pipeline, 'vines status' says what there is"

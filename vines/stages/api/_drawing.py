@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 from contextlib import AbstractContextManager
 from pathlib import Path
@@ -11,7 +12,7 @@ from vines.errors import UnknownNameError, nearest
 from vines.pipeline import file_of, stored_inputs
 from vines.stages.api._home import Home, current
 from vines.stages.api._parts import load_pipeline
-from vines.stages.plots import plot_of
+from vines.stages.plots import inches, plot_of
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -144,5 +145,7 @@ def _asked(
     if stage not in figures:
         raise UnknownNameError(f"{pipeline.name} has no figure {stage!r}: {nearest(stage, figures)}")
     if width is not None:
+        number = re.fullmatch(r"\d*\.?\d+", width) if isinstance(width, str) else None
+        inches(float(width) if number else width)
         pipeline = load_pipeline(of, {**given, f"stages.{stage}.width": width}, study=study)
     return pipeline, stage

@@ -8,9 +8,10 @@ from pathlib import Path
 
 from vines.errors import DamageError, DamageWarning, FileMissingError, UnknownNameError, nearest
 from vines.stages.api._home import Home, current
+from vines.stages.api._uncomputed import uncomputed
 from vines.store import Store
 
-__all__ = ["all_logs", "find_logs", "recordings_folder"]
+__all__ = ["all_logs", "find_logs", "recordings_folder", "stages_of_logs"]
 
 
 def recordings_folder(*, study: Home | None = None) -> Path:
@@ -33,6 +34,16 @@ def all_logs(*, study: Home | None = None) -> list[Path]:
     if not found:
         raise UnknownNameError("there are no logs: nothing with logs has been run here; try 'vines run quickstart'")
     return list(dict.fromkeys(found))
+
+
+def stages_of_logs(*, study: Home | None = None) -> dict[Path, str]:
+    """Return ``<pipeline>.<stage>`` of each log of the catalogue by its file; the first of several that share one."""
+    pinned, _ = _pinned((study or current()).store)
+    found: dict[Path, str] = {}
+    for stage, logs in pinned.items():
+        for path in logs.values():
+            found.setdefault(path.resolve(), stage)
+    return found
 
 
 def _pinned(store: Store) -> tuple[dict[str, dict[str, Path]], dict[str, str]]:
@@ -98,6 +109,8 @@ def find_logs(name: str, *, study: Home | None = None) -> list[Path]:
     for where in (stage, stage.partition(".")[0]):
         if where in absent:
             raise DamageError(f"log {name!r}: {absent[where]}")
+    if why := uncomputed(name, study or current()):
+        raise UnknownNameError(why)
     if absent:
         raise DamageError(f"no log {name!r} among those that can be read; {next(iter(absent.values()))}")
     if not logs:

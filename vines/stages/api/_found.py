@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from vines.stages.api._parts import Part
     from vines.store import Result, Store
 
-__all__ = ["found"]
+__all__ = ["MOST_ABREAST", "found"]
 
 
 MOST = 6
@@ -71,7 +71,7 @@ def _of_all(store: Store, parts: list[Part]) -> list[str]:
 
 
 def _step(command: str, what: str) -> str:
-    return f"  {command:68s} {what}"
+    return f"  {command:68s} {what}" if len(command) <= 68 else f"  {command}\n  {'':68s} {what}"
 
 
 def _cached(store: Store, pipeline: str, results: dict[str, Result]) -> list[str]:
@@ -213,11 +213,17 @@ def _pictures(store: Store, pipeline: str, results: dict[str, Result]) -> Iterab
             yield f"  {_short(copy if copy.is_file() else drawn[0])}{f' (and {others})' if others else ''}"
 
 
+MOST_ABREAST = 8
+"""Runs that `vines view` shows together at most."""
+
+
 def _next(pipeline: str, results: dict[str, Result]) -> Iterable[tuple[str, str]]:
     logged = [stage for stage, result in results.items() if result.logs]
     if logged:
         several = f" (one of {len(logged)}, also {logged[1]})" if logged[1:] else ""
-        yield f"vines view {pipeline}.{logged[0]}", f"see a run in the Rerun viewer{several}"
+        many = results[logged[0]].logs
+        point = f"/{next(iter(many)).partition('/')[0]}" if len(many) > MOST_ABREAST else ""
+        yield f"vines view {pipeline}.{logged[0]}{point}", f"see a run in the Rerun viewer{several}"
     for stage, result in results.items():
         beside = [name for name in result.logs if name.endswith("/measured")]
         if beside:

@@ -13,14 +13,17 @@ __all__ = ["reference_kinds", "reference_plots"]
 _HEAD = """\
 # Reference: the {what}s
 
-Made from the {what}s themselves by `vines {what}s --markdown > docs/reference_{what}s.md`; don't edit it by hand.
 {about}
+
+Made from the {what}s themselves by `vines {what}s --markdown > docs/reference_{what}s.md`; don't edit it by hand.
 """
 _KINDS = """\
+Every kind of stage that a study may have, with all options.
 [pipelines.md](pipelines.md) explains declarations and the keys that all kinds share: `kind`, `params`, `vary`, `zip`,
 `refine`, `carry`, `needs`, `system`, `physical`, `link`. Parameters and options are those for the VI-NES; with another
 system parameters are those of the system, `start` has its names, and points take `harvest`."""
 _PLOTS = """\
+Every plot that a figure may be, with all options.
 A stage of the kind `figure` names a plot as `plot = "..."` and the stages that it draws as `needs = [...]`;
 [pipelines.md](pipelines.md) explains how."""
 

@@ -6,7 +6,7 @@ from collections.abc import Collection, Iterable
 from pathlib import Path
 
 from vines.errors import UnknownNameError, VinesError, nearest
-from vines.pipeline import members
+from vines.pipeline import file_of, members
 
 __all__ = ["stored_pipelines"]
 
@@ -30,6 +30,8 @@ def stored_pipelines(names: Iterable[str], pinned: Collection[str], root: Path) 
             mine = [name] if name in pinned else [each for each in members(name, root) if each in pinned]
         except VinesError:
             mine = []
+        if not mine and file_of(name, root) is not None:
+            raise UnknownNameError(f"nothing is stored of the pipeline {name!r} yet; 'vines run {name}' computes it")
         if not mine:
             raise UnknownNameError(f"nothing is stored of a pipeline {name!r}: {nearest(name, pinned)}")
         found.update(dict.fromkeys(mine))

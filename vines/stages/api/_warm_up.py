@@ -26,6 +26,7 @@ def _tasks() -> dict[str, Task]:
         Task("scatter", "runs with scatter", "vines.dynamics._warm_up:scatter"),
         Task("curves", "bifurcations in two parameters", "vines.orbits._warm_up:curves"),
         Task("runs", "energies, samples, tangent maps of a run", "vines.dynamics._warm_up:runs"),
+        Task("exits", "regimes under noise", "vines.attractors._warm_up:noise"),
         Task("many_runs", "many runs and what they settle to", "vines.attractors._warm_up:many_runs"),
     )
     return {task.name: task for task in listed}

@@ -41,10 +41,13 @@ def _parameters(table: str, rows: Rows) -> Defect:
 
 
 def _of_ball(rows: Rows, name: str, ball: Floats) -> Floats:
-    """Return what the ball of each row has of a parameter: ``name_k`` of ball k, `name` where balls have no number."""
+    """Return what the ball of each row has of a parameter: ``name_k`` of ball k, `name` where balls have no number.
+
+    A cavity whose length no parameter tells is the unit of lengths.
+    """
     if rows.has(name):
         return rows[name]
-    found = np.full(len(rows), np.nan)
+    found = np.full(len(rows), np.nan if rows.has(f"{name}_1") else 1.0)
     for number in np.unique(ball[ball > 0]).astype(int):
         found = np.where(ball == number, rows[f"{name}_{number}"], found)
     return found
@@ -52,7 +55,7 @@ def _of_ball(rows: Rows, name: str, ball: Floats) -> Floats:
 
 def _mass(rows: Rows) -> Floats:
     """Return the mass of all balls over that of the frame."""
-    names = [name for name in rows.table.column_names if name.startswith("mu_")]
+    names = [name for name in rows.table.column_names if name.partition("_")[0] == "mu"]
     return np.nansum([rows[name] for name in names], axis=0)
 
 
@@ -81,6 +84,9 @@ def _balance(rows: Rows, where: np.ndarray, *more: str) -> Iterator[Defect]:
     """Yield the checks of energies: what the base gives is lost or stored."""
     lost = rows["impact_loss_left"] + rows["impact_loss_right"]
     damper = rows["damper_loss"] if rows.has("damper_loss") else np.zeros(len(rows))
+    for name in ("electric_power", "friction_power"):
+        if rows.has(name):
+            damper = damper + rows[name] * rows["duration"]
     change = sum((rows[name] for name in more), np.zeros(len(rows)))
     work = rows["base_work"]
     scale = np.max([np.abs(each) for each in (work, damper, lost, change)], axis=0)
@@ -125,6 +131,8 @@ def family_attractor_defects(table: str, rows: Rows) -> Iterator[Defect]:
     gap = np.zeros(len(rows))
     if rows.has("end_w"):
         gap = np.abs(rows["end_w"]) - 1
+    if rows.has("end_x1", "end_x2", "walls"):
+        gap = np.where(rows["walls"] > 0, np.abs(rows["end_x1"] - rows["end_x2"]) - 1, 0.0)
     for ball in range(1, most_balls(schema.table(table).system) + 1):
         off = np.abs(rows["end_x1"] - rows[f"end_x2_{ball}"]) / rows[f"beta_{ball}"] - 1
         gap = np.fmax(gap, off)
@@ -173,7 +181,9 @@ def _product(rows: Rows) -> Defect:
         off = np.abs(np.prod(m, axis=1) * np.exp(-_log_determinant(rows)) - 1)
         # the small ones carry the rounding error of the largest
         slack = _EPSILON * size.max(axis=1) / size.min(axis=1)
-    off = np.where(slack < 1e-2, off / (1 + slack / _PRODUCT), np.nan)
+    # Turns and stops of a ball that slides contract too, by ratios of accelerations that rows do not hold.
+    told = slack < 1e-2 if not rows.has("friction_power") else np.zeros(len(rows), dtype=bool)
+    off = np.where(told, off / (1 + slack / _PRODUCT), np.nan)
     return Defect("multiplier product", "the determinant: r² for each impact, exp(-lam p T)", _PRODUCT, off)
 
 
@@ -189,7 +199,8 @@ def _log_determinant(rows: Rows) -> Floats:
             r = rows["r"] if rows.has("r") else rows[f"r_{max(ball, 1)}"]
             found[mine] += 2 * np.log(np.maximum(r[mine], 1e-300))
         if rows.has("lam"):
-            found[mine] -= (rows["lam"] * word.p * 2 * np.pi / rows["Omega"])[mine]
+            rate = rows["lam"] + ((1 + rows["mu"]) * rows["delta"] if rows.has("delta") else 0.0)
+            found[mine] -= (rate * word.p * 2 * np.pi / rows["Omega"])[mine]
     return found
 
 
@@ -198,4 +209,7 @@ def family_transient_defects(table: str, rows: Rows) -> Iterator[Defect]:
     yield _parameters(table, rows)
     done = rows.text("status") == "ok"
     shares = rows["impact_share"] + rows["damper_share"] + rows["left_share"]
-    yield Defect("shares", "impacts, damper and what is left make 1", 1e-9, np.where(done, np.abs(shares - 1), np.nan))
+    for name in ("electric_share", "friction_share"):
+        if rows.has(name):
+            shares = shares + rows[name]
+    yield Defect("shares", "all that is lost and what is left make 1", 1e-9, np.where(done, np.abs(shares - 1), np.nan))

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 __all__ = ["check_files", "check_provenance", "check_schema", "check_table"]
 
 _CHOICE = ("refine", "vary", "zip")
-_ORIGIN = ("key", "versions", "revision")
+_ORIGIN = ("key", "versions", "revision", "exact", "order")
 
 
 def check_files(ledger: Ledger, where: str, result: Result) -> None:

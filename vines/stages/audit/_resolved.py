@@ -12,7 +12,7 @@ import numpy.typing as npt
 from vines.dynamics import simulate
 from vines.errors import OrbitNotFound
 from vines.model import STATE_NAMES, VI_NES, Params, Word
-from vines.orbits import Orbit, all_orbits, find_orbit, orbit_row
+from vines.orbits import Orbit, all_orbits, find_orbit, orbit_row, shoots
 from vines.schema import system_table
 from vines.stages.audit._compare import TOLERANCE, Comparison, compare_rows, stored_row
 from vines.stages.audit._located import locate_again
@@ -55,8 +55,15 @@ def resolve_again(result: Result, table: str, place: int, rng: np.random.Generat
     shortest = float(np.diff(t, append=t[0] + word.p * p.period).min())
     if word.sticking:
         orbit = _searched(word, p, t)
+    elif p.system.stops:
+        first = np.array([row["x1"][0], row["v1"][0], row["v2"][0], t[0]])
+        orbit = _solve(word, p, first, rng.uniform(-1, 1, 4) * min(scale, 0.1 * shortest))
     else:
-        orbit = _solve(word, p, t, rng.uniform(-1, 1, len(t)) * min(scale, 0.1 * shortest))
+        disturbance = rng.uniform(-1, 1, len(t)) * min(scale, 0.1 * shortest)
+        if shoots(p):
+            t = np.column_stack([t, *(row[name] for name in STATE_NAMES)])
+            disturbance = np.pad(disturbance[:, None], ((0, 0), (0, 4)))
+        orbit = _solve(word, p, t, disturbance)
     comparison = Comparison()
     m = np.array(row["multipliers_re"]) + 1j * np.array(row["multipliers_im"])
     finite = bool(np.isfinite(m).all())
@@ -69,7 +76,7 @@ def resolve_again(result: Result, table: str, place: int, rng: np.random.Generat
         largest = float(np.abs(one).max())
         for k, (a, b) in enumerate(zip(one, other, strict=True)):
             comparison.number(f"coefficient {k} of the multipliers", float(abs(a - b)), 0.0, allowed * 10 * largest)
-        if row["admissible"] and not word.sticking:
+        if row["admissible"] and not word.sticking and all(word.sides):
             _fly(comparison, orbit)
     return comparison
 

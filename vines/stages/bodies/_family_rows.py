@@ -140,7 +140,12 @@ def _powers(measures: Measures, hits: np.ndarray, duration: float, law: HarvestL
     ties = getattr(measures, "ties", 0)
     # a run that the cap on events ended has no window
     power = measures.impact_loss / measures.duration if measures.duration > 0 else None
+    travel = measures.travel_loss / measures.duration if measures.duration > 0 else None
     found: dict[str, Any] = {"impact_power": power, "ties": ties}
+    if measures.duration > 0:
+        found["viscous_power"] = getattr(measures, "viscous_loss", 0.0) / measures.duration
+    # by the name that the system has for it, if for any
+    found |= dict.fromkeys(("electric_power", "friction_power"), travel)
     if law is not None:
         energy = Harvest(law.threshold, law.coefficients).energy(hits["w_dot"])
         found["harvested_left"] = float(energy[hits["side"] > 0].sum()) / duration

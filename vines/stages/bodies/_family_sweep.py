@@ -5,11 +5,10 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
-from vines.attractors import settle_from
+from vines.attractors import coexisting, random_starts, settle_from
 from vines.model import Parameters
 from vines.pipeline import Batch, Job
 from vines.schema import system_table
-from vines.stages.bodies._coexisting import coexisting, random_starts
 from vines.stages.bodies._family_rows import family_attractors, family_impacts, family_point, parameters_of, start_of
 from vines.stages.bodies._sweep import representative
 

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 from vines.attractors import settle_from
 from vines.dynamics import Trajectory, simulate
+from vines.dynamics.runs import IN_TURN
 from vines.logs import write_run
 from vines.model import Parameters
 from vines.pipeline import Batch, Job
@@ -58,6 +59,6 @@ def compute(job: Job[FamilyTrajectoryOptions]) -> Batch:
 
 
 def _run(p: Parameters, state: dict[str, float], periods: float) -> Trajectory:
-    """Go on from a state, at time 0 and in its phase."""
+    """Go on from a state, at time 0 and in its phase, as runs that settle do."""
     at: dict[str, Any] = {name: value for name, value in state.items() if name not in ("t", "phase")}
-    return simulate(p, phi=state["phase"], periods=periods, **at)
+    return simulate(p, phi=state["phase"], periods=periods, ties=IN_TURN, **at)

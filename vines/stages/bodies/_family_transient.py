@@ -5,9 +5,10 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from vines.dynamics import simulate
+from vines.dynamics.runs import IN_TURN
 from vines.pipeline import Batch, Job
 from vines.schema import system_table
-from vines.stages.bodies._family_rows import parameters_of
+from vines.stages.bodies._family_rows import only_own, parameters_of
 from vines.stages.bodies._transient import transient_row
 
 if TYPE_CHECKING:
@@ -26,5 +27,9 @@ def compute(job: Job[FamilyTransientOptions]) -> Batch:
         at_rest = {each.name: 0.0 for each in p.system.state}
         given = p.system.started(at_rest | options.start)
         start: dict[str, Any] = {name: given[name] for name in at_rest} | {"v1": point.params["V"]}
-        rows.append(transient_row(point, simulate(p, **start, periods=options.periods)))
+        run = simulate(p, **start, periods=options.periods, ties=IN_TURN)
+        row = transient_row(point, run)
+        lost = run.measures().travel_loss / row["energy"]
+        more = dict.fromkeys(("electric_share", "friction_share"), lost)
+        rows.append(only_own(p, "transients", row | more))
     return Batch(tables={system_table(options.system, "transients"): rows})

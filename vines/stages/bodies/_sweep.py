@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pyarrow as pa
 
-from vines.attractors import Attractor, classify_many, settle
+from vines.attractors import Attractor, classify_many, coexisting, random_starts, settle
 from vines.model import PARAMETER_NAMES, START_NAMES, STATE_NAMES, Params
 from vines.pipeline import Batch, Job
-from vines.stages.bodies._coexisting import attractor_rows, coexisting, random_starts
+from vines.stages.bodies._coexisting import attractor_rows
 from vines.stages.bodies._rows import impact_rows, point_row
 
 if TYPE_CHECKING:

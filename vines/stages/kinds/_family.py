@@ -173,7 +173,7 @@ def _parameters(kind: Kind, system: System) -> dict[str, float | None]:
 
 def _check(more: Callable[[Parameters, Any], None] | None, params: dict[str, float], options: Any) -> None:
     """Refuse parameters, starts, words and laws that the system cannot have."""
-    given = dict(params)
+    given = {name: value for name, value in params.items() if name != "level"}
     if given.pop("V", None) is not None:
         if params["V"] == 0:
             raise ParameterError("V is 0, allowed is V != 0: it is the velocity that decays")

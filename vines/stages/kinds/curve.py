@@ -63,7 +63,7 @@ def _check(params: dict[str, float], options: CurveOptions) -> None:
 
 
 def _check_family(p: Parameters, options: FamilyCurveOptions) -> None:
-    word_for(options.word, p.system, sticking=False)
+    word_for(options.word, p.system, sticking=p.system.balls > 0)
 
 
 def _fits(stage: Stage, pipeline: Pipeline) -> None:
@@ -71,10 +71,16 @@ def _fits(stage: Stage, pipeline: Pipeline) -> None:
     check_axes(stage, 2, "a curve is followed in two parameters", "give vary.X and vary.Y")
     system = stage.kind.system
     options: Any = stage.options
-    if system != VI_NES.name and (options.type in _BOUNDS or Word(options.word).sticking):
+    sticking = Word(options.word).sticking
+    if system != VI_NES.name and options.type in (*_BOUNDS, *("grazing",) * sticking):
         raise DeclarationError(
-            f"orbits that stick, and their bounds, are followed for the system {VI_NES.name!r} only; give another "
-            "word or type"
+            f"type is {options.type!r}: where orbits that stick end is followed for the system {VI_NES.name!r} only; "
+            "give another word or type, or branches, which end there"
+        )
+    if sticking and not (system == VI_NES.name or read_system(system, min(most_balls(system), 1)).balls):
+        raise DeclarationError(
+            f"orbits of the system {system!r} that stick have multipliers of zero and no {options.type}; "
+            "give a word without a star"
         )
     varied = [axis.name for axis in stage.axes]
     for name in read_system(system, min(most_balls(system), 1)).mirror.broken_by:
@@ -98,7 +104,7 @@ _VI_NES = Kind(
 
 KIND = of_systems(
     _VI_NES,
-    ("impact_pair", "parallel"),
+    ("cubic_barriers", "drag", "impact_pair", "parallel"),
     FamilyCurveOptions,
     "vines.stages.bodies._family_curve:compute",
     ("curves",),

@@ -50,6 +50,8 @@ KIND = Kind(
         "vary B and G in a sweep",
         "parallel": "what several cavities are worth depends on the attractor that is reached; vary them in sweeps "
         "and draw the plot designs",
+        "cubic_barriers": "what a spring is worth depends on the attractor that is reached; vary it in sweeps and draw "
+        "the plot designs",
     },
     scaled=("A",),  # with b, the length of the cavity
 )

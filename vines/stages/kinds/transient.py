@@ -51,7 +51,7 @@ _VI_NES = Kind(
 
 KIND = of_systems(
     _VI_NES,
-    ("parallel",),
+    ("cubic_barriers", "drag", "friction", "parallel"),
     FamilyTransientOptions,
     "vines.stages.bodies._family_transient:compute",
     ("transients",),

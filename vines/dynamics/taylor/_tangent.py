@@ -1,0 +1,100 @@
+"""Disturbances of oscillator and mass, (x1, v1, x2, v2), at fixed time: variational equations by the same series."""
+
+from __future__ import annotations
+
+from vines.dynamics._advance import A_V1, A_V2, IMPACT, KIND, MODE, PHASE, SIDE, STICK, V1, V2, X1, X2
+from vines.dynamics._flight import advance_phase, decay
+from vines.dynamics._impact_law import after_impact_kernel
+from vines.dynamics._sincos import sincos
+from vines.dynamics._tangent import carry_basis, directions, jump_basis, offset
+from vines.dynamics.taylor._constants import TaylorConstants
+from vines.dynamics.taylor._series import W, X, at, coefficients, expand, expand_disturbances, slopes
+from vines.kernels import fused_njit, linked_njit, loop_njit, njit
+
+__all__: list[str] = []
+
+directions.register(TaylorConstants)(directions.first)
+
+
+@fused_njit
+def _to_gaps(Y):
+    """Turn disturbances of position and velocity of the mass into those of w and w', or back."""
+    for j in range(Y.shape[1]):
+        Y[2, j] = Y[0, j] - Y[2, j]
+        Y[3, j] = Y[1, j] - Y[3, j]
+
+
+@carry_basis.register(TaylorConstants)
+@loop_njit
+def _carry_basis(c, row, tau, Y):
+    if row[MODE] != 0.0:
+        o = c.stuck
+        size = decay(o.half * tau)
+        sine, cosine = sincos(o.gamma * tau)
+        sine *= size * o.inverse
+        cosine *= size
+        for j in range(Y.shape[1]):
+            x, v = Y[0, j], Y[1, j]
+            Y[0, j] = (cosine + o.half * sine) * x + sine * v
+            Y[1, j] = -o.stiffness * sine * x + (cosine - o.half * sine) * v
+            Y[2, j], Y[3, j] = Y[0, j], Y[1, j]
+        return
+    f = c.field
+    a = coefficients(f)
+    x, v = row[X1], row[A_V1]
+    w, u = x - row[X2], v - row[A_V2]
+    _to_gaps(Y)
+    done = 0.0
+    while done < tau:
+        h = min(expand(f, x, v, w, u, advance_phase(row[PHASE], f.Omega * done)), tau - done)
+        expand_disturbances(f, h, Y)
+        x, v = at(a, X, f.order, h)
+        w, u = at(a, W, f.order, h)
+        done += h
+    _to_gaps(Y)
+
+
+@njit
+def _both_slopes(c, side, x, v1, v2, phase):
+    """Return x1'' and x2'' of a flight on a wall."""
+    return slopes(c.field, x, v1, side, v1 - v2, phase)
+
+
+@jump_basis.register(TaylorConstants)
+@linked_njit
+def _jump_basis(c, row, Y):
+    if row[KIND] == IMPACT:
+        v1, v2, side = row[V1], row[V2], row[SIDE]
+        after1, after2 = after_impact_kernel(c.law, v1, v2)
+        a1, a2 = _both_slopes(c, side, row[X1], v1, v2, row[PHASE])
+        b1, b2 = _both_slopes(c, side, row[X1], after1, after2, row[PHASE])
+        closing = v1 - v2
+        for j in range(Y.shape[1]):
+            # The disturbed run hits earlier by `shift`; before that it has the one motion, after it the other.
+            shift = (Y[0, j] - Y[2, j]) / closing if closing != 0.0 else 0.0
+            w1, w2 = after_impact_kernel(c.law, Y[1, j] - a1 * shift, Y[3, j] - a2 * shift)
+            Y[0, j] += (after1 - v1) * shift
+            Y[1, j] = w1 + b1 * shift
+            Y[2, j] += (after2 - v2) * shift
+            Y[3, j] = w2 + b2 * shift
+    elif row[KIND] == STICK:
+        share = 1.0 / (1.0 + c.mu)
+        # As for a ball: the damper acts on the common motion while what is left of the chatter closes the gap.
+        damped = c.lam * c.mu * share * share
+        for j in range(Y.shape[1]):
+            x = share * (Y[0, j] + c.mu * Y[2, j])
+            v = share * (Y[1, j] + c.mu * Y[3, j]) + damped * (Y[0, j] - Y[2, j])
+            Y[0, j], Y[1, j], Y[2, j], Y[3, j] = x, v, x, v
+
+
+@offset.register(TaylorConstants)
+@linked_njit
+def _offset(c, row, event, late, scale, away):
+    side = event[SIDE]
+    v1, v2 = event[V1], event[V2]
+    after1, after2 = after_impact_kernel(c.law, v1, v2)
+    b1, b2 = _both_slopes(c, side, event[X1], after1, after2, event[PHASE])
+    away[0] = (row[X1] - event[X1] - after1 * late) / scale
+    away[1] = (row[A_V1] - after1 - b1 * late) / scale
+    away[2] = (row[X2] - (event[X1] - side) - after2 * late) / scale
+    away[3] = (row[A_V2] - after2 - b2 * late) / scale

@@ -1,0 +1,71 @@
+"""Orbits whose flights no closed form gives: from simulations, and from those of the VI-NES as the spring grows."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from vines.model import PARAMETER_NAMES, Params, Word
+from vines.orbits._assemble import assemble
+from vines.orbits._general import proper, same
+from vines.orbits._orbit import Orbit
+from vines.orbits._seeds import stretches
+from vines.orbits._shooting import shot
+
+__all__ = ["gather_shots", "of_the_vi_nes"]
+
+Floats = npt.NDArray[np.float64]
+
+_SPRING = ("k1", "k3", "l2")
+
+_LEAST = 1.0 / 256.0
+"""Smallest step, as a part of the spring, in which an orbit is followed from that of the VI-NES."""
+
+
+def gather_shots(word: Word, p: Any, likes: list[Orbit]) -> tuple[list[Orbit], int]:
+    """Return the orbits that simulations, and those of the VI-NES in `likes`, lead to, and from how many starts."""
+    found: list[Orbit] = []
+    tried = 0
+    for start in _starts(word, p, likes):
+        tried += 1
+        converged, t, _, states = shot(word, p, *start)
+        if not (converged and proper(word, word.p * p.period, t, states)):
+            continue
+        if not any(same(known, t, states) for known in found):
+            found.append(assemble(word, p, t, states))
+    return found, tried
+
+
+def _starts(word: Word, p: Any, likes: list[Orbit]) -> Iterator[tuple[Floats, Floats]]:
+    for times, hits in stretches(word, p):
+        yield times, np.stack([hits[name] for name in ("x1", "v1", "x2", "v2")], axis=1)
+    for orbit in likes:
+        followed = _with_spring(word, p, orbit)
+        if followed is not None:
+            yield followed
+
+
+def of_the_vi_nes(p: Any) -> Params:
+    """Return the parameters of the same system without its spring."""
+    values = p.as_dict()
+    return Params(**{name: values[name] for name in PARAMETER_NAMES})
+
+
+def _with_spring(word: Word, p: Any, orbit: Orbit) -> tuple[Floats, Floats] | None:
+    """Return times and states of an orbit of the VI-NES followed as the spring grows to its own, None if it is lost."""
+    values = p.as_dict()
+    t, states, done, step = orbit.t, orbit.states, 0.0, 0.25
+    while done < 1.0:
+        share = min(done + step, 1.0)
+        there = p.replace(**{name: share * values[name] for name in _SPRING})
+        converged, near, _, other = shot(word, there, t, states)
+        if converged and proper(word, word.p * p.period, near, other):
+            t, states, done, step = near, other, share, 2 * step
+        elif step < _LEAST:
+            return None
+        else:
+            step *= 0.5
+    return t, states
