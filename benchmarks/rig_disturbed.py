@@ -41,7 +41,7 @@ def troubles(rng: np.random.Generator) -> Iterator[tuple[str, str, dict[str, Any
     yield "hum and modes", "hum", {}, Disturbances(hum=mains[:1], ringing=modes("lo_disp"))
     yield "r falls", "drift_r", {"r": 0.68, "r_course": ((0.0, 0.0), (end, -0.07))}, Disturbances()
     yield "E ramps", "drift_E", {"E_course": ((0.0, 1.0), (end, 1 + rng.uniform(0.015, 0.04)))}, Disturbances()
-    warm = 20.0 + rng.choice([-1, 1]) * rng.uniform(4.0, 8.0)
+    warm = 20.0 + float(rng.choice([-1, 1]) * rng.uniform(4.0, 8.0))
     yield "springs warm", "drift_omega0", {"temperature": (20.0, warm), "settle": 30.0}, Disturbances()
     stairs = ((0.0, 1.0), (9.0, 1.0), (9.5, 1.08), (17.0, 1.08), (17.5, 1.16))
     yield "levels", "levels", {"E_course": stairs}, Disturbances()
