@@ -23,7 +23,10 @@ def attractors(count, seed):
     while count:
         tilt = float(rng.choice([0.0, rng.uniform(-0.5, 0.5), rng.uniform(-3.0, 3.0)]))
         p = ImpactPair(B=float(10 ** rng.uniform(-1, 1)), G=tilt, r=float(rng.uniform(0.05, 0.6)))
-        found = vines.settle(p, w_dot=float(rng.uniform(-3, 3)), settle=100, patience=0, errors=False)
+        start = float(rng.uniform(-3, 3))
+        found = vines.settle(p, w_dot=start, settle=100, patience=0, errors=False)
+        if found.regime == "periodic" and 64 % found.p:  # means of part of a period are not those of the orbit
+            found = vines.settle(p, w_dot=start, settle=100, record=4 * found.p, patience=0, errors=False)
         if found.regime == "periodic" and found.settled and "*" in found.word:
             count -= 1
             yield found
