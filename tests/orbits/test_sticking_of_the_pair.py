@@ -10,7 +10,7 @@ from scipy.optimize import brentq
 
 import vines
 from vines.dynamics import simulate
-from vines.errors import OrbitNotFound
+from vines.errors import OrbitNotFound, ParameterError
 from vines.orbits import all_orbits, continue_orbit, find_orbit, mirror_image
 from vines.systems import ImpactPair, Parallel
 
@@ -114,7 +114,10 @@ def test_level_orbits_are_symmetric_and_others_have_mirror_images():
     assert orbit.params.mirrored
     image = mirror_image(orbit)
     assert np.allclose(image.w_dot, orbit.w_dot, atol=1e-12)
-    assert not find_orbit("L*R*", p.replace(G=0.05)).symmetric
+    tilted = find_orbit("L*R*", p.replace(G=0.05))
+    assert not tilted.symmetric
+    with pytest.raises(ParameterError, match="its mirror image is no motion unless G = 0"):
+        mirror_image(tilted)
 
 
 @pytest.mark.parametrize(

@@ -62,8 +62,8 @@ class Given:
         for name, value in form["params"].items():
             if isinstance(value, list) and len(value) != count:
                 raise DeclarationError(
-                    f"{where}params.{name} has {len(value)} values, and {BALLS} = {count}; give a number for all balls, "
-                    "or one for each"
+                    f"{where}params.{name} has {len(value)} values, and {BALLS} = {count}; give a number for all "
+                    "balls, or one for each"
                 )
         return cls(params, physical, where, int(count))
 
