@@ -63,7 +63,7 @@ def test_a_run_has_left_when_it_says_so():
     assert not {"LR", "RL"} & set(sides[-8:])
     assert sides[-9] in ("LR", "RL")
     assert sum(each in ("LR", "RL") for each in sides[:-8]) > 0.5 * (last - 8)
-    end = dict(
+    end: dict[str, float] = dict(
         zip(
             ("x1", "v1", "x2", "v2", "phase"),
             state_now(constants_at(table, 0), state, last * FIG_11.period),

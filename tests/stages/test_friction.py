@@ -65,7 +65,7 @@ def test_tables_hold_stops_and_the_power_of_friction(slid):
         (
             'kind = "branch"',
             'kind = "curve"\ntype = "fold"',
-            "the kind 'curve' cannot do the system 'friction'; it can do drag",
+            "the kind 'curve' cannot do the system 'friction'; it can do .*drag",
         ),
         ('word = "LLsR"', 'word = "L*R"', "orbits that stick are not computed for 'friction'"),
         ('system = "friction"', 'system = "drag"', "'LLsR' is not a word of the system 'drag'"),
@@ -73,5 +73,5 @@ def test_tables_hold_stops_and_the_power_of_friction(slid):
 )
 def test_what_cannot_be_is_refused_before_any_work(slid, old, new, text):
     slid(FRICTION.replace(old, new).replace("f = 0.3", "delta = 0.3") if "drag" in new else FRICTION.replace(old, new))
-    with pytest.raises(VinesError, match=text.replace("*", r"\*")):
+    with pytest.raises(VinesError, match=text):
         load_pipeline("slid")

@@ -1,6 +1,7 @@
 """The impact pair with a restitution that is drawn: the variance of its impacts against a Lyapunov equation."""
 
 import math
+from typing import Any
 
 import numpy as np
 import pytest
@@ -23,7 +24,7 @@ def _map(theta: float, speed: float, r: float) -> tuple[float, float]:
     def gap(h: float) -> float:
         return 1.0 - r * speed * h + P.B * (math.sin(theta + h) - math.sin(theta) - h * math.cos(theta))
 
-    h = brentq(lambda h: gap(h) + 1.0, 0.5, 5.0, xtol=1e-15, rtol=1e-15)
+    h: Any = brentq(lambda h: gap(h) + 1.0, 0.5, 5.0, xtol=1e-15)
     there = -r * speed + P.B * (math.cos(theta + h) - math.cos(theta))
     return theta + h - math.pi, -there
 
@@ -52,7 +53,8 @@ def _impacts(sigma: float, periods: int, stream: int = 0) -> np.ndarray:
     table, _room = room.scattered(P.as_array()[None], scatter, np.array([stream]))
     state = np.zeros(room.layout(P).state)
     c = constants_at(table, 0)
-    room.begin(c, state, *orbit.states[0].tolist(), float(orbit.phase[0]), 0.0)
+    x1, v1, x2, v2 = orbit.states[0].tolist()
+    room.begin(c, state, x1, v1, x2, v2, float(orbit.phase[0]), 0.0)
     rows, status = record(c, state, [periods * P.period], 1000, 3 * periods)
     assert status == "complete"
     return rows[rows[:, col.KIND] == col.IMPACT]
@@ -77,7 +79,7 @@ def test_the_variance_of_impacts_is_that_of_the_lyapunov_equation() -> None:
 
 def test_without_scatter_it_is_the_pair() -> None:
     orbit = find_orbit("LR", P)
-    start = room_of(P).leave(P, orbit.states[0].tolist(), float(orbit.phase[0]))
+    start: dict[str, Any] = room_of(P).leave(P, orbit.states[0].tolist(), float(orbit.phase[0]))
     plain = simulate(P, phi=float(orbit.phase[0]), periods=40, **start).impacts
     ours = _impacts(0.0, 40)
     assert np.array_equal(ours[:, col.TIME], plain["t"])

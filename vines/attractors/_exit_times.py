@@ -205,8 +205,8 @@ def exits(
     >>> from vines.model import Params
     >>> from vines.dynamics import Scatter
     >>> found = exits(Params(mu=0.01, A=0.015), Scatter(noise=0.01, seed=1), runs=4, periods=100, random=8)
-    >>> [a.name for a in found.attractors], found.runs["censored"].all()
-    (['1:1'], True)
+    >>> [a.name for a in found.attractors], found.holdings[0].exits
+    (['1:1'], 0)
     """
     check_exits(p, scatter, splitting)
     if not wait < periods:

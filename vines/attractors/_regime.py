@@ -59,7 +59,7 @@ class Regime:
         span = attractor.p or 1
         at: dict[str, Any] = end
         hits = simulate(p, phi=phase, periods=span, **at).impacts["t"] / p.period
-        cuts: Floats = np.arange(CUTS, dtype=np.float64) / CUTS
+        cuts = np.array([k / CUTS for k in range(CUTS)])
         starts = _later(p, np.tile(last, (CUTS, 1)), cuts)
         found = [_codes(p, starts, span, mirrored) for mirrored in ([False, True] if p.mirrored else [False])]
         start = _later(p, last[None], np.array([_quiet(hits)]))[0]
@@ -72,7 +72,7 @@ def centres_of(regime: Regime) -> Floats:
     own = _later(p, np.tile(regime.start, (attractor.p or 1, 1)), np.arange(attractor.p or 1, dtype=float))[:, :4]
     if attractor.symmetric or not p.mirrored:
         return own
-    half = np.arange(attractor.p or 1) + 0.5
+    half = np.array([k + 0.5 for k in range(attractor.p or 1)])
     return np.concatenate([own, -_later(p, np.tile(regime.start, (len(half), 1)), half)[:, :4]])
 
 

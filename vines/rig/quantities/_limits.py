@@ -46,6 +46,9 @@ _GIVES = 1e-3
 _TURNS_ROUND = 0.3
 """A base that moves more than that beside the oscillator drives it: floor and fan, no reaction."""
 
+_EVEN = 0.05
+"""Most that a ball may slide more one way than the other where momentum tells its friction whether it spins or not."""
+
 _SURE = 3.5
 """Standard deviations by which a limit must be passed."""
 
@@ -130,6 +133,18 @@ def limits(
         if given is not None:
             known = stated(given, FRICTION)
             most = max(most, known.value + _SURE * known.u)
+        asked = tuning.rubbing
+        if given is None and _one_way(ball) > _EVEN and asked.value - asked.u > ROLLS:
+            return (
+                *found,
+                Finding(
+                    "sliding_ball",
+                    False,
+                    f"the forced response asks for {asked.value:.2g} +- {asked.u:.2g} m/s^2 of friction on the ball, "
+                    "and momentum cannot deny it where flights are unequal, for a ball that rolls spins: state it by "
+                    "a roll-down test (more.friction in run.json)",
+                ),
+            )
         found.append(
             Finding(
                 "sliding_ball", _within(rubs, most) or tuning.unexplained > _SURE,
@@ -138,6 +153,11 @@ def limits(
             )
         )  # fmt: skip
     return tuple(found)
+
+
+def _one_way(ball: Rebounds) -> float:
+    """Return by how much more the ball slides one way than the other, in parts of the time."""
+    return float(abs(np.sum(ball.course.slowed + ball.course.driven)) / np.ptp(ball.jumps.t))
 
 
 def _within(found: Uncertain, most: float) -> bool:
