@@ -216,7 +216,8 @@ def calls() -> Calls:
 
 BESIDE = {
     "curve_rows", "branch_row", "bifurcation_row", "orbit_row", "orbit_outline", "own_word", "warm_up", "apart",
-    "of_two_mirror_images", "one_of", "orbit_through", "partners", "coexisting", "random_starts", "stationary_law",
+    "of_two_mirror_images", "one_of", "orbit_through", "partners", "coexisting", "shoots", "random_starts",
+    "stationary_law",
 }  # fmt: skip
 """Public to the rooms above, which call them with what other functions returned."""
 

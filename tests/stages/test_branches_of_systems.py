@@ -64,10 +64,6 @@ def test_all_families_of_a_pair_and_of_two_balls(project, monkeypatch):
 @pytest.mark.parametrize(
     ("change", "text"),
     [
-        (
-            ("L1L2R1R2", "L1*L2R1R2"),
-            "those of systems whose ball has no number, not of 'parallel'",
-        ),
         (('families = "all"\nseeds = 3', 'families = "few"\nseeds = 3'), "families is 'few'"),
         (('kind = "branch"\nword = "L*R*"', 'kind = "optimum"\nword = "LR"'), "no displacement can be kept small"),
         (('kind = "branch"\nword = "L*R*"', 'kind = "reduced"'), "known in closed form"),

@@ -3,11 +3,13 @@
 import re
 
 import matplotlib as mpl
+import matplotlib.figure
 import matplotlib.image
 import pytest
 
 import vines
 from vines.errors import DeclarationError, StoreError, UnknownNameError
+from vines.figures._saved import save, save_as
 from vines.stages import study
 
 FIGURE = "quickstart.figure"
@@ -215,3 +217,13 @@ def test_pictures_lie_under_the_names_of_their_stages_and_a_copy_that_is_changed
     assert drawn.read_bytes() == right[".pdf"]
     assert "nothing to compute" in project.vines("run", "small").stdout
     assert {path.suffix: path.read_bytes() for path in copies.values()} == right
+
+
+def test_what_fonts_say_of_themselves_reaches_nobody(tmp_path, caplog, capfd):
+    """The font of a prime has no date, of which fontTools warns."""
+    figure = matplotlib.figure.Figure()
+    figure.text(0.5, 0.5, "$w'$")
+    save(figure, tmp_path, formats=["pdf"])
+    save_as(figure, tmp_path / "a.pdf")
+    assert caplog.records == []
+    assert capfd.readouterr().err == ""

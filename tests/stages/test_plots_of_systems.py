@@ -34,6 +34,18 @@ PARAMETERS = {
         *("two", "mu = [0.01, 0.01], beta = [1.0, 1.4]", "A", "[0.028, 0.029, 0.03]", "Omega", "[0.999, 1.0]"),
         *("L1L2R1R2", "A = 0.03", "x2_1", "phase"),
     ),
+    "drag": (
+        *("coil", "mu = 0.02, delta = 0.05", "A", "[0.028, 0.029, 0.03]", "Omega", "[0.999, 1.0]"),
+        *("LR", "A = 0.03", "x2", "v2"),
+    ),
+    "friction": (
+        *("slid", "mu = 0.02, f = 0.001", "A", "[0.028, 0.029, 0.03]", "Omega", "[0.999, 1.0]"),
+        *("LR", "A = 0.03", "x2", "v2"),
+    ),
+    "cubic_barriers": (
+        *("cubic", "mu = 0.02, k3 = 0.5, l2 = 0.1", "A", "[0.028, 0.029, 0.03]", "Omega", "[0.999, 1.0]"),
+        *("LR", "A = 0.03", "x2", "v2"),
+    ),
 }
 STAGES = """
 [stages.{short}_up]
@@ -153,8 +165,8 @@ def pairs(drawn):
 
 def test_there_is_an_example_of_every_system_and_of_every_plot_that_draws_one():
     assert set(PARAMETERS) | {"vi_nes"} == set(system_names())
-    # charts of systems are drawn where curves are tested
-    assert {name for name, _ in pairs(True)} - {"chart"} == set(DRAWN)
+    # charts, fronts and exits are drawn where curves, drag and noise are tested
+    assert {name for name, _ in pairs(True)} - {"chart", "exits", "front"} == set(DRAWN)
 
 
 @pytest.mark.parametrize(("plot", "system"), pairs(False))
@@ -164,7 +176,8 @@ def test_what_a_plot_cannot_do_is_refused_with_what_it_can_and_what_can_do_it(de
         load_pipeline("each")
     said = str(caught.value)
     short = PARAMETERS[system][0]
-    assert f"the plot {plot!r} cannot draw the system {system!r} of {short}_up; it can draw vi_nes" in said
+    can = ", ".join(name for name in system_names() if PLOTS.get(plot).draws(name))
+    assert f"the plot {plot!r} cannot draw the system {system!r} of {short}_up; it can draw {can}" in said
     assert f"plots that can draw {system!r}: basins, bifurcation, " in said
     assert "\n" not in said
 
@@ -192,7 +205,7 @@ def test_mistakes_in_figures_of_systems_are_one_line(declared, plot, system, rig
     assert "\n" not in str(caught.value)
 
 
-def test_every_plot_draws_the_pair_and_two_balls_with_names_of_their_own(declared):
+def test_every_plot_draws_every_system_with_names_of_its_own(declared):
     root = declared("".join(figure(plot, system) for plot, system in pairs(True) if plot in DRAWN))
     form = load_pipeline("each").stages
     run("each", stages=[name for name, stage in form.items() if stage.kind.name != "figure"])
@@ -207,7 +220,8 @@ def test_every_plot_draws_the_pair_and_two_balls_with_names_of_their_own(declare
             plot, short = stage.name.split("_")
             found[plot, short] = PLOTS.get(plot).draw(shown, stage.options)
     capsule = "amplitude of the capsule  $B$"
-    known = {capsule, "forcing amplitude  $A$", "time  $t/T$", "gap  $w$", "$w$ at the start", "$x_{2,1}$ at the start"}
+    known = {capsule, "forcing amplitude  $A$", "time  $t/T$", "gap  $w$", "$w$ at the start"}
+    known |= {"$x_2$ at the start", "$x_{2,1}$ at the start"}
     for (plot, short), drawn in found.items():
         named = {ax.get_xlabel() for ax in drawn.axes} - {""}
         assert named <= known, plot

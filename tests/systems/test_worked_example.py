@@ -69,24 +69,38 @@ def test_its_names_are_everywhere_after_the_declaration(added):
         added(mu=0.01, A=0.03, beta=0)
 
 
+TOOK = {
+    "impact_pair": ("_impact_pair", "impact_pair", ("vines/orbits/*_capsule.py",), ()),
+    "parallel": ("_parallel", "parallel", ("vines/orbits/*balls.py",), ("vines/[lv]*/_balls.py",)),
+    "drag": ("_drag", "drag", ("vines/orbits/_dragged.py", "vines/orbits/_flown_closing.py"), ()),
+    "friction": ("_friction", "friction", ("vines/orbits/_slid.py",), ()),
+    "cubic_barriers": (
+        "_cubic_barriers",
+        "[ct][ua][by][il]*",
+        ("vines/orbits/_shots.py", "vines/orbits/_shooting*.py"),
+        (),
+    ),
+}
+"""Of each system: the files that serve it alone, by room."""
+
+
 def test_the_table_of_what_a_system_took_is_about_right():
     root = PAGE.parents[1]
-    files = {
-        "impact_pair": [
-            "schemas/systems/impact_pair.toml",
-            "vines/systems/_impact_pair.py",
-            "vines/dynamics/impact_pair/*.py",
-        ],
-        "parallel": ["schemas/systems/parallel.toml", "vines/systems/_parallel.py", "vines/dynamics/parallel/**/*.py"],
-    }
-    files["impact_pair"] += ["vines/orbits/*_capsule.py", "vines/logs/_capsule.py"]
-    files["parallel"] += ["vines/orbits/*balls.py", "vines/[lv]*/_balls.py"]
-    row = r"^\| `[\w/]+`(?:, `[\w/]+`)? \| (\d+) in (\d+) \| (\d+) in (\d+) \|$"
+    row = r"^\| `[\w/]+`(?:, `[\w/]+`)? ((?:\| \d+ in \d+ )+)\|$"
     told = re.findall(row, PAGE.read_text("utf-8"), re.MULTILINE)
     assert len(told) == 5
-    for system, column in (("impact_pair", 0), ("parallel", 2)):
-        for pattern, row in zip(files[system], told, strict=True):
-            found = list(root.glob(pattern))
-            lines = sum(len(file.read_text("utf-8").splitlines()) for file in found)
-            assert lines == pytest.approx(int(row[column]), rel=0.2), pattern
-            assert len(found) == int(row[column + 1]), pattern
+    for place, (system, (parameters, kernels, orbits, shown)) in enumerate(TOOK.items()):
+        patterns = (
+            (f"schemas/systems/{system}.toml",),
+            (f"vines/systems/{parameters}.py",),
+            (f"vines/dynamics/{kernels}/**/*.py",),
+            orbits,
+            shown,
+        )
+        for room, row in zip(patterns, told, strict=True):
+            files = [file for pattern in room for file in root.glob(pattern)]
+            lines, count = re.findall(r"(\d+) in (\d+)", row)[place]
+            assert sum(len(file.read_text("utf-8").splitlines()) for file in files) == pytest.approx(
+                int(lines), rel=0.2
+            )
+            assert len(files) == int(count), room

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 from vines.errors import DeclarationError, FileMissingError
 from vines.figures._finish import finish
 from vines.figures._style import FORMATS, look
+from vines.figures._style_sheet import Told
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -51,7 +52,9 @@ def save(
         if figure.get_layout_engine() is not None:
             figure.set_layout_engine(None)  # "none" would keep a placeholder, for which each file is drawn twice
         for file in files:
-            figure.savefig(file, dpi=dpi, metadata=FORMATS[file.suffix])
+            # Which takes a font apart for a PDF, and says that its date is odd.
+            with Told("fontTools"):
+                figure.savefig(file, dpi=dpi, metadata=FORMATS[file.suffix])
     return files
 
 
@@ -85,7 +88,7 @@ def save_as(figure: Figure, path: Path, *, dpi: int = 300) -> Path:
         raise FileMissingError(f"{path}: the folder {path.parent} does not exist; make it first")
     beside = path.with_name(f".{path.stem}-{os.getpid()}{ending}")
     try:
-        with mpl.rc_context({**look(), "svg.fonttype": "none", "pdf.fonttype": 42}):
+        with mpl.rc_context({**look(), "svg.fonttype": "none", "pdf.fonttype": 42}), Told("fontTools"):
             figure.savefig(beside, dpi=dpi, metadata=FORMATS[ending])
         beside.replace(path)
     finally:

@@ -8,7 +8,7 @@ from typing import Any
 
 from vines.errors import DeclarationError, FileMissingError, nearest
 
-__all__ = ["style_settings"]
+__all__ = ["Told", "style_settings"]
 
 
 def style_settings(style: str | Path) -> dict[Any, Any]:
@@ -35,7 +35,7 @@ def style_settings(style: str | Path) -> dict[Any, Any]:
     if path.suffix == ".mplstyle":
         if not path.is_file():
             raise FileMissingError(f"{style}: there is no such style sheet")
-        with _Told("matplotlib") as told:
+        with Told("matplotlib") as told:
             try:
                 found = dict(mpl.rc_params_from_file(path, use_default_template=False))
             except (OSError, UnicodeDecodeError, ValueError) as error:
@@ -58,7 +58,7 @@ def style_settings(style: str | Path) -> dict[Any, Any]:
     return found
 
 
-class _Told(logging.Handler):
+class Told(logging.Handler):
     """What a logger warns of while this is entered: kept, and not shown."""
 
     def __init__(self, name: str) -> None:
@@ -69,7 +69,7 @@ class _Told(logging.Handler):
     def emit(self, record: logging.LogRecord) -> None:
         self.lines.append(" ".join(record.getMessage().split()))
 
-    def __enter__(self) -> _Told:
+    def __enter__(self) -> Told:
         self._logger.addHandler(self)
         self._kept, self._logger.propagate = self._logger.propagate, False
         return self

@@ -53,6 +53,16 @@ def test_uncertainty_of_delays_counts():
     assert align_clocks([first, second], max_offset=0.05, ringdown=False)["b"].u == pytest.approx(5e-6, rel=0.05)
 
 
+def test_a_mode_louder_than_the_motion_is_no_clock_that_jumps():
+    def rings(t):
+        return pushed(t) + 9e3 * np.sin(2 * np.pi * 40.0 * t + 0.8 * (t > 7.3))
+
+    pair = [channel("a", "base_acc", rings), channel("a", "base_disp", shaken)]
+    assert set(align_clocks(pair, max_offset=0.05, ringdown=False)) == {"a"}
+    with pytest.raises(RigError, match="jumps by about"):
+        align_clocks(pair[:1], max_offset=0.05, ringdown=False)
+
+
 def test_a_ring_down_is_aligned_by_the_oscillator():
     def decays(t):
         return np.exp(-0.3 * t) * np.cos(55.4 * t)

@@ -27,8 +27,8 @@ _CLEAN = 1.25
 """Most that a fit leaves, relative to the noise, before modes are looked for."""
 
 _RINGS = 0.3
-"""Least part of what a fit leaves that rings on after the usual impact, for modes to be looked for: those that explain a
-fifth of its square, the least that is believed, are .44 of it."""
+"""Least part of what a fit leaves that rings on after the usual impact, for modes to be looked for: those that explain
+a fifth of its square, the least that is believed, are .44 of it."""
 
 _LEFT = 0.5
 """Most that may ring on after the usual impact, relative to the noise."""

@@ -17,6 +17,9 @@ _DIFFER = 300e-6
 """Relative difference of two sample clocks beyond which one of them is not what it says: quartz is within 100 ppm."""
 _SLIP = 2e-4
 """[s] Jump of a clock from one block to the next that means lost samples."""
+_OTHER = 1.5
+"""A sine so many times as fast as the motion is none of it."""
+
 _BY_IMPACTS = "its own; the ball's impacts bring it onto the clock of the run when that is reconstructed"
 _PAIRS = (
     ("base_acc", "base_acc"),
@@ -79,11 +82,7 @@ def align_clocks(channels: Sequence[Calibrated], *, max_offset: float, ringdown:
     by_recorder: dict[str, list[Calibrated]] = {}
     for channel in channels:
         by_recorder.setdefault(channel.row.recorder, []).append(channel)
-    tones = {
-        channel.row.name: find_tone(channel.values, channel.valid, channel.rate, channel.start)
-        for channel in channels
-        if channel.row.role.startswith("lo" if ringdown else "base")
-    }
+    tones = _tones([channel for channel in channels if channel.row.role.startswith("lo" if ringdown else "base")])
     if not ringdown:
         _check_jumps(channels, tones)
     first, *others = by_recorder
@@ -94,6 +93,18 @@ def align_clocks(channels: Sequence[Calibrated], *, max_offset: float, ringdown:
             continue
         clocks[name] = _align(by_recorder[first], by_recorder[name], tones, max_offset, (first, name))
     return clocks
+
+
+def _tones(channels: Sequence[Calibrated]) -> dict[str, Tone | None]:
+    """Return the tone of each channel; an acceleration in which a mode of the frame is louder has the motion's."""
+    tones = {one.row.name: find_tone(one.values, one.valid, one.rate, one.start) for one in channels}
+    moves = (tones[one.row.name] for one in channels if not one.row.role.endswith("_acc"))
+    known = next((tone.f for tone in moves if tone is not None and tone.clear), None)
+    for one in channels:
+        tone = tones[one.row.name]
+        if known is not None and tone is not None and tone.f > _OTHER * known:
+            tones[one.row.name] = find_tone(one.values, one.valid, one.rate, one.start, near=known)
+    return tones
 
 
 def _check_jumps(channels: Sequence[Calibrated], tones: dict[str, Tone | None]) -> None:

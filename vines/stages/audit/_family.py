@@ -184,7 +184,7 @@ def _product(rows: Rows) -> Defect:
     # Turns and stops of a ball that slides contract too, by ratios of accelerations that rows do not hold.
     told = slack < 1e-2 if not rows.has("friction_power") else np.zeros(len(rows), dtype=bool)
     off = np.where(told, off / (1 + slack / _PRODUCT), np.nan)
-    return Defect("multiplier product", "the determinant: r² for each impact, exp(-lam p T)", _PRODUCT, off)
+    return Defect("multiplier product", "the determinant: r² for each impact, and the dampers", _PRODUCT, off)
 
 
 def _log_determinant(rows: Rows) -> Floats:
@@ -199,7 +199,9 @@ def _log_determinant(rows: Rows) -> Floats:
             r = rows["r"] if rows.has("r") else rows[f"r_{max(ball, 1)}"]
             found[mine] += 2 * np.log(np.maximum(r[mine], 1e-300))
         if rows.has("lam"):
-            rate = rows["lam"] + ((1 + rows["mu"]) * rows["delta"] if rows.has("delta") else 0.0)
+            rate = rows["lam"]
+            for damper in ("delta", "l2"):
+                rate = rate + ((1 + rows["mu"]) * rows[damper] if rows.has(damper) else 0.0)
             found[mine] -= (rate * word.p * 2 * np.pi / rows["Omega"])[mine]
     return found
 
