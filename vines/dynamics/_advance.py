@@ -43,6 +43,7 @@ __all__ = [
     "advance",
     "begin",
     "law_of",
+    "merge",
     "move",
     "new_state",
     "pass_over",
@@ -174,6 +175,17 @@ def place(state, mode, wall, released, x1, v1, x2, v2):
     state[S_V2] = v2
 
 
+@fused_njit
+def merge(c, state, wall, x1, v1, x2, v2, row):
+    """Let the ball ride on a wall from now on, with the common velocity, and write that."""
+    common = (v1 + c.mu * v2) / (1.0 + c.mu)
+    run = state[S_RUN]
+    state[S_RUN] = 0.0
+    place(state, wall, wall, 0.0, x1, common, x1 - wall, common)
+    write_row(row, state, STICK, wall, 0.0, x1, v1, x2, v2)
+    row[RUN] = run
+
+
 @by_type(Constants)
 @fused_njit
 def law_of(c, closing, number):
@@ -248,12 +260,7 @@ def advance(c, state, stop, cap, rows, first):
             if state[S_DECIDE] != 0.0:
                 state[S_DECIDE] = 0.0
                 if merges(seen, seen.free, c.r, c.correction, wall, max(wall * (v2 - v1), 0.0), motion, x2):
-                    common = (v1 + c.mu * v2) / (1.0 + c.mu)
-                    run = state[S_RUN]
-                    state[S_RUN] = 0.0
-                    place(state, wall, wall, 0.0, x1, common, x1 - wall, common)
-                    write_row(rows[count], state, STICK, wall, 0.0, x1, v1, x2, v2)
-                    rows[count, RUN] = run
+                    merge(c, state, wall, x1, v1, x2, v2, rows[count])
                     count += 1
                     if too_many(state, cap, period):
                         return count, EVENT_CAP

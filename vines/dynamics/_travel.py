@@ -16,7 +16,7 @@ from vines.dynamics._integrals import NODES, WEIGHTS, peak_between
 from vines.dynamics._totals import TRAVEL_LOSS, base_at
 from vines.kernels import linked_njit, njit
 
-__all__ = ["accelerations", "add_travel", "merged", "offset_of_travel", "struck", "travel_integrals"]
+__all__ = ["accelerations", "add_travel", "merged", "offset_of_travel", "strike", "struck", "travel_integrals"]
 
 OF_A_WINDOW = 0.75
 """Parts are no longer than this times the window, 1.5 over the fastest rate: a product of two of them turns by 3."""
@@ -96,12 +96,21 @@ def struck(c, row, Y):
     """Apply an impact to the disturbances that are the columns of Y."""
     v1, v2 = row[V1], row[V2]
     after1, after2 = after_impact_kernel(c.law, v1, v2)
-    a1, a2 = accelerations(c, row[X1], v1, v2, row[PHASE])
-    b1, b2 = accelerations(c, row[X1], after1, after2, row[PHASE])
+    before = accelerations(c, row[X1], v1, v2, row[PHASE])
+    strike(c.law, v1, v2, before, accelerations(c, row[X1], after1, after2, row[PHASE]), Y)
+
+
+@njit
+def strike(law, v1, v2, before, after, Y):
+    """Apply an impact to the disturbances that are the columns of Y, from both accelerations before and after it."""
+    after1, after2 = after_impact_kernel(law, v1, v2)
+    a1, a2 = before
+    b1, b2 = after
     closing = v1 - v2
     for j in range(Y.shape[1]):
+        # The disturbed run hits earlier by `shift`; before that it has the one motion, after it the other.
         shift = (Y[0, j] - Y[2, j]) / closing if closing != 0.0 else 0.0
-        w1, w2 = after_impact_kernel(c.law, Y[1, j] - a1 * shift, Y[3, j] - a2 * shift)
+        w1, w2 = after_impact_kernel(law, Y[1, j] - a1 * shift, Y[3, j] - a2 * shift)
         Y[0, j] += (after1 - v1) * shift
         Y[1, j] = w1 + b1 * shift
         Y[2, j] += (after2 - v2) * shift

@@ -35,10 +35,10 @@ from vines.dynamics._advance import (
     SLIDE,
     START,
     STEP_LIMIT,
-    STICK,
     STOP,
     advance,
     begin,
+    merge,
     move,
     place,
     too_many,
@@ -169,12 +169,7 @@ def _advance(c, state, stop, cap, rows, first):
             if state[S_DECIDE] != 0.0:
                 state[S_DECIDE] = 0.0
                 if wall != 0 and _sticks(c, state, wall):
-                    common = (v1 + c.mu * v2) / (1.0 + c.mu)
-                    run = state[S_RUN]
-                    state[S_RUN] = 0.0
-                    place(state, wall, wall, 0.0, x1, common, x1 - wall, common)
-                    write_row(rows[count], state, STICK, wall, 0.0, x1, v1, x2, v2)
-                    rows[count, RUN] = run
+                    merge(c, state, wall, x1, v1, x2, v2, rows[count])
                     count += 1
                     continue
                 if wall == 0 and v1 == v2 and _halt(c, state, 0.0, motion[SENSE], rows[count], True):

@@ -27,9 +27,9 @@ from vines.dynamics._advance import (
     S_X2,
     START,
     STEP_LIMIT,
-    STICK,
     advance,
     begin,
+    merge,
     move,
     place,
     set_state,
@@ -123,12 +123,7 @@ def _advance(c, state, stop, cap, rows, first):
                 state[S_DECIDE] = 0.0
                 if _merges(c, state, wall):
                     x2, v2 = state[S_X2], state[S_V2]
-                    common = (v1 + c.mu * v2) / (1.0 + c.mu)
-                    run = state[S_RUN]
-                    state[S_RUN] = 0.0
-                    place(state, wall, wall, 0.0, x1, common, x1 - wall, common)
-                    write_row(rows[count], state, STICK, wall, 0.0, x1, v1, x2, v2)
-                    rows[count, col.RUN] = run
+                    merge(c, state, wall, x1, v1, x2, v2, rows[count])
                     count += 1
                     if too_many(state, cap, period):
                         return count, EVENT_CAP

@@ -7,6 +7,7 @@ from vines.dynamics._flight import advance_phase, decay
 from vines.dynamics._impact_law import after_impact_kernel
 from vines.dynamics._sincos import sincos
 from vines.dynamics._tangent import carry_basis, directions, jump_basis, offset
+from vines.dynamics._travel import merged, strike
 from vines.dynamics.taylor._constants import TaylorConstants
 from vines.dynamics.taylor._series import W, X, at, coefficients, expand, expand_disturbances, slopes
 from vines.kernels import fused_njit, linked_njit, loop_njit, njit
@@ -66,25 +67,10 @@ def _jump_basis(c, row, Y):
     if row[KIND] == IMPACT:
         v1, v2, side = row[V1], row[V2], row[SIDE]
         after1, after2 = after_impact_kernel(c.law, v1, v2)
-        a1, a2 = _both_slopes(c, side, row[X1], v1, v2, row[PHASE])
-        b1, b2 = _both_slopes(c, side, row[X1], after1, after2, row[PHASE])
-        closing = v1 - v2
-        for j in range(Y.shape[1]):
-            # The disturbed run hits earlier by `shift`; before that it has the one motion, after it the other.
-            shift = (Y[0, j] - Y[2, j]) / closing if closing != 0.0 else 0.0
-            w1, w2 = after_impact_kernel(c.law, Y[1, j] - a1 * shift, Y[3, j] - a2 * shift)
-            Y[0, j] += (after1 - v1) * shift
-            Y[1, j] = w1 + b1 * shift
-            Y[2, j] += (after2 - v2) * shift
-            Y[3, j] = w2 + b2 * shift
+        before = _both_slopes(c, side, row[X1], v1, v2, row[PHASE])
+        strike(c.law, v1, v2, before, _both_slopes(c, side, row[X1], after1, after2, row[PHASE]), Y)
     elif row[KIND] == STICK:
-        share = 1.0 / (1.0 + c.mu)
-        # As for a ball: the damper acts on the common motion while what is left of the chatter closes the gap.
-        damped = c.lam * c.mu * share * share
-        for j in range(Y.shape[1]):
-            x = share * (Y[0, j] + c.mu * Y[2, j])
-            v = share * (Y[1, j] + c.mu * Y[3, j]) + damped * (Y[0, j] - Y[2, j])
-            Y[0, j], Y[1, j], Y[2, j], Y[3, j] = x, v, x, v
+        merged(c, Y)
 
 
 @offset.register(TaylorConstants)
