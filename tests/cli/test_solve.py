@@ -6,7 +6,7 @@ import pytest
 from click.testing import CliRunner
 
 from vines.cli._solve import command
-from vines.errors import OrbitNotFound, ParameterError
+from vines.errors import OrbitNotFound, ParameterError, UnknownNameError
 from vines.logs import read
 from vines.model import Params
 from vines.orbits import all_orbits, find_orbit
@@ -65,6 +65,25 @@ def test_no_orbit_is_an_error_of_one_line_and_exit_code_1():
         assert caught.value.exit_code == 1
     with pytest.raises(ParameterError, match="is not a word"):
         solve("1:1", "--mu", "0.01", "--A", "0.001")
+
+
+def test_every_system_is_solved_with_options_of_its_own():
+    text = solve(
+        "L1L2R1R2", "--system", "parallel", "--A", "0.03", "--mu_1", "0.01", "--mu_2", "0.01", "--beta_2", "1.4"
+    )
+    assert text.startswith("1:1|1:1 (L1L2R1R2): symmetric, stable, admissible\n")
+    assert ".5134856457" in text  # check value a3
+    assert all(f"\n{contact} " in text for contact in ("L1", "L2", "R1", "R2"))
+    pair = solve("LLR", "--system=impact_pair", "--B", "0.95", "--G", "0.15", "--r", "0.5")
+    assert "1.7071691101" in pair  # d4
+    assert "max|x1|" not in pair
+    stops = solve("LsR", "--system", "friction", "--mu", "0.3", "--A", "0.3", "--f", "0.2")
+    assert "\ns  " in stops
+    assert "lost by the ball on its way" in stops
+    row = json.loads(solve("LR", "--system", "drag", "--mu", "0.01", "--A", "0.02", "--delta", "0.01", "--json"))
+    assert (row["word"], row["delta"]) == ("LR", 0.01)
+    with pytest.raises(UnknownNameError, match="did you mean 'impact_pair'"):
+        solve("LR", "--system", "impact_pear", "--B", "0.6")
 
 
 def test_log_of_one_period(project):

@@ -87,6 +87,17 @@ def test_a_long_flight_does_not_flatten_the_branches():
     assert ax.get_ylim()[1] < 0.8
 
 
+def test_orbits_at_a_few_places_are_shown_beside_chaos_at_one():
+    x = np.linspace(0.02, 0.05, 60)
+    line = BranchLine(x=x, side=1, stable=x < 0.03, values={"dt": np.full(60, 0.5)}, label="1:1 symmetric")
+    regular, chaos = np.concatenate([np.full(50, 0.5), np.full(10, 0.9)]), np.linspace(0.45, 0.55, 2000)
+    dots = ImpactDots(
+        x=np.concatenate([x, np.full(2000, 0.05)]), side=np.ones(2060), values={"dt": np.concatenate([regular, chaos])},
+        repeats=np.concatenate([np.full(60, 64.0), np.ones(2000)]),
+    )  # fmt: skip
+    assert bifurcation_figure("A", [dots], [line], [], panels=("dt",)).axes[0].get_ylim()[1] > 0.9
+
+
 def test_files_are_the_same_bytes_each_time(tmp_path):
     for name in ("one", "two"):
         (tmp_path / name).mkdir()

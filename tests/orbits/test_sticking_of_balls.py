@@ -9,8 +9,11 @@ import vines
 from vines import Params, find_orbit
 from vines.dynamics import tangent_map
 from vines.errors import OrbitNotFound, ParameterError, StateError
+from vines.model import Word
 from vines.orbits import continue_orbit, follow_curve, mirror_image, switch_branch
 from vines.orbits._release_of_balls import Moment, Release, run_round
+from vines.orbits._sticking_of_balls import Begun, balls_orbit
+from vines.orbits._sticking_search_of_balls import sections_of
 from vines.systems import Parallel
 
 VI_NES = Params(mu=0.0256654, Omega=1.02946, r=0.347164, lam=0.0959532, A=0.5)
@@ -138,7 +141,7 @@ def test_settle_strikes_balls_that_were_let_go_together_one_after_the_other():
     # Cavities that differ by a millionth order them by length; the law of ties is another motion.
     nearly = settled(EQUAL.replace(beta_1=1 - 2e-6, beta_2=1 - 1e-6))
     assert nearly.measures.ties == 0
-    assert nearly.measures.kinetic_ratio == pytest.approx(in_turn.measures.kinetic_ratio, rel=1e-4)
+    assert nearly.measures.kinetic_ratio == pytest.approx(in_turn.measures.kinetic_ratio, rel=1e-6)
     assert abs(together.measures.kinetic_ratio / in_turn.measures.kinetic_ratio - 1) > 2e-3
     with pytest.raises(StateError, match="ties is 'apart'"):
         vines.settle(EQUAL, ties="apart")
@@ -173,6 +176,34 @@ def test_bifurcations_of_one_ball_are_those_of_the_vi_nes_and_go_on_where_it_is_
     before, after = (farther.params.replace(A=farther.params.A + change) for change in (-2e-4, 2e-4))
     assert find_orbit("LR*/3T", before, guess=farther).stable
     assert not find_orbit("LR*/3T", after, guess=farther).stable
+
+
+def test_a_curve_of_two_balls_of_which_one_sticks():
+    """On either side of it runs settle to the period, and to twice it."""
+    p = Parallel(mu=(0.0784564, 1e-3), beta=(1.0, 0.8), r=(0.302436, 0.6), A=0.18, Omega=1.33447, lam=0.0900701)
+    orbit = find_orbit("L1*L2R2L2R2R1L2R2/3T", p)
+    [found] = continue_orbit(orbit, "A", 0.185).bifurcations
+    curve = follow_curve(found, ("A", "G"), box={"A": (0.17, 0.19), "G": (0.0, 0.002)}, step=0.3)
+    assert (curve.type, curve.ends) == ("period_doubling", ("box", "box"))
+    farther = curve.orbits[int(np.argmax(curve.values[:, 1]))]
+    assert farther.params.G > 1e-3
+    assert farther.residual < 1e-12
+    assert np.abs(farther.multipliers + 1).min() < 1e-9
+    start = {name: value for name, value in farther.start().items() if name != "t"}
+    for change, period in ((-1e-3, 3), (1e-3, 6)):
+        beside = farther.params.replace(A=farther.params.A + change)
+        assert settled(beside, phi=farther.phase[0], settle=3000, **start).p == period
+
+
+def test_what_is_struck_at_once_leaves_as_the_simulator_has_it():
+    run = vines.simulate(EQUAL, periods=400, v2=(0.1, 0.1, 0.1), ties="together")
+    section, z = next(sections_of(run, "together", 2))
+    hits = balls_orbit(Word("L1*L2*L3*R1*R2*R3*"), EQUAL, Begun(section, z)).impacts
+    for three in (hits[:3], hits[3:]):
+        gained = sum(mu * (hit["v2_after"] - hit["v2"]) for mu, hit in zip(EQUAL.mu, three, strict=True))
+        assert np.ptp(three["t"]) == np.ptp(three["v1"]) == 0.0
+        assert three["v1_after"] == pytest.approx(three["v1"] - gained, abs=1e-12)
+        assert three["v2_after"] == pytest.approx(three["v1_after"] + 0.38 * three["w_dot"], abs=1e-12)
 
 
 def test_mirror_images_and_what_is_refused():

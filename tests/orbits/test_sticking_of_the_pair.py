@@ -10,7 +10,7 @@ from scipy.optimize import brentq
 
 import vines
 from vines.dynamics import simulate
-from vines.errors import OrbitNotFound
+from vines.errors import OrbitNotFound, ParameterError
 from vines.orbits import all_orbits, continue_orbit, find_orbit, mirror_image
 from vines.systems import ImpactPair, Parallel
 
@@ -36,7 +36,8 @@ def compare(found):
     for phase, speed in zip(orbit.phase, orbit.w_dot, strict=True):
         away = np.abs((hits["phase"] - phase + math.pi) % (2 * math.pi) - math.pi)
         assert np.min(np.maximum(away, np.abs(hits["w_dot"] - speed))) < 5e-9  # 3.3e-9 was met
-    assert orbit.measures.kinetic_ratio == pytest.approx(found.measures.kinetic_ratio, rel=1e-8)
+    # 1.5e-8 was met, of L*/22T, over 22 or 352 periods: the simulator merges before the chatter is over.
+    assert orbit.measures.kinetic_ratio == pytest.approx(found.measures.kinetic_ratio, rel=3e-8)
     assert abs(orbit.energy_imbalance) < 1e-10
     assert orbit.residual < 1e-10
     assert np.all(orbit.multipliers == 0)
@@ -111,7 +112,10 @@ def test_level_orbits_are_symmetric_and_others_have_mirror_images():
     assert orbit.params.mirrored
     image = mirror_image(orbit)
     assert np.allclose(image.w_dot, orbit.w_dot, atol=1e-12)
-    assert not find_orbit("L*R*", p.replace(G=0.05)).symmetric
+    tilted = find_orbit("L*R*", p.replace(G=0.05))
+    assert not tilted.symmetric
+    with pytest.raises(ParameterError, match="its mirror image is no motion unless G = 0"):
+        mirror_image(tilted)
 
 
 @pytest.mark.parametrize(

@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import pytest
 
-from vines.errors import VinesError
+from vines.errors import DeclarationError, VinesError
 from vines.pipeline import KINDS, load, plan, register
 from vines.pipeline._grid import Grid
 from vines.pipeline._links import with_links
@@ -98,6 +98,22 @@ def test_lists_are_flat_parameters_of_each_ball(several):
     assert load(several.declare(own), root=several.folder).stages["up"].params == {"A": 0.1, "mu_2": 0.03}
     one = SEVERAL.replace("[0.01, 0.02]", "0.01").replace("vary.A", "vary.mu_3 = [0.3, 0.4]\n    vary.A")
     assert load(several.declare(one), root=several.folder).stages["up"].params == {"mu_1": 0.01, "mu_2": 0.01}
+
+
+def test_a_count_of_balls_agrees_with_lists_and_is_in_no_parameter(several):
+    counted = SEVERAL.replace("[params]", "[params]\n    balls = 2")
+    assert load(several.declare(counted), root=several.folder).stages["up"].params == {"mu_1": 0.01, "mu_2": 0.02}
+    alone = counted.replace("[0.01, 0.02]", "0.01")
+    assert load(several.declare(alone), root=several.folder).stages["up"].params == {"mu_1": 0.01, "mu_2": 0.01}
+    for text, message in (
+        (counted.replace("balls = 2", "balls = 3"), "params.mu has 2 values, and balls = 3; give a number for all"),
+        (alone.replace("vary.A", "vary.mu_3"), "stages.up: mu_3 is of ball 3, and balls = 2"),
+        (alone.replace("balls = 2", "balls = 2.5"), "params.balls is 2.5; balls are counted, 1 to 8"),
+        (alone.replace("parallel", "vi_nes"), "params.balls is 2; the system has one ball, which is not counted"),
+    ):
+        with pytest.raises(DeclarationError, match=re.escape(message)) as caught:
+            load(several.declare(text), root=several.folder)
+        assert "\n" not in str(caught.value)
 
 
 def test_the_vi_nes_may_be_named_and_that_changes_no_key(lab):

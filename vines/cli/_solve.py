@@ -8,16 +8,23 @@ from typing import TYPE_CHECKING, Any
 import click
 import msgspec
 
-from vines.cli._parameters import parameter_options
-from vines.model import STATE_NAMES, VI_NES, Params, Word
+from vines import systems
+from vines.cli._parameters import OfSystem
+from vines.model import STATE_NAMES, VI_NES, Word, system_names
 
 if TYPE_CHECKING:
     from vines.orbits import Orbit
 
 
-@click.command("solve")
+@click.command("solve", cls=OfSystem)
 @click.argument("word")
-@parameter_options
+@click.option(
+    "--system",
+    type=click.Choice(system_names()),
+    default=VI_NES.name,
+    show_default=True,
+    help="The system; options are those of its parameters: --system NAME --help lists them.",
+)
 @click.option("--all", "every", is_flag=True, help="All orbits of the word that are found, not only one.")
 @click.option(
     "--log",
@@ -27,6 +34,7 @@ if TYPE_CHECKING:
 @click.option("--json", "as_json", is_flag=True, help="For machines.")
 def command(
     word: str,
+    system: str,
     every: bool,
     log: Path | None,
     as_json: bool,
@@ -43,12 +51,17 @@ def command(
     vines solve LLR --mu 0.01 --A 0.023 --all
     vines solve 'L*R*' --mu 0.01 --A 0.5
     vines solve LR --mu 0.01 --A 0.02 --log orbit.mcap && vines view orbit.mcap
+    vines solve LLR --system impact_pair --B 0.95 --G 0.15 --r 0.5
+    vines solve L1L2R1R2 --system parallel --A 0.03 --mu_1 0.01 --mu_2 0.01 --beta_2 1.4
     """  # noqa: D301
     if every and log is not None:
         raise click.UsageError("--log writes one orbit; leave out --all")
-    p = Params(**parameters)
+    p = systems.parameters(system).of(parameters)
     Word(word)
-    from vines.orbits import all_orbits, find_orbit, orbit_row  # once all is checked: it loads the compiler
+    # once all is checked: it loads the compiler
+    from vines.orbits import all_orbits, find_orbit, orbit_outline, orbit_row
+
+    row = orbit_row if system == VI_NES.name else orbit_outline
 
     if every:
         found = all_orbits(word, p)
@@ -62,7 +75,7 @@ def command(
 
         orbit_log(orbits[0], log)
     if as_json:
-        rows = [{**orbit_row(orbit), "remark": orbit.remark} for orbit in orbits]
+        rows = [{**row(orbit), "remark": orbit.remark} for orbit in orbits]
         shown: Any = {"complete": complete, "remark": remark, "orbits": rows} if every else rows[0]
         click.echo(msgspec.json.format(msgspec.json.encode(shown, enc_hook=float), indent=1))
         return
@@ -100,11 +113,12 @@ def describe(orbit: Orbit) -> str:
         )
     if orbit.remark:
         text.append(orbit.remark)
+    letters = [p.system.letters([side], [ball]) for side, ball in zip(orbit.side, orbit.word.balls, strict=True)]
     states = orbit.states.tolist()
     rows = [
-        [VI_NES.letters([side]), *(f"{value:.10f}" for value in (t, phase, wait, *state, w_dot))]
-        for side, t, phase, wait, state, w_dot in zip(
-            orbit.side, orbit.t, orbit.phase, orbit.flight_times, states, orbit.w_dot, strict=True
+        [letter, *(f"{value:.10f}" for value in (t, phase, wait, *state, w_dot))]
+        for letter, t, phase, wait, state, w_dot in zip(
+            letters, orbit.t, orbit.phase, orbit.flight_times, states, orbit.w_dot, strict=True
         )
     ]
     head = ["", "t", "phase", "to the next", *STATE_NAMES, "w'"]
@@ -112,7 +126,7 @@ def describe(orbit: Orbit) -> str:
     if len(orbit.spells):
         names = ("t_start", "t_release", "phase_start", "phase_release", "x1", "v1")
         spells = [
-            [VI_NES.letters([spell["side"]]), *(f"{spell[name]:.10f}" for name in names), str(spell["impacts"])]
+            [letters[spell["contact"]], *(f"{spell[name]:.10f}" for name in names), str(spell["impacts"])]
             for spell in orbit.spells
         ]
         head = ["", "chatter ends", "release", "its phase", "its phase", "x1 there", "v1 there", "impacts followed"]
@@ -120,15 +134,19 @@ def describe(orbit: Orbit) -> str:
         text += lines(head, spells, wrap=None)
     text += ["", "Floquet multipliers over the period"]
     text += lines(["", "modulus"], [[_complex(z), f"{abs(z):.10f}"] for z in orbit.multipliers.tolist()], wrap=None)
-    free, locked = no_ball(p), ball_locked(p)
     clearance = "no flight turns back" if orbit.min_clearance == 2 else f"{orbit.min_clearance:.6g}"
-    measures: list[list[object]] = [
-        ["K2/K1", f"{m.kinetic_ratio:.10g}", ""],
-        ["max|x1|", f"{m.max_abs_x1:.10g}", f"{m.max_abs_x1 / free:.4g} of that without ball, {free:.6g}"],
-        ["", "", f"{m.max_abs_x1 / locked:.4g} of that with the ball locked, {locked:.6g}"],
-        ["rms x1", f"{m.rms_x1:.10g}", ""],
-        ["least clearance", clearance, "" if orbit.min_clearance == 2 else "of a turning point from its wall"],
-    ]
+    measures: list[list[object]] = []
+    if "max_abs_x1" not in p.system.without:
+        free, locked = no_ball(p), ball_locked(p)
+        measures = [
+            ["K2/K1", f"{m.kinetic_ratio:.10g}", ""],
+            ["max|x1|", f"{m.max_abs_x1:.10g}", f"{m.max_abs_x1 / free:.4g} of that without ball, {free:.6g}"],
+            ["", "", f"{m.max_abs_x1 / locked:.4g} of that with the ball locked, {locked:.6g}"],
+            ["rms x1", f"{m.rms_x1:.10g}", ""],
+        ]
+    measures.append(
+        ["least clearance", clearance, "" if orbit.min_clearance == 2 else "of a turning point from its wall"]
+    )
     text += ["", "measures", *(line for line in lines(["", "", ""], measures, wrap=None) if line)]
     energies: list[list[object]] = [
         ["base work", f"{m.base_work:.10g}"],
@@ -137,7 +155,9 @@ def describe(orbit: Orbit) -> str:
         ["lost in impacts on R", f"{m.impact_loss_right:.10g}"],
         ["left over, relative", f"{orbit.energy_imbalance:.1e}"],
     ]
-    text += ["", "energy over the period, in M b² omega0²"]
+    if m.travel_loss:
+        energies.insert(-1, ["lost by the ball on its way", f"{m.travel_loss:.10g}"])
+    text += ["", f"energy over the period, in {'m b² omega²' if isinstance(p, systems.ImpactPair) else 'M b² omega0²'}"]
     text += [line for line in lines(["", ""], energies, wrap=None) if line]
     text += ["", f"residual {orbit.residual:.1e}"]
     return "\n".join(text)

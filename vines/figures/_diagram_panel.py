@@ -35,7 +35,7 @@ _FEW = 8
 """Bifurcations beyond which their symbols are small."""
 
 _RARE = 0.03
-"""Share of the dots, at either end, that may lie beyond an axis."""
+"""Share of the dots, and of the impacts that they stand for, that may lie beyond an axis at either end."""
 
 
 @dataclass(frozen=True)
@@ -207,8 +207,14 @@ def _spare_outliers(ax: Axes, panel: str, dots: Sequence[ImpactDots], lines: Seq
     if not groups or not branches:
         return
     values = np.concatenate(groups)
-    bulk = np.quantile(values, [_RARE, 1 - _RARE])
-    low, high = (float(end(np.append(np.concatenate(branches), bulk))) for end in (np.min, np.max))
+    ends = np.array([_RARE, 1 - _RARE])
+    bulk = np.quantile(values, ends)
+    # A dot of an orbit stands for as many impacts as one of chaos has dots.
+    order = np.argsort(values)
+    often = np.concatenate([np.ones(len(each.x)) if each.repeats is None else each.repeats for each in dots])
+    share = np.cumsum(np.maximum(often, 1.0)[order])
+    met = values[order][np.searchsorted(share, share[-1] * ends)]
+    low, high = (float(end(np.concatenate([*branches, bulk, met]))) for end in (np.min, np.max))
     if values.min() < low - (high - low) or values.max() > high + (high - low):
         ax.set_ylim(low - 0.05 * (high - low), high + 0.05 * (high - low))
 

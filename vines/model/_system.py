@@ -17,6 +17,7 @@ import msgspec
 
 from vines.bounds import shown
 from vines.errors import ParameterError, StateError, nearest
+from vines.model._letters import STOPS
 
 __all__ = ["Body", "Contact", "Coordinate", "Energies", "Parameter", "Range", "Symmetry", "System", "finite"]
 
@@ -294,9 +295,10 @@ class System(msgspec.Struct, frozen=True, dict=True):
         return "".join(contact.letter for contact in self.contacts)
 
     def letters(self, signs: Iterable[float], balls: Iterable[int] = itertools.repeat(0)) -> str:
-        """Return the letters of contacts, from the sign of the gap at each and the number of the ball (from 1)."""
-        letters = {(contact.sign, contact.ball): contact.letter for contact in self.contacts}
-        return "".join(letters[1 if sign > 0 else -1, ball] for sign, ball in zip(signs, balls, strict=False))
+        """Return the letters of contacts: of the sign of the gap, 0 at a stop, and the number of the ball (from 1)."""
+        letters = {(contact.sign, contact.ball): contact.letter for contact in self.contacts} | {(0, 0): STOPS}
+        ways = (0 if sign == 0 else 1 if sign > 0 else -1 for sign in signs)
+        return "".join(letters[each] for each in zip(ways, balls, strict=False))
 
     @functools.cached_property
     def digest(self) -> str:

@@ -125,7 +125,7 @@ def _lies_on(orbit: Orbit, branch: Branch) -> bool:
         return False
     value = orbit.params.as_dict()[branch.parameter]
     images = [orbit]
-    if not orbit.symmetric and orbit.word.mirror == orbit.word:
+    if orbit.params.mirrored and not orbit.symmetric and orbit.word.mirror == orbit.word:
         images.append(mirror_image(orbit))
     near = [other for other in branch.orbits if other.params.as_dict()[branch.parameter] == value]
     return any(same(other, image.t, image.states) for other in near for image in images)

@@ -164,6 +164,11 @@ def _bounds(
         If it is none around the bifurcation.
     """
     p = bifurcation.params
+    if p.system.stops:
+        raise ParameterError(
+            f"bifurcation is of {type(p).__name__}; turns and stops of a ball have no closing equations in two "
+            f"parameters: locate it on branches, one for each value of {parameters[-1]}"
+        )
     for name in parameters:
         p.system.parameter(name)
     if len(set(parameters)) != 2:

@@ -33,6 +33,11 @@ BRANCHING = ("symmetry_breaking", "period_doubling")
 def mirror_image(orbit: Orbit) -> Orbit:
     """Return the mirror image (x1, x2, t) -> (-x1, -x2, t + T/2) of an orbit, with L and R swapped.
 
+    Raises
+    ------
+    ParameterError
+        If a tilt breaks the symmetry: the image is no motion then.
+
     Examples
     --------
     >>> from vines.model import Params
@@ -40,6 +45,9 @@ def mirror_image(orbit: Orbit) -> Orbit:
     >>> print(mirror_image(find_orbit("LLR", Params(mu=0.01, A=0.023))).word)
     LRR
     """
+    if not orbit.params.mirrored:
+        broken = " or ".join(f"{name} = 0" for name in orbit.params.system.mirror.broken_by)
+        raise ParameterError(f"orbit is at {orbit.params}; its mirror image is no motion unless {broken}")
     if orbit.word.sticking and rides_capsule(orbit.params):
         return capsule_sticks(orbit.word.mirror, orbit.params)
     if orbit.word.sticking:

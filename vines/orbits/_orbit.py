@@ -90,6 +90,8 @@ class Orbit:
         none), and `falls`, the rate at which the force falls at the release.
     instant : (2 + 2 balls,) float array or None
         Of balls in parallel that stick: x1, v1, and x2, v2 of each, after all that happens at the first contact.
+    struck : (N, 2) float array or None
+        Of balls in parallel that stick: v1, v2 just after each impact, whatever else is struck at that instant.
     release : object or None
         Of balls in parallel that stick: the release from which the orbit was run.
     """
@@ -111,6 +113,7 @@ class Orbit:
     remark: str = ""
     spells: npt.NDArray[np.void] = field(default_factory=lambda: _NO_SPELLS)
     instant: Floats | None = field(default=None, repr=False)
+    struck: Floats | None = field(default=None, repr=False)
     release: Any = field(default=None, repr=False)
 
     @property
@@ -183,6 +186,8 @@ class Orbit:
 
     def _after(self) -> Floats:
         """Return v1, v2 just after each impact (paper, eq. (12)), shape (N, 2)."""
+        if self.struck is not None:
+            return self.struck
         law = room_of(self.params).law(self.params, np.maximum(self.word.balls, 1))
         return np.column_stack(after_impact(law, self.states[:, V1], self.states[:, V2]))
 

@@ -181,8 +181,8 @@ def _assembled(word: Word, p: Any, release: Begun, ran: Ran, met: _Contacts, hal
     else:
         multipliers = np.concatenate([sorted_multipliers(ran.slopes), nothing])
     spells = _spells(word, p, twice, met)
-    instant = _instant(rows, met.places[0])
-    for array in (met.t, met.states, jacobians, spells, instant):
+    instant, struck = _instant(rows, met.places[0]), rows[met.places][:, [col.A_V1, col.A_V2]]
+    for array in (met.t, met.states, jacobians, spells, instant, struck):
         array.setflags(write=False)
     return Orbit(
         word=word,
@@ -202,6 +202,7 @@ def _assembled(word: Word, p: Any, release: Begun, ran: Ran, met: _Contacts, hal
         remark=remark,
         spells=spells,
         instant=instant,
+        struck=struck,
         release=release,
     )
 

@@ -13,11 +13,12 @@ from vines.catalogue import Deposit
 from vines.model import VI_NES, most_balls, system_names
 from vines.pipeline._kinds import Kind, kinds
 from vines.pipeline._names import NAME
-from vines.pipeline._parameters import quantities, stems
+from vines.pipeline._parameters import BALLS, quantities, stems
 
 __all__ = ["json_schema"]
 
 _NUMBER = {"type": "number"}
+_COUNT = {"type": "integer", "minimum": 1, "description": "How many balls there are"}
 _NUMBERS = {"anyOf": [_NUMBER, {"type": "array", "items": _NUMBER, "minItems": 1}]}
 _SYSTEM = "The system, vi_nes if nothing is said"
 
@@ -53,7 +54,7 @@ def json_schema() -> dict[str, Any]:
                 "type": "object",
                 "description": "Parameters of every stage that takes them",
                 "additionalProperties": False,
-                "properties": dict.fromkeys(parameters, _NUMBERS),
+                "properties": {**dict.fromkeys(parameters, _NUMBERS), BALLS: _COUNT},
             },
             "physical": _physical(physical),
             "system": {"enum": list(system_names()), "description": _SYSTEM},
@@ -146,7 +147,10 @@ def _stage(spec: Kind, options: type[msgspec.Struct]) -> dict[str, Any]:
             "type": "object",
             "description": "Fixed parameters of this stage",
             "additionalProperties": False,
-            "properties": dict.fromkeys(stems(axes), _NUMBERS if spec.balls else _NUMBER),
+            "properties": {
+                **dict.fromkeys(stems(axes), _NUMBERS if spec.balls else _NUMBER),
+                **({BALLS: _COUNT} if spec.balls else {}),
+            },
         }
         properties["system"] = {"const": spec.system, "description": _SYSTEM}
         properties["link"] = {

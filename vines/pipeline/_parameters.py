@@ -17,9 +17,12 @@ from vines.pipeline._links import linked_values, read_links
 from vines.pipeline._options import known
 from vines.pipeline._written import written
 
-__all__ = ["Given", "balls_of", "quantities", "read_params", "stems"]
+__all__ = ["BALLS", "Given", "balls_of", "quantities", "read_params", "stems"]
 
 _NUMBERED = re.compile(r".*_([1-9])")
+
+BALLS = "balls"
+"""The key under ``params`` that counts balls; it is no parameter, and in no key of results."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,11 +35,14 @@ class Given:
         Dimensionless numbers, and quantities in SI units.
     where : str
         File and stage, for messages.
+    count : int
+        How many balls it says that there are; 0 where it leaves that to lists and numbered names.
     """
 
     params: dict[str, Fraction]
     physical: dict[str, Fraction]
     where: str
+    count: int = 0
 
     @classmethod
     def read(cls, form: Mapping[str, Any], where: str) -> Given:
@@ -45,10 +51,21 @@ class Given:
         Raises
         ------
         DeclarationError
-            If one is no table, or has something that is no number.
+            If one is no table, has something that is no number, or a list is not as long as there are balls.
         """
         params, physical = (_flat(form.get(key, {}), f"{where}{key}") for key in ("params", "physical"))
-        return cls(params, physical, where)
+        if BALLS not in params:
+            return cls(params, physical, where)
+        count, most = params.pop(BALLS), max(map(most_balls, system_names()))
+        if count not in range(1, most + 1):
+            raise DeclarationError(f"{where}params.{BALLS} is {float(count):g}; balls are counted, 1 to {most}")
+        for name, value in form["params"].items():
+            if isinstance(value, list) and len(value) != count:
+                raise DeclarationError(
+                    f"{where}params.{name} has {len(value)} values, and {BALLS} = {count}; give a number for all "
+                    "balls, or one for each"
+                )
+        return cls(params, physical, where, int(count))
 
     def check(self, kinds: Iterable[Kind]) -> None:
         """Refuse what no kind takes.
@@ -63,6 +80,20 @@ class Given:
         names = sorted({name for each in specs for name in stems(each.parameters)})
         known_params(self.params, names, physical, self.where)
         known(self.physical, physical, f"{self.where}physical")
+        self.check_count(any(each.balls for each in specs))
+
+    def check_count(self, numbered: bool) -> None:
+        """Refuse a count of balls where the system has one, without a number.
+
+        Raises
+        ------
+        DeclarationError
+        """
+        if self.count and not numbered:
+            raise DeclarationError(
+                f"{self.where}params.{BALLS} is {self.count}; the system has one ball, which is not counted: leave it "
+                'out, or give system = "parallel"'
+            )
 
 
 def known_params(given: Mapping[str, Fraction], names: list[str], physical: list[str], where: str) -> None:
@@ -83,17 +114,26 @@ def known_params(given: Mapping[str, Fraction], names: list[str], physical: list
     known(given, names, f"{where}params")
 
 
-def balls_of(system: str, names: Iterable[str]) -> int:
-    """Return how many balls a declaration numbers; 0 where the balls of a system have no numbers.
+def balls_of(system: str, names: Iterable[str], count: int = 0) -> int:
+    """Return how many balls a declaration counts or numbers; 0 where the balls of a system have no numbers.
+
+    Raises
+    ------
+    DeclarationError
+        If a name has a higher number than there are balls.
 
     Examples
     --------
-    >>> balls_of("parallel", ["A", "mu_1", "beta_3"]), balls_of("impact_pair", ["B"])
-    (3, 0)
+    >>> balls_of("parallel", ["A", "mu_1", "beta_3"]), balls_of("parallel", ["A"], 2), balls_of("impact_pair", ["B"])
+    (3, 2, 0)
     """
     if system not in system_names() or not most_balls(system):
         return 0
-    return max((int(found[1]) for name in names if (found := _NUMBERED.fullmatch(name))), default=1)
+    numbers = {name: int(found[1]) for name in names if (found := _NUMBERED.fullmatch(name))}
+    for name, number in numbers.items():
+        if number > count > 0:
+            raise DeclarationError(f"{name} is of ball {number}, and {BALLS} = {count}; give as many as there are")
+    return count or max(numbers.values(), default=1)
 
 
 def read_params(
@@ -112,6 +152,7 @@ def read_params(
     """
     physical = quantities(spec)
     known_params(own.params, stems(spec.parameters), physical, f"{where}.")
+    own.check_count(bool(spec.balls))
     known(own.physical, physical, f"{where}.physical")
     varied = {axis.name for axis in axes}
     mine, theirs = (_spread(given.params, spec) for given in (own, common))

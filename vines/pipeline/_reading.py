@@ -198,7 +198,8 @@ def _kind(table: object, common: Given, system: str, where: str) -> Kind:
     tables = (_table(stage.get(key, {}), f"{where}.{key}") for key in ("vary", "link"))
     names = [*own.params, *own.physical, *(name for each in tables for name in each)]
     try:
-        return spec.of_system(system, balls_of(system, [*names, *common.params, *common.physical]))
+        count = own.count or common.count
+        return spec.of_system(system, balls_of(system, [*names, *common.params, *common.physical], count))
     except VinesError as error:
         raise type(error)(f"{where}: {error}") from None
 

@@ -48,6 +48,8 @@ def curves(
     states: dict[str, np.ndarray],
     impacts: dict[str, np.ndarray],
     clock: Clock,
+    *,
+    sprung: bool = True,
 ) -> None:
     """Send all curves and the marks of the impacts on them.
 
@@ -70,6 +72,9 @@ def curves(
         ("spring, (x1 − e)²/2", states["potential"], SPRING),
         ("ball, µ v2²/2", states["kinetic_2"], BALL),
     ]
+    if not sprung:  # a capsule that is driven stores nothing
+        weight = ("ball, G x2", states["potential"], SPRING)
+        energies = [energies[0], weight, ("ball, v2²/2", states["kinetic_2"], BALL)]
     lines(rec, f"{root}/energy", energies, indexes)
     running(rec, root, balance(states), indexes)
 

@@ -166,9 +166,10 @@ def _send(rec: rr.RecordingStream, root: str, part: Drawn) -> None:
         send_balls(rec, root, part, states, impacts, clock)
         send_impact_log(rec, f"{root}/impacts", impacts, clock)
         return
-    cavity(rec, f"{root}/cavity", states, clock, sprung=log.system not in DRIVEN)
+    sprung = log.system not in DRIVEN
+    cavity(rec, f"{root}/cavity", states, clock, sprung=sprung)
     phase_plane(rec, f"{root}/phase", states, impacts, clock, part.parts)
-    curves(rec, root, states, impacts, clock)
+    curves(rec, root, states, impacts, clock, sprung=sprung)
     dial(rec, f"{root}/dial", states, impacts, clock)
     lanes(rec, f"{root}/lanes", states, impacts, clock)
     send_impact_log(rec, f"{root}/impacts", impacts, clock)

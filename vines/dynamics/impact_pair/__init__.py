@@ -64,6 +64,9 @@ class _Pair(Room):
         size = max(3.0 * p.B + 2.0 * math.sqrt(abs(p.G)), 0.1)
         return {"w": float(rng.uniform(-1.0, 1.0)), "w_dot": float(rng.uniform(-size, size))}
 
+    def amplitude(self, p: Any, mass: float) -> float:
+        raise ParameterError("p is of ImpactPair, whose capsule moves as it is driven: no oscillator answers")
+
     def push(self, p: Any, x1: Any, v1: Any, phase: Any) -> Any:
         return p.G - p.B * np.sin(phase)
 

@@ -5,14 +5,16 @@ from __future__ import annotations
 import math
 import os
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from vines.dynamics import simulate
+from vines.dynamics import Trajectory, simulate
+from vines.dynamics.kernels import room_of
+from vines.dynamics.runs import IN_TURN
 from vines.errors import StateError
 from vines.logs import write_run
-from vines.model import STATE_NAMES
+from vines.model import Params
 from vines.schema import numpy_dtype
 
 if TYPE_CHECKING:
@@ -22,6 +24,8 @@ __all__ = ["orbit_log"]
 
 _CLOSES = 1e-6
 """Largest difference between the two ends of the stored period; an unstable orbit drifts by its multiplier."""
+_MOST = 2000
+"""Impacts in a forcing period, those of a chatter counted."""
 
 
 def orbit_log(orbit: Orbit, path: str | os.PathLike[str], *, per_period: int = 600, bare: bool = True) -> Path:
@@ -30,7 +34,7 @@ def orbit_log(orbit: Orbit, path: str | os.PathLike[str], *, per_period: int = 6
     Parameters
     ----------
     orbit : Orbit
-        An admissible orbit, stable or not.
+        An admissible orbit of any system, stable or not. Of its multipliers the first four are written.
     path : path-like
         Where; an existing file is replaced.
     per_period : int
@@ -67,29 +71,18 @@ def orbit_log(orbit: Orbit, path: str | os.PathLike[str], *, per_period: int = 6
             f"at t = {orbit.violation_time:.6g}, so there is no motion to log"
         )
     p = orbit.params
-    longest = int(np.argmax(orbit.flight_times))
-    after = orbit.impacts[longest]
-    begun = simulate(
-        p,
-        x1=float(after["x1"]),
-        v1=float(after["v1_after"]),
-        x2=float(after["x2"]),
-        v2=float(after["v2_after"]),
-        t=float(after["t"]),
-        periods=float(orbit.flight_times[longest]) / 2 / p.period,
-    ).final
+    begun = _in_flight(orbit)
     # Times of the log run from 0 or a little later: t modulo the period, which leaves the phase as it is.
     t = begun["t"] % orbit.period
-    state = {name: begun[name] for name in STATE_NAMES}
-    phi = (begun["phase"] - p.Omega * t) % (2 * math.pi)
-    run = simulate(
-        p, x1=state["x1"], v1=state["v1"], x2=state["x2"], v2=state["v2"], t=t, phi=phi, periods=orbit.word.p
-    )
+    state = {each.name: begun[each.name] for each in p.system.state}
+    run = _run(orbit, state, t, begun["phase"], orbit.period)
     gap = max(abs(run.final[name] - state[name]) for name in state)
-    if not gap < _CLOSES or len(run.impacts) != len(orbit.t):
+    # Of a chatter that ends in sticking the word has one contact, and of stops none is an impact.
+    wanted = len(run.impacts) if orbit.word.sticking else int((orbit.side != 0).sum())
+    if not gap < _CLOSES or len(run.impacts) != wanted:
         raise StateError(
             f"orbit {orbit.word} does not close when it is followed for a period: its ends differ by {gap:.2g} "
-            f"with {len(run.impacts)} of {len(orbit.t)} impacts; its largest multiplier is {orbit.max_multiplier:.3g}"
+            f"with {len(run.impacts)} of {wanted} impacts; its largest multiplier is {orbit.max_multiplier:.3g}"
         )
     return write_run(
         path,
@@ -102,8 +95,34 @@ def orbit_log(orbit: Orbit, path: str | os.PathLike[str], *, per_period: int = 6
         orbit=_row(orbit, t),
         word=str(orbit.word),
         attractor=orbit.name if orbit.stable else None,
+        system=None if isinstance(p, Params) else p.system.name,
         bare=bare,
     )
+
+
+def _in_flight(orbit: Orbit) -> dict[str, float]:
+    """Return where the orbit is in the middle of its longest flight, its time and its phase."""
+    p, longest = orbit.params, int(np.argmax(orbit.flight_times))
+    ahead = float(orbit.flight_times[longest]) / 2
+    if getattr(p, "balls", 0):
+        at = orbit.start()
+        t, phase = at.pop("t"), float(orbit.phase[0])
+        ahead += float(orbit.t[longest]) - t
+    else:
+        after = orbit.impacts[longest]
+        t, phase = float(after["t"]), float(after["phase"])
+        left = [float(after[name]) for name in ("x1", "v1_after", "x2", "v2_after")]
+        at = room_of(p).leave(p, left, phase)
+    return _run(orbit, at, t, phase, ahead).final
+
+
+def _run(orbit: Orbit, state: dict[str, float], t: float, phase: float, duration: float) -> Trajectory:
+    """Run on from a state; balls that arrive together are struck as the orbit has it."""
+    p = orbit.params
+    phi = (phase - getattr(p, "Omega", 1.0) * t) % (2 * math.pi)
+    ties = IN_TURN if orbit.release is None else orbit.release[0].ties
+    at: dict[str, Any] = dict(state)
+    return simulate(p, t=t, phi=phi, periods=duration / p.period, ties=ties, max_impacts_per_period=_MOST, **at)
 
 
 def _row(orbit: Orbit, t: float) -> np.ndarray:
@@ -127,7 +146,7 @@ def _row(orbit: Orbit, t: float) -> np.ndarray:
         "min_clearance": orbit.min_clearance,
         "residual": orbit.residual,
     }
-    for number, value in enumerate(orbit.multipliers, 1):
+    for number, value in enumerate(orbit.multipliers[:4], 1):
         values[f"multiplier_{number}_re"] = float(value.real)
         values[f"multiplier_{number}_im"] = float(value.imag)
     for name, value in values.items():
