@@ -116,6 +116,14 @@ def test_a_count_of_balls_agrees_with_lists_and_is_in_no_parameter(several):
         assert "\n" not in str(caught.value)
 
 
+def test_a_list_that_ends_before_the_balls_do_is_refused_and_no_default_fills_it(several):
+    short = SEVERAL.replace("vary.A", "params = { A = 0.1 }\n    vary.mu_3")
+    assert load(several.declare(short), root=several.folder).stages["up"].params["mu_2"] == 0.02
+    longer = SEVERAL.replace("vary.A", "params = { A = 0.1, mu_4 = 0.03 }\n    vary.mu_1")
+    with pytest.raises(DeclarationError, match="mu is a list of 2, and there are 4 balls; give a number for all"):
+        load(several.declare(longer), root=several.folder)
+
+
 def test_the_vi_nes_may_be_named_and_that_changes_no_key(lab):
     lab.run(lab.declare(TOY), jobs=1)
     named = load(lab.declare(f'    system = "vi_nes"\n{TOY}'), root=lab.folder)

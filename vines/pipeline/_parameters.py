@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import functools
 import re
-from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
+from collections.abc import Collection, Iterable, Mapping
+from dataclasses import dataclass, field
 from fractions import Fraction
 from typing import Any
 
@@ -37,12 +37,15 @@ class Given:
         File and stage, for messages.
     count : int
         How many balls it says that there are; 0 where it leaves that to lists and numbered names.
+    lists : dict of str to int
+        The parameters that it gives as lists, and how long these are.
     """
 
     params: dict[str, Fraction]
     physical: dict[str, Fraction]
     where: str
     count: int = 0
+    lists: dict[str, int] = field(default_factory=dict)
 
     @classmethod
     def read(cls, form: Mapping[str, Any], where: str) -> Given:
@@ -54,18 +57,19 @@ class Given:
             If one is no table, has something that is no number, or a list is not as long as there are balls.
         """
         params, physical = (_flat(form.get(key, {}), f"{where}{key}") for key in ("params", "physical"))
+        lists = {name: len(value) for name, value in form.get("params", {}).items() if isinstance(value, list)}
         if BALLS not in params:
-            return cls(params, physical, where)
+            return cls(params, physical, where, lists=lists)
         count, most = params.pop(BALLS), max(map(most_balls, system_names()))
         if count not in range(1, most + 1):
             raise DeclarationError(f"{where}params.{BALLS} is {float(count):g}; balls are counted, 1 to {most}")
-        for name, value in form["params"].items():
-            if isinstance(value, list) and len(value) != count:
+        for name, length in lists.items():
+            if length != count:
                 raise DeclarationError(
-                    f"{where}params.{name} has {len(value)} values, and {BALLS} = {count}; give a number for all "
+                    f"{where}params.{name} has {length} values, and {BALLS} = {count}; give a number for all "
                     "balls, or one for each"
                 )
-        return cls(params, physical, where, int(count))
+        return cls(params, physical, where, int(count), lists)
 
     def check(self, kinds: Iterable[Kind]) -> None:
         """Refuse what no kind takes.
@@ -166,6 +170,7 @@ def read_params(
         if name in varied or name in mine or name in theirs:
             raise DeclarationError(f"{where}: {name} is given, and also follows from physical; keep one of them")
     given = {**theirs, **made, **mine}
+    _whole_lists(spec, {**common.lists, **own.lists}, {*given, *varied, *links}, where)
     values: dict[str, Fraction] = {}
     for name, default in spec.parameters.items():
         if name in varied or name in links:
@@ -188,6 +193,17 @@ def read_params(
     except VinesError as error:
         raise DeclarationError(f"{where}.link: {error}") from None
     return {name: float(values[name]) for name in spec.parameters if name in values}, bound
+
+
+def _whole_lists(spec: Kind, lists: Mapping[str, int], given: Collection[str], where: str) -> None:
+    """Refuse a list that ends before the balls do: what it leaves out would silently be the default."""
+    for name, length in lists.items():
+        for number in range(length + 1, spec.balls + 1):
+            if f"{name}_{number}" in spec.parameters and f"{name}_{number}" not in given:
+                raise DeclarationError(
+                    f"{where}: params.{name} is a list of {length}, and there are {spec.balls} balls; give a number "
+                    "for all balls, or one for each"
+                )
 
 
 def _split(
