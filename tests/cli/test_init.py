@@ -39,6 +39,9 @@ def test_other_beginnings(tmp_path, start, copied):
     there = sorted(path.name for path in (tmp_path / "own" / "pipelines").iterdir())
     assert there == (copied or sorted(path.name for path in (REPOSITORY / "pipelines").iterdir()))
     assert Project(tmp_path / "own").vines("status", "quickstart").stdout
+    commands = re.findall(r"^vines (\S+) (\S+)", (tmp_path / "own" / "README.md").read_text("utf-8"), re.MULTILINE)
+    assert {name for name, _ in commands} == {"run", "view", "query", "report"}
+    assert {of.partition(".")[0] for name, of in commands if name != "query"} == {"quickstart"}
 
 
 def test_nothing_is_overwritten(own, tmp_path):

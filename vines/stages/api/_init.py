@@ -24,7 +24,7 @@ def init_study(folder: Path, start: Literal["starter", "quickstart", "paper"] = 
     folder : Path
         The folder; it may exist.
     start : {"starter", "quickstart", "paper"}
-        A small study that runs in seconds, with a README; the quickstart; or all pipelines that ship with vines.
+        A small study that runs in seconds; the quickstart; or all pipelines that ship with vines. Each has a README.
 
     Raises
     ------
@@ -43,5 +43,6 @@ def init_study(folder: Path, start: Literal["starter", "quickstart", "paper"] = 
     for path in source.glob(_COPIED[start]):
         shutil.copyfile(path, folder / "pipelines" / path.name)
     readme = folder / "README.md"
-    if start == "starter" and not readme.exists():
-        shutil.copyfile(shipped("starter") / "README.md", readme)
+    if not readme.exists():
+        text = "README.md" if start == "starter" else "README.quickstart.md"
+        shutil.copyfile(shipped("starter") / text, readme)
