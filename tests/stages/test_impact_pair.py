@@ -9,7 +9,7 @@ import pytest
 import vines
 from vines.errors import VinesError
 from vines.logs import read
-from vines.stages import load_pipeline, run, verify
+from vines.stages import found, load_pipeline, run, verify
 
 PAIR = """
 title = "a pair"
@@ -76,9 +76,9 @@ def test_tables_hold_the_check_values(pair):
     kept = read(log)
     assert kept.system == "impact_pair"
     assert (kept.parameters, kept.impacts.num_rows) == ({"B": 0.65, "G": 0.05, "r": 0.5}, 6)
-    found = verify("pair", recompute=60)
-    assert found.good, [line.first for line in found.lines if line.first]
-    again = {line.name: line.checked for line in found.lines if line.group == "recomputed"}
+    verified = verify("pair", recompute=60)
+    assert verified.good, [line.first for line in verified.lines if line.first]
+    again = {line.name: line.checked for line in verified.lines if line.group == "recomputed"}
     assert {f"impact_pair_{name}" for name in ("points", "impacts", "orbits", "bifurcations")} < set(again)
     assert all(again.values())
     first = vines.query('select * from "pair.points" where B = 0.6').to_pylist()[0]
@@ -115,6 +115,11 @@ def test_tables_hold_the_check_values(pair):
     assert vines.query("select count(*) as n from all_orbits where system = 'impact_pair'").to_pylist() == [
         {"n": vines.table("impact_pair_orbits").num_rows}
     ]
+    screen = found("pair")
+    assert [line for line in screen if not line.startswith(" ")] == ["Found", "", "Files", "", "Next"]
+    assert "  2 points: 2 1:1  (points)" in screen
+    assert "  asymmetric 1:1 at B = 0.65  (run)" in screen
+    assert any("select B, name, impact_power from impact_pair_points" in line for line in screen)
 
 
 @pytest.mark.parametrize(

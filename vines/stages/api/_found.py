@@ -10,6 +10,8 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from vines.model import VI_NES, most_balls, read_system, system_names
+from vines.schema import system_table
 from vines.stages.api._home import Home, current
 from vines.stages.api._parts import load_parts
 from vines.store import PICTURES, read_sealed, show_pictures, write_sealed
@@ -43,9 +45,12 @@ def found(name: str, *, study: Home | None = None) -> list[str]:
     results = _results(store, parts[0].pipeline)
     if not results:
         return []
-    findings = _cached(store, pipeline, results)
-    lines = ["Found", *(f"  {line}" for line in findings), "", "Files", *_files(store, pipeline, results), "", "Next"]
-    return lines + [_step(command, what) for command, what in _next(pipeline, results)]
+    parts = {
+        "Found": [f"  {line}" for line in _cached(store, pipeline, results)],
+        "Files": list(_files(store, pipeline, results)),
+        "Next": [_step(command, what) for command, what in _next(pipeline, results)],
+    }
+    return [line for head, lines in parts.items() if lines for line in ("", head, *lines)][1:]
 
 
 def _results(store: Store, declared: Pipeline) -> dict[str, Result]:
@@ -91,15 +96,15 @@ def _findings(results: dict[str, Result]) -> Iterable[str]:
     for stage, result in results.items():
         if "atlas" in result.tables:
             yield f"{_atlas(result.table('atlas').to_pylist())}  ({stage})"
-        elif "bifurcations" in result.tables:
-            rows = result.table("bifurcations").to_pylist()
+        elif bifurcations := _named(result, "bifurcations"):
+            rows = result.table(bifurcations).to_pylist()
             for row in rows[:MOST]:
                 what = row["type"].replace("_", " ")
                 yield f"{what} at {row['parameter']} = {row['value']:.6g} on the {row['name']} orbit  ({stage})"
             if len(rows) > MOST:
-                yield f"and {len(rows) - MOST} more bifurcations and events: vines query 'select * from bifurcations'"
-        if "curves" in result.tables:
-            yield from (f"{line}  ({stage})" for line in _curves(result.table("curves").to_pylist()))
+                yield f"and {len(rows) - MOST} more bifurcations and events: vines query 'select * from {bifurcations}'"
+        if curves := _named(result, "curves"):
+            yield from (f"{line}  ({stage})" for line in _curves(result.table(curves).to_pylist()))
         if "reconstructions" in result.tables:
             rows = [row for row in result.table("reconstructions").to_pylist() if row["protocol"] != "ringdown"]
             accepted = sum(bool(row["accepted"]) for row in rows)
@@ -108,11 +113,25 @@ def _findings(results: dict[str, Result]) -> Iterable[str]:
             yield f"{len(rows)} runs of a rig, {accepted} of them pass every gate and check{lost}  ({stage})"
         if "comparisons" in result.tables:
             yield from (f"{line}  ({stage})" for line in _compared(result.table("comparisons").to_pylist()))
-        if "points" in result.tables:
-            yield f"{_attractors(result.table('points'))}  ({stage})"
+        if points := _named(result, "points"):
+            yield f"{_attractors(result.table(points), _symbols(result))}  ({stage})"
     checked = _verdicts(results)
     if checked:
         yield checked
+
+
+def _named(result: Result, base: str) -> str:
+    """Return what a table is called in a result, of whichever system; empty if it has none."""
+    return next((name for name in result.tables if name in {system_table(each, base) for each in system_names()}), "")
+
+
+def _symbols(result: Result) -> list[str]:
+    """Return the parameters that a reader tells runs of a system apart by: those that have no default."""
+    points = _named(result, "points")
+    system = next(name for name in system_names() if system_table(name, "points") == points)
+    if system == VI_NES.name:
+        return ["mu", "A", "Omega"]
+    return [each.name for each in read_system(system, min(most_balls(system), 1)).parameters if each.default is None]
 
 
 def _verdicts(results: dict[str, Result]) -> str:
@@ -157,7 +176,7 @@ def _curves(rows: list[dict[str, Any]]) -> Iterable[str]:
         )
 
 
-def _attractors(points: pa.Table) -> str:
+def _attractors(points: pa.Table, symbols: list[str]) -> str:
     """Return what the points of a stage settled to, the most frequent first."""
     import pyarrow.compute as pc
 
@@ -166,7 +185,7 @@ def _attractors(points: pa.Table) -> str:
         reason = failed["reason"][0].as_py()
         return f"{failed.num_rows} of {points.num_rows} points failed, the first because: {reason}"
     if points.num_rows == 1:
-        return _one_attractor(points.to_pylist()[0])
+        return _one_attractor(points.to_pylist()[0], symbols)
     # Counted in columns: a sweep may have a million points.
     counts: Counter[str] = Counter()
     for group in points.group_by(["settled", "name", "regime", "status"]).aggregate([([], "count_all")]).to_pylist():
@@ -175,20 +194,16 @@ def _attractors(points: pa.Table) -> str:
     return f"{points.num_rows} points: {listed}"
 
 
-def _one_attractor(row: dict[str, Any]) -> str:
+def _one_attractor(row: dict[str, Any], symbols: list[str]) -> str:
     side = "" if row["symmetric"] is None else ("symmetric " if row["symmetric"] else "asymmetric ")
-    alias = f" (the paper's {row['alias']})" if row["alias"] != row["name"] else ""
-    bought = "" if row["reduction"] is None else f", max|x1| {row['reduction']:.3g} of that with no ball"
-    return f"{side}{_kind(row)}{alias} at {_place(row)}{bought}"
+    alias = f" (the paper's {row['alias']})" if row.get("alias", row["name"]) != row["name"] else ""
+    bought = "" if row.get("reduction") is None else f", max|x1| {row['reduction']:.3g} of that with no ball"
+    place = ", ".join(f"{name} = {row[name]:g}" for name in symbols if row.get(name) is not None)
+    return f"{side}{_kind(row)}{alias} at {place}{bought}"
 
 
 def _kind(row: dict[str, Any]) -> str:
     return row["name"] if row["settled"] and row["name"] else row["regime"] or row["status"]
-
-
-def _place(row: dict[str, Any]) -> str:
-    """Return the parameters that a reader tells runs apart by."""
-    return f"mu = {row['mu']:g}, A = {row['A']:g}, Omega = {row['Omega']:g}"
 
 
 def _files(store: Store, pipeline: str, results: dict[str, Result]) -> Iterable[str]:
@@ -241,14 +256,13 @@ def _next(pipeline: str, results: dict[str, Result]) -> Iterable[tuple[str, str]
 def _question(pipeline: str, results: dict[str, Result]) -> str:
     """Return the query of a table that the pipeline has, over what it varies; empty if it has no points or orbits."""
     axes = {stage: [axis[0] for axis in result.manifest["ingredients"]["vary"]] for stage, result in results.items()}
-    for table, columns in (("points", "name, reduction"), ("orbits", "name, stable")):
-        for stage in sorted(
-            (each for each in results if table in results[each].tables), key=lambda each: not axes[each]
-        ):
-            axis = next(iter(axes[stage]), "A")
-            return (
-                f"vines query \"select {axis}, {columns} from {table} where pipeline = '{pipeline}' order by {axis}\""
-            )
+    for base, wanted in (("points", ("name", "reduction", "impact_power")), ("orbits", ("name", "stable"))):
+        for stage in sorted((each for each in results if _named(results[each], base)), key=lambda each: not axes[each]):
+            table = _named(results[stage], base)
+            there = results[stage].table(table).column_names
+            columns = ", ".join([*axes[stage][:1], *[each for each in wanted if each in there][:2]])
+            ordered = f" order by {axes[stage][0]}" if axes[stage] else ""
+            return f"vines query \"select {columns} from {table} where pipeline = '{pipeline}'{ordered}\""
     return ""
 
 
