@@ -28,7 +28,8 @@ body { font: 10pt/1.4 system-ui, "DejaVu Sans", sans-serif; color: #1c1c1c; marg
   padding: 1rem; }
 h1 { font-size: 1.5rem; margin: 0 0 .2rem; } h2 { font-size: 1.05rem; margin: 1.3rem 0 .35rem;
   border-bottom: 1px solid #c9c9c4; break-after: avoid; } p { margin: .25rem 0 .5rem; }
-table { border-collapse: collapse; font-size: .76rem; font-variant-numeric: tabular-nums; width: 100%; }
+table { border-collapse: collapse; font-size: .76rem; font-variant-numeric: tabular-nums; width: 100%;
+  margin-bottom: .6rem; }
 th, td { text-align: left; padding: .14rem .45rem; border-bottom: 1px solid #deded9; vertical-align: top; }
 th { border-bottom: 1px solid #777; } tr { break-inside: avoid; } td.number, th.number { text-align: right;
   white-space: nowrap; } td.short { white-space: nowrap; } td.long { min-width: 8rem; }
@@ -36,6 +37,7 @@ th { border-bottom: 1px solid #777; } tr { break-inside: avoid; } td.number, th.
 .agree, .ok, .yes { color: #17703a; } .disagree, .failed, .no { color: #a8071a; }
 .undecidable, .pattern_only { color: #7a5200; } figure { margin: .4rem 0; break-inside: avoid; }
 figure img { width: 100%; } figcaption { font-size: .8rem; color: #5c5c5c; }
+@media screen { table { display: block; overflow-x: auto; } }
 @media print { body { padding: 0; max-width: none; font-size: 9pt; } table { font-size: 6.6pt; }
   th, td { padding: .1rem .25rem; } td.long { min-width: 4rem; } }
 """

@@ -146,7 +146,8 @@ def _verdicts(campaign: _Campaign) -> Iterator[Heading | Table]:
     ])  # fmt: skip
     rows = []
     for name, row in best.items():
-        errors = " / ".join("" if (e := row.get(f"E_n_{q}")) is None else f"{e:.2f}" for q in _PANELS)
+        each = [row.get(f"E_n_{q}") for q in _PANELS]
+        errors = "" if all(e is None for e in each) else " / ".join("–" if e is None else f"{e:.2f}" for e in each)
         numbers = [_number(campaign.found.get(name), q) for q in ("A", "Omega", "mu", "r")]
         reason = row["reason"] if row["verdict"] not in ("agree", "pattern_only") else ""
         accepted = "yes" if row["accepted"] else "no"
