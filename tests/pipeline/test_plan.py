@@ -156,7 +156,7 @@ def test_the_closure_follows_lazy_and_whole_imports_but_not_those_for_checkers(l
         "def compute(job):\n    import toylab.deep as deep\n    from . import other\n    return deep, other\n"
     )
     found = modules(lab, start=start, deep="from vines.model import Params\n", other="import math\n")
-    names = ("_conversion", "_declared", "_expression", "_parameters", "_params", "_system", "_vi_nes")
+    names = ("_conversion", "_declared", "_expression", "_letters", "_parameters", "_params", "_system", "_vi_nes")
     model = {f"vines.model.{name}" for name in names}
     assert found == {"toylab.start", "toylab.deep", "toylab.other", "vines.bounds", *model}
 

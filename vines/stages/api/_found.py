@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 from vines.model import VI_NES, most_balls, read_system, system_names
 from vines.schema import system_table
+from vines.schema import table as declared
 from vines.stages.api._home import Home, current
 from vines.stages.api._parts import load_parts
 from vines.store import PICTURES, read_sealed, show_pictures, write_sealed
@@ -259,7 +260,7 @@ def _question(pipeline: str, results: dict[str, Result]) -> str:
     for base, wanted in (("points", ("name", "reduction", "impact_power")), ("orbits", ("name", "stable"))):
         for stage in sorted((each for each in results if _named(results[each], base)), key=lambda each: not axes[each]):
             table = _named(results[stage], base)
-            there = results[stage].table(table).column_names
+            there = [column.name for column in declared(table).columns]
             columns = ", ".join([*axes[stage][:1], *[each for each in wanted if each in there][:2]])
             ordered = f" order by {axes[stage][0]}" if axes[stage] else ""
             return f"vines query \"select {columns} from {table} where pipeline = '{pipeline}'{ordered}\""
