@@ -32,6 +32,18 @@ def test_import_vines_and_params_load_nothing_heavy(tmp_path):
     assert loaded("from vines import systems; systems.Parallel(mu=(0.01, 0.02), A=0.02)", tmp_path) == []
 
 
+def test_science_imports_no_library_before_it_is_used(tmp_path):
+    """SciPy's statistics took as long to import as vines, its compiled kernels included."""
+    code = """
+import sys
+from vines.orbits import find_orbit
+from vines.attractors import exits, settle
+print([name for name in ("scipy.stats", "scipy.linalg", "scipy.optimize", "pandas", "pyarrow") if name in sys.modules])
+"""
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, cwd=tmp_path, check=True)
+    assert done.stdout == "[]\n"
+
+
 @pytest.mark.parametrize("arguments", [["--help"], ["list"], ["status"], ["status", "quickstart"], ["run", "--help"]])
 def test_quick_commands_load_nothing_heavy(arguments, tmp_path):
     code = f"""

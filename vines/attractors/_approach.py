@@ -26,9 +26,21 @@ from vines.kernels import (
 )
 from vines.orbits.kernels import mark, newton_kernel
 
-__all__ = ["LARGEST_P", "NO_ORBIT", "STABLE", "UNSTABLE", "comes_to_orbit", "nearest_orbit", "note_coming"]
+__all__ = [
+    "CLOSED_FORM",
+    "LARGEST_P",
+    "NO_ORBIT",
+    "STABLE",
+    "UNSTABLE",
+    "comes_to_orbit",
+    "nearest_orbit",
+    "note_coming",
+]
 
 NO_ORBIT, STABLE, UNSTABLE = range(3)
+
+CLOSED_FORM = (DragConstants, FrictionConstants, PairConstants, ParallelConstants)
+"""Constants of systems judged by the bodies of the VI-NES; where no closed form is, `_stroboscope` has others."""
 
 ITERATIONS = 20
 """Newton steps to the orbit near a run."""
@@ -132,7 +144,7 @@ def nearest_orbit(c, rows, kept, p, lag, scale, tolerance):
     return True, largest, distance, p * _repetitions(Y, away, distance, tolerance)
 
 
-for _kind in (DragConstants, FrictionConstants, PairConstants, ParallelConstants):
+for _kind in CLOSED_FORM:
     nearest_orbit.register(_kind)(nearest_orbit.first)
 
 

@@ -13,7 +13,6 @@ from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
-from scipy.stats import t as student
 
 from vines.attractors._exit_watch import FELL, GOES_ON, LEFT_IT, M_COUNT, M_DONE, M_STATUS, MARKS, ROSE
 from vines.attractors._exit_work import UNDECIDED, Work
@@ -48,6 +47,8 @@ def split(work: Work, k: int, walkers: int) -> Holding | None:
     walkers : int
         Runs of each level.
     """
+    from scipy.stats import t as student
+
     size = work.regimes[k].attractor.max_multiplier
     p = work.regimes[k].attractor.p or 1
     memory = p / -math.log(size) if 0.0 < size < 1.0 else 1.0

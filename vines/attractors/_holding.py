@@ -8,7 +8,6 @@ from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
-from scipy.stats import chi2
 
 from vines.domains import Number, Whole, stated
 
@@ -89,6 +88,8 @@ def mean_interval(exits: int, watched: float, level: float = LEVEL) -> tuple[flo
     >>> mean_interval(0, 300.0)[1] > 80
     True
     """
+    from scipy.stats import chi2
+
     tail = 0.5 * (1.0 - level)
     low = 2.0 * watched / float(chi2.ppf(1.0 - tail, 2 * exits + 2))
     if not exits:

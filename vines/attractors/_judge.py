@@ -5,16 +5,12 @@ from __future__ import annotations
 import math
 
 from vines.attractors import _verdict as v
-from vines.attractors._approach import nearest_orbit
+from vines.attractors._approach import CLOSED_FORM, nearest_orbit
 from vines.attractors._coming import comes
 from vines.attractors._contacts import difference, mirror_difference, repetition
 from vines.attractors._multipliers import multipliers
-from vines.dynamics.drag import DragConstants
-from vines.dynamics.friction import FrictionConstants
-from vines.dynamics.impact_pair import PairConstants
 from vines.dynamics.kernels import Constants, directions, drift, rate_alone, ringing, tangent_product
 from vines.dynamics.kernels import rows as col
-from vines.dynamics.parallel import ParallelConstants
 from vines.kernels import by_type, byte_vector, cold_njit, complex_vector, new_vector, njit, zero_integers
 from vines.orbits.kernels import STUCK, completes, contacts, mark
 
@@ -218,5 +214,5 @@ def without_impact(c, rows, n, tolerance, verdict):
     verdict[v.SETTLED] = 1.0
 
 
-for _kind in (DragConstants, FrictionConstants, PairConstants, ParallelConstants):
+for _kind in CLOSED_FORM:
     without_impact.register(_kind)(without_impact.first)

@@ -6,7 +6,6 @@ import math
 
 import numpy as np
 import numpy.typing as npt
-from scipy.linalg import expm
 
 __all__ = ["held_halves", "transition"]
 
@@ -28,6 +27,8 @@ def transition(lam: float, step: float, time: float) -> tuple[Floats, Floats]:
     >>> bool(abs(added[2, 2] + mean[2, 2] ** 2 - 1) < 1e-15)
     True
     """
+    from scipy.linalg import expm
+
     drift = np.array([[0.0, 1.0, 0.0], [-step * step, -lam * step, 1.0], [0.0, 0.0, -step / time]])
     push = np.zeros((3, 3))
     push[2, 2] = 2.0 * step / time
@@ -81,6 +82,8 @@ def held_halves(lam: float, step: float, time: float) -> tuple[float, ...]:
 
 def _of_held(lam: float, step: float) -> Floats:
     """Return what forces of size 1 in the first and in the second half of a step add to (x/step^2, v/step)."""
+    from scipy.linalg import expm
+
     drift = np.array([[0.0, 1.0, 0.0], [-step * step, -lam * step, 1.0], [0.0, 0.0, 0.0]])
     flow = expm(0.5 * drift)
     second = flow[:2, 2]
