@@ -42,6 +42,7 @@ __all__ = [
     "X2",
     "advance",
     "begin",
+    "count_run",
     "law_of",
     "merge",
     "move",
@@ -51,6 +52,7 @@ __all__ = [
     "set_state",
     "shift_time",
     "state_now",
+    "strike",
     "too_many",
     "write_row",
 ]
@@ -176,6 +178,25 @@ def place(state, mode, wall, released, x1, v1, x2, v2):
 
 
 @fused_njit
+def count_run(state, hit):
+    """Count an impact on a wall in its chatter."""
+    if hit != state[S_RUN_SIDE] or state[S_RELEASED] != 0.0:
+        state[S_RUN] = 0.0
+    state[S_RUN] += 1.0
+    state[S_RUN_SIDE] = hit
+
+
+@fused_njit
+def strike(law, state, hit, tau, x, v, v2, row):
+    """Let the ball hit a wall at the present instant, which comes tau after the row before, and write that."""
+    after1, after2 = after_impact_kernel(law, v, v2)
+    state[S_IMPACTS] += 1.0
+    place(state, 0, hit, 0.0, x, after1, x - hit, after2)
+    state[S_DECIDE] = 1.0
+    write_row(row, state, IMPACT, hit, tau, x, v, x - hit, v2)
+
+
+@fused_njit
 def merge(c, state, wall, x1, v1, x2, v2, row):
     """Let the ball ride on a wall from now on, with the common velocity, and write that."""
     common = (v1 + c.mu * v2) / (1.0 + c.mu)
@@ -271,15 +292,8 @@ def advance(c, state, stop, cap, rows, first):
             if code == CONTACT:
                 move(c, state, tau)
                 _, v2 = ball_flown(c, motion, v2, tau)
-                after1, after2 = after_impact_kernel(law_of(c, v - v2, state[S_IMPACTS]), v, v2)
-                state[S_IMPACTS] += 1.0
-                if hit != state[S_RUN_SIDE] or state[S_RELEASED] != 0.0:
-                    state[S_RUN] = 0.0
-                state[S_RUN] += 1.0
-                state[S_RUN_SIDE] = hit
-                place(state, 0, hit, 0.0, x, after1, x - hit, after2)
-                state[S_DECIDE] = 1.0
-                write_row(rows[count], state, IMPACT, hit, tau, x, v, x - hit, v2)
+                count_run(state, hit)
+                strike(law_of(c, v - v2, state[S_IMPACTS]), state, hit, tau, x, v, v2, rows[count])
                 count += 1
                 if too_many(state, cap, period):
                     return count, EVENT_CAP

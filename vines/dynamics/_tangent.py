@@ -35,6 +35,8 @@ __all__ = [
     "lyapunov_spectrum",
     "offset",
     "orthonormalise",
+    "swing",
+    "swing_of",
     "tangent_map",
     "tangent_product",
 ]
@@ -51,20 +53,33 @@ def directions(c):
     return 0, 0, 0, 0
 
 
+@fused_njit
+def swing_of(o, tau):
+    """Return sine, over the frequency, and cosine of an oscillator's free swing after a time tau."""
+    size = decay(o.half * tau)
+    sine, cosine = sincos(o.gamma * tau)
+    sine *= size * o.inverse
+    cosine *= size
+    return sine, cosine
+
+
+@fused_njit
+def swing(o, sine, cosine, Y, j):
+    """Carry a disturbance of an oscillator, the first two rows of a column of Y; see `swing_of`."""
+    x = Y[0, j]
+    v = Y[1, j]
+    Y[0, j] = (cosine + o.half * sine) * x + sine * v
+    Y[1, j] = -o.stiffness * sine * x + (cosine - o.half * sine) * v
+
+
 @by_type(Constants)
 @fused_njit
 def flow_basis(c, mode, tau, Y):
     """Carry the disturbances that are the columns of Y over a time tau between events."""
     o = c.stuck if mode != 0.0 else c.free
-    size = decay(o.half * tau)
-    sine, cosine = sincos(o.gamma * tau)
-    sine *= size * o.inverse
-    cosine *= size
+    sine, cosine = swing_of(o, tau)
     for j in range(4):
-        x = Y[0, j]
-        v = Y[1, j]
-        Y[0, j] = (cosine + o.half * sine) * x + sine * v
-        Y[1, j] = -o.stiffness * sine * x + (cosine - o.half * sine) * v
+        swing(o, sine, cosine, Y, j)
         if mode != 0.0:
             Y[2, j] = Y[0, j]
             Y[3, j] = Y[1, j]

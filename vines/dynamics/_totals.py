@@ -27,6 +27,7 @@ from vines.kernels import by_type, entry_njit, linked_njit, njit, zero_matrix, z
 
 __all__ = [
     "accumulate",
+    "add_integrals",
     "add_segment",
     "add_window",
     "ball_mass",
@@ -133,6 +134,17 @@ def count_event(c, out, row):
         out[STICKS_LEFT if left else STICKS_RIGHT] += 1.0
 
 
+@njit
+def add_integrals(out, length, xx, vv, ball, work, loss):
+    """Add to the totals what does not depend on where in a segment it comes about."""
+    out[DURATION] += length
+    out[X1_SQUARE] += xx
+    out[V1_SQUARE] += vv
+    out[V2_SQUARE] += ball
+    out[BASE_WORK] += work
+    out[DAMPER_LOSS] += loss
+
+
 @by_type(Constants)
 @linked_njit
 def add_segment(c, out, mode, begins, x1, v1, x2, v2, phase, length):
@@ -141,12 +153,7 @@ def add_segment(c, out, mode, begins, x1, v1, x2, v2, phase, length):
     start = phasors(o, c.Omega, x1, v1, phase)
     end = turn(o, c.Omega, *start, length)
     xx, vv, ball, work, loss = energies_between(c, o, mode != 0.0, start, end, v2, length)
-    out[DURATION] += length
-    out[X1_SQUARE] += xx
-    out[V1_SQUARE] += vv
-    out[V2_SQUARE] += ball
-    out[BASE_WORK] += work
-    out[DAMPER_LOSS] += loss
+    add_integrals(out, length, xx, vv, ball, work, loss)
     best, when = peak_between(c, o, start, end, 0.0, length, out[MAX_ABS_X1])
     if when >= 0.0:
         out[MAX_ABS_X1] = best

@@ -13,10 +13,10 @@ from vines.dynamics._advance import A_V1, A_V2, PHASE, SIDE, V1, V2, X1, X2
 from vines.dynamics._flight import derivatives, launched, relative, turn
 from vines.dynamics._impact_law import after_impact_kernel
 from vines.dynamics._integrals import NODES, WEIGHTS, peak_between
-from vines.dynamics._totals import TRAVEL_LOSS, base_at
+from vines.dynamics._totals import TRAVEL_LOSS, add_integrals, base_at
 from vines.kernels import linked_njit, njit
 
-__all__ = ["accelerations", "add_travel", "merged", "offset_of_travel", "strike", "struck", "travel_integrals"]
+__all__ = ["accelerations", "add_travel", "merged", "offset_of_travel", "struck", "struck_under", "travel_integrals"]
 
 OF_A_WINDOW = 0.75
 """Parts are no longer than this times the window, 1.5 over the fastest rate: a product of two of them turns by 3."""
@@ -68,12 +68,7 @@ def add_travel(c, out, mode, begins, x1, v1, x2, v2, phase, length):
     """Do what `add_segment` does."""
     motion = _start(c, mode, x1, v1, v2, phase)
     x_square, v_square, ball, square, way, work, damped = _integrals(c, mode, motion, phase, length)
-    out[entry.DURATION] += length
-    out[entry.X1_SQUARE] += x_square
-    out[entry.V1_SQUARE] += v_square
-    out[entry.V2_SQUARE] += ball
-    out[entry.BASE_WORK] += work
-    out[entry.DAMPER_LOSS] += damped
+    add_integrals(out, length, x_square, v_square, ball, work, damped)
     out[TRAVEL_LOSS] += c.mu * (c.delta * square + c.friction * way)
     o = c.stuck if mode != 0.0 else c.free
     best, when = peak_between(c, o, motion, turn(o, c.Omega, *motion, length), 0.0, length, out[entry.MAX_ABS_X1])
@@ -97,11 +92,11 @@ def struck(c, row, Y):
     v1, v2 = row[V1], row[V2]
     after1, after2 = after_impact_kernel(c.law, v1, v2)
     before = accelerations(c, row[X1], v1, v2, row[PHASE])
-    strike(c.law, v1, v2, before, accelerations(c, row[X1], after1, after2, row[PHASE]), Y)
+    struck_under(c.law, v1, v2, before, accelerations(c, row[X1], after1, after2, row[PHASE]), Y)
 
 
 @njit
-def strike(law, v1, v2, before, after, Y):
+def struck_under(law, v1, v2, before, after, Y):
     """Apply an impact to the disturbances that are the columns of Y, from both accelerations before and after it."""
     after1, after2 = after_impact_kernel(law, v1, v2)
     a1, a2 = before

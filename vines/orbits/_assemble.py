@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
@@ -16,7 +17,7 @@ from vines.orbits._orbit import Orbit
 from vines.orbits._survey import survey_kernel
 from vines.orbits._values import marks_of
 
-__all__ = ["assemble", "asymmetry"]
+__all__ = ["assemble", "asymmetry", "begun_first"]
 
 Floats = npt.NDArray[np.float64]
 
@@ -84,10 +85,15 @@ def _canonical(word: Word, p: Any, t: Floats, states: Floats) -> tuple[Floats, F
     else:
         letters = VI_NES.letters(states[:, X1] - states[:, X2])
         starts = [k for k in range(len(t)) if letters[k:] + letters[:k] == word.letters]
+    k, times = begun_first(starts, word, p, t)
+    return times, np.concatenate([states[k:], states[:k]])
+
+
+def begun_first(starts: Iterable[int], word: Word, p: Any, t: Floats) -> tuple[int, Floats]:
+    """Return the start of least phase of those from which contacts read as the word, and the times from it on."""
     k = min(starts, key=lambda k: (float(t[k] % p.period), k))
     times = np.concatenate([t[k:], t[:k] + word.p * p.period])
-    times -= math.floor(times[0] / p.period) * p.period
-    return times, np.concatenate([states[k:], states[:k]])
+    return k, times - math.floor(times[0] / p.period) * p.period
 
 
 def asymmetry(word: Word, duration: float, t: Floats, states: Floats) -> float:

@@ -9,7 +9,7 @@ from vines.kernels import linked_njit, njit
 from vines.orbits._budget import orbit_rows
 from vines.orbits._chains import ball_of, chain_closing, gravity, response, steady
 from vines.orbits._equations import closing_kernel, closing_unit, prepared
-from vines.orbits._survey import survey_kernel, survey_rows
+from vines.orbits._survey import inspect_row, survey_kernel, survey_rows
 
 __all__: list[str] = []
 
@@ -54,6 +54,7 @@ def _gravity(c):
     return c.G
 
 
+inspect_row.register(PairConstants)(inspect_row.first)
 orbit_rows.register(PairConstants)(orbit_rows.first)
 
 

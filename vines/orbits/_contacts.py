@@ -2,13 +2,21 @@
 
 from __future__ import annotations
 
+import math
+
+import numpy as np
+import numpy.typing as npt
+
 from vines.dynamics.kernels import rows as col
 from vines.kernels import integer_vector, linked_njit, njit
 
-__all__ = ["STUCK", "completes", "contacts", "mark"]
+__all__ = ["STUCK", "completes", "contacts", "mark", "slowest_followed"]
 
 STUCK = 64
 """Added to the size of a `mark` where the contact is a complete chatter."""
+
+_RESOLVED = 1e-4
+"""Speed of an impact beside which one before it counts as slow: the last ones of a chatter are in order to rounding."""
 
 
 @njit
@@ -134,3 +142,13 @@ def _without_what_goes_on(rows, n, keep, count):
             while count > 0 and (keep[count - 1] > first or (merged and keep[count - 1] == first)):
                 count -= 1
     return count
+
+
+def slowest_followed(hits: npt.NDArray[np.float64]) -> float:
+    """Return the least speed of an impact of a chatter that a faster one follows, inf if there is none."""
+    fastest, slowest = 0.0, math.inf
+    for speed in np.abs(hits[::-1, col.V1] - hits[::-1, col.V2]).tolist():
+        if speed < fastest and fastest > _RESOLVED:
+            slowest = min(slowest, speed)
+        fastest = max(fastest, speed)
+    return slowest

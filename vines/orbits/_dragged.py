@@ -10,7 +10,7 @@ from vines.orbits._budget import orbit_rows
 from vines.orbits._chains import ball_of
 from vines.orbits._equations import closing_kernel, closing_unit, prepared
 from vines.orbits._flown_closing import flown_closing
-from vines.orbits._survey import survey_kernel, survey_rows
+from vines.orbits._survey import inspect_row, survey_kernel, survey_rows
 from vines.orbits._turnings_of_balls import rides
 
 __all__: list[str] = []
@@ -29,6 +29,7 @@ def _closing_unit(c):
 
 
 closing_kernel.register(DragConstants)(flown_closing)
+inspect_row.register(DragConstants)(inspect_row.first)
 orbit_rows.register(DragConstants)(orbit_rows.first)
 rides.register(DragConstants)(rides.first)
 

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import math
 
-from vines.dynamics.kernels import after_impact_kernel, carry_basis, segment_state, tangent_product
+from vines.dynamics.kernels import after_impact_kernel, carry_basis, segment_state
 from vines.dynamics.kernels import rows as col
 from vines.dynamics.taylor import TaylorConstants
 from vines.dynamics.taylor.kernels import W, X, at, bounds, coefficients, derivatives_at, expand, slopes
-from vines.kernels import copy_values, entry_njit, identity, linked_njit, new_cube, new_matrix, njit, zero_vector
+from vines.kernels import entry_njit, identity, linked_njit, new_matrix, njit, zero_vector
 from vines.orbits._budget import orbit_rows
-from vines.orbits._survey import NO_TURNING, survey_kernel
+from vines.orbits._survey import NO_TURNING, inspect_row, survey_kernel, survey_rows
 from vines.orbits._turnings_of_balls import gap_kernel, turnings_kernel
 
 __all__ = ["shots_kernel"]
@@ -155,12 +155,12 @@ def _turnings(c, row, tau):
     return found
 
 
+@inspect_row.register(TaylorConstants)
 @linked_njit
-def _inspect(c, row, tau):
-    """Return (clearance, violation, wall) of the flight after a row; see `vines.orbits._survey.inspect_flight`."""
+def _inspect_row(c, side, row, tau):
     clearance, violation, wall = NO_TURNING, math.nan, 0
-    if row[col.SIDE] * (row[col.A_V1] - row[col.A_V2]) > 0.0:
-        violation, wall = 0.0, int(row[col.SIDE])
+    if side * (row[col.A_V1] - row[col.A_V2]) > 0.0:
+        violation, wall = 0.0, side
     before = 0.0
     for when, w, bend in _turnings(c, row, tau):
         towards = 1 if bend < 0.0 else -1
@@ -206,25 +206,4 @@ def _turnings_kernel(c, duration, side, t, states):
 @survey_kernel.register(TaylorConstants)
 @linked_njit
 def _survey(c, duration, side, t, states):
-    rows = _rows(c, duration, side, t, states)
-    N = side.size
-    jacobians = new_cube(N, 4, 4)
-    residual, clearance, violation, wall = 0.0, NO_TURNING, math.nan, 0
-    for j in range(N):
-        row, following = rows[j], rows[j + 1]
-        Y = tangent_product(c, rows, j, j + 1)
-        for i in range(4):
-            copy_values(jacobians[j, i], Y[i])
-        tau = following[col.TAU]
-        x1, v1, x2, v2, _ = segment_state(c, row, tau)
-        residual = max(residual, abs(row[col.X1] - row[col.X2] - side[j]))
-        residual = max(residual, abs(x1 - following[col.X1]), abs(v1 - following[col.V1]))
-        residual = max(residual, abs(x2 - following[col.X2]), abs(v2 - following[col.V2]))
-        distance, when, where = _inspect(c, row, tau)
-        clearance = min(clearance, distance)
-        if where != 0 and wall == 0:
-            violation, wall = row[col.TIME] + when, where
-        arrives = side[(j + 1) % N]
-        if arrives * (following[col.V1] - following[col.V2]) <= 0.0 and wall == 0:
-            violation, wall = following[col.TIME], arrives
-    return jacobians, residual, clearance, violation, wall
+    return survey_rows(c, _rows(c, duration, side, t, states), side)

@@ -32,6 +32,7 @@ from vines.dynamics.runs import EVENTS_PER_PERIOD, measures_from
 from vines.errors import OrbitNotFound, ParameterError
 from vines.kernels import linked_njit, new_matrix, new_vector, njit
 from vines.model import Word
+from vines.orbits._assemble import asymmetry, begun_first
 from vines.orbits._equations import closing_kernel, closing_unit, prepared
 from vines.orbits._floquet import FIXED_TIME, half_map, monodromy, sorted_multipliers, squared
 from vines.orbits._general import check_word
@@ -213,22 +214,16 @@ def _assembled(word: Word, p: Any, z: Floats, remark: str = "") -> Orbit | None:
     way = _Round(word, p, z, len(word))
     if not way.places:
         return None
-    rows, places, c, duration = way.rows, way.places, way.c, word.p * p.period
+    rows, places, c = way.rows, way.places, way.c
     begin = float(z[3]) % (2 * math.pi) / p.Omega
     t = begin + rows[places[:-1], col.TIME]
     states = rows[places[:-1]][:, [col.X1, col.V1, col.X2, col.V2]]
     # The row of the start has the state just after the impact.
     states[0, [1, 3]] = z[1], z[2]
     jacobians = np.stack([tangent_product(c, rows, a, b) for a, b in pairwise(places)])
-    k = min(word.rotations(), key=lambda k: (float(t[k] % p.period), k))
-    t = np.concatenate([t[k:], t[:k] + duration])
-    t = t - math.floor(t[0] / p.period) * p.period
+    k, t = begun_first(word.rotations(), word, p, t)
     states, jacobians = np.roll(states, -k, axis=0), np.roll(jacobians, -k, axis=0)
-    half = len(t) // 2
-    off = math.inf
-    if p.mirrored and word.symmetric:
-        off = max(np.abs(t[half:] - t[:half] - duration / 2).max(), np.abs(states[half:] + states[:half]).max())
-    symmetric = bool(off < _SAME)
+    symmetric = p.mirrored and asymmetry(word, word.p * p.period, t, states) < _SAME
     halves = sorted_multipliers(half_map(jacobians, FIXED_TIME)) if symmetric else None
     for array in (t, states, jacobians):
         array.setflags(write=False)

@@ -22,6 +22,7 @@ from vines.dynamics.runs import EVENTS_PER_PERIOD, measures_from
 from vines.errors import OrbitNotFound
 from vines.model import Word
 from vines.orbits._assemble import asymmetry
+from vines.orbits._contacts import slowest_followed
 from vines.orbits._moved import moved
 from vines.orbits._orbit import SPELL, Orbit
 from vines.orbits._survey import NO_TURNING, inspect_flight
@@ -41,9 +42,6 @@ _SAME = 1e-9
 
 _SHORT = 1e-4
 """Flights shorter than this turn once, away from the wall; after a release the ball has hardly left the wall before."""
-
-_RESOLVED = 1e-4
-"""Speed of an impact beside which one before it counts as slow: the last ones of a chatter are in order to rounding."""
 
 
 def rides_capsule(p: Any) -> bool:
@@ -230,7 +228,7 @@ def _spells(way: _Round, t: Floats) -> npt.NDArray[np.void]:
     out["t_start"], out["t_release"] = sticks["t_start"] + shift, sticks["t_release"] + shift
     releases = rows[rows[:, col.KIND] == col.RELEASE]
     out["x1"], out["v1"] = releases[:, col.X1], releases[:, col.V1]
-    out["slowest"] = [_slowest(rows, int(i)) for i in np.flatnonzero(rows[:, col.KIND] == col.STICK)]
+    out["slowest"] = [slowest_followed(_chatter(rows, int(i))) for i in np.flatnonzero(rows[:, col.KIND] == col.STICK)]
     # The force has no minimum before it vanishes.
     out["least_force"] = math.inf
     out["falls"] = p.B * np.abs(np.cos(releases[:, col.PHASE]))
@@ -239,15 +237,9 @@ def _spells(way: _Round, t: Floats) -> npt.NDArray[np.void]:
     return out
 
 
-def _slowest(rows: Floats, stick: int) -> float:
-    """Return the least speed of an impact of a chatter that a faster one follows, inf if there is none."""
-    hits = rows[:stick][rows[:stick, col.KIND] == col.IMPACT][-int(rows[stick, col.RUN]) :]
-    fastest, slowest = 0.0, math.inf
-    for speed in np.abs(hits[::-1, col.V1] - hits[::-1, col.V2]).tolist():
-        if speed < fastest and fastest > _RESOLVED:
-            slowest = min(slowest, speed)
-        fastest = max(fastest, speed)
-    return slowest
+def _chatter(rows: Floats, stick: int) -> Floats:
+    """Return the impacts of the chatter that ends in a merge."""
+    return rows[:stick][rows[:stick, col.KIND] == col.IMPACT][-int(rows[stick, col.RUN]) :]
 
 
 class CapsuleSticking:

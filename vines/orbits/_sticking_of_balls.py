@@ -17,8 +17,8 @@ from vines.dynamics.runs import measures_from
 from vines.errors import OrbitNotFound
 from vines.kernels import linked_njit, njit
 from vines.model import Word
-from vines.orbits._assemble import asymmetry
-from vines.orbits._contacts import completes, contacts, mark
+from vines.orbits._assemble import asymmetry, begun_first
+from vines.orbits._contacts import completes, contacts, mark, slowest_followed
 from vines.orbits._floquet import sorted_multipliers, squared
 from vines.orbits._newton_of_balls import solve_round
 from vines.orbits._orbit import SPELL, Orbit
@@ -38,9 +38,6 @@ _ALMOST = 1e-5
 
 _SHORT = 1e-4
 """Flights shorter than this turn once, away from the wall; after a release the ball has hardly left the wall before."""
-
-_RESOLVED = 1e-4
-"""Speed of an impact beside which one before it counts as slow: the last ones of a chatter are in order to rounding."""
 
 _PARTS = 64
 """Parts of a spell in which a minimum of the contact force is looked for."""
@@ -118,14 +115,9 @@ def _ordered(word: Word, p: Any, section: Section, z: Floats, ran: Ran) -> _Cont
     wanted = list(zip(word.sides, word.balls, word.sticks, strict=True))
     t = section.phase(z) / p.Omega + ran.rows[places, col.TIME]
     starts = [k for k in range(len(own)) if own[k:] + own[:k] == wanted]
-    k = min(starts, key=lambda k: (float(t[k] % p.period), k))
+    k, t = begun_first(starts, word, p, t)
     states = ran.rows[places][:, [col.X1, col.V1, col.X2, col.V2]]
-    t = np.concatenate([t[k:], t[:k] + word.p * p.period])
-    return _Contacts(
-        [*places[k:], *places[:k]],
-        t - math.floor(t[0] / p.period) * p.period,
-        np.concatenate([states[k:], states[:k]]),
-    )
+    return _Contacts([*places[k:], *places[:k]], t, np.concatenate([states[k:], states[:k]]))
 
 
 def _letter(side: int) -> str:
@@ -260,7 +252,7 @@ def _spells(word: Word, p: Any, twice: Floats, met: _Contacts) -> npt.NDArray[np
         spell["t_release"] = shift + end[col.TIME] + lap[ends > len(twice) // 2]
         spell["phase_start"], spell["phase_release"] = begin[col.PHASE], end[col.PHASE]
         spell["x1"], spell["v1"] = end[col.X1], end[col.V1]
-        spell["slowest"] = _slowest(twice[hits])
+        spell["slowest"] = slowest_followed(twice[hits])
         riding = [(twice[i], twice[i + 1, col.TAU]) for i in range(stick, ends)]
         spell["least_force"] = min(least_of_ride(constants(p), row, float(tau)) for row, tau in riding)
         spell["falls"] = abs(falling(p, float(end[col.PHASE]), float(end[col.V1]))) if natural else math.inf
@@ -273,16 +265,6 @@ def _leaves(rows: Floats, i: int, side: float) -> bool:
     if row[col.KIND] == col.RELEASE:
         return bool(row[col.V1] == row[col.V2])
     return bool(row[col.KIND] == col.IMPACT and row[col.SIDE] != side)
-
-
-def _slowest(hits: Floats) -> float:
-    """Return the least speed of an impact of a chatter that a faster one follows, inf if there is none."""
-    fastest, slowest = 0.0, math.inf
-    for speed in np.abs(hits[::-1, col.V1] - hits[::-1, col.V2]).tolist():
-        if speed < fastest and fastest > _RESOLVED:
-            slowest = min(slowest, speed)
-        fastest = max(fastest, speed)
-    return slowest
 
 
 @njit

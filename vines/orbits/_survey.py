@@ -22,7 +22,7 @@ from vines.dynamics.kernels import rows as col
 from vines.kernels import by_type, copy_values, linked_njit, new_cube, njit
 from vines.orbits._turning import turning_points_kernel
 
-__all__ = ["NO_TURNING", "inspect_flight", "survey_kernel", "survey_rows"]
+__all__ = ["NO_TURNING", "inspect_flight", "inspect_row", "survey_kernel", "survey_rows"]
 
 NO_TURNING = 2.0
 """Clearance of an orbit whose flights never turn back: the width of the cavity."""
@@ -143,6 +143,13 @@ def survey_kernel(c, duration, side, t, states):
     return jacobians, residual, clearance, violation, wall
 
 
+@by_type(Constants)
+@njit
+def inspect_row(c, side, row, tau):
+    """Inspect the flight after a row as `inspect_flight` does, in a cavity of half length 1."""
+    return inspect_flight(c, 1.0, side, row[col.X1], row[col.A_V1], row[col.X2], row[col.A_V2], row[col.PHASE], tau)
+
+
 @linked_njit
 def survey_rows(c, rows, side):
     """Return the same of an orbit of one ball given by its rows; its Jacobians are tangent maps at fixed times."""
@@ -167,9 +174,7 @@ def survey_rows(c, rows, side):
             abs(x2 - following[col.X2]),
             abs(v2 - following[col.V2]),
         )
-        distance, when, where = inspect_flight(
-            c, 1.0, side[j], row[col.X1], row[col.A_V1], row[col.X2], row[col.A_V2], row[col.PHASE], tau
-        )
+        distance, when, where = inspect_row(c, side[j], row, tau)
         clearance = min(clearance, distance)
         if where != 0 and wall == 0:
             violation, wall = row[col.TIME] + when, where

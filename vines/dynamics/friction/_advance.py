@@ -13,13 +13,11 @@ from vines.dynamics._advance import (
     BUFFER_FULL,
     COMPLETE,
     EVENT_CAP,
-    IMPACT,
     KIND,
     RELEASE,
     RUN,
     S_CLEAR,
     S_DECIDE,
-    S_IMPACTS,
     S_MODE,
     S_PHASE,
     S_RELEASED,
@@ -41,12 +39,12 @@ from vines.dynamics._advance import (
     merge,
     move,
     place,
+    strike,
     too_many,
     write_row,
 )
 from vines.dynamics._contact import CONTACT, NO_CONTACT, STEP_CAP, contact_within
 from vines.dynamics._flight import derivatives, fifth, launched, modulus, turn
-from vines.dynamics._impact_law import after_impact_kernel
 from vines.dynamics._steps import leaving_step
 from vines.dynamics._sticking import merges, release_within
 from vines.dynamics._window import width_of, write_end
@@ -186,18 +184,13 @@ def _advance(c, state, stop, cap, rows, first):
                 move(c, state, tau)
                 now = turn(c.free, c.Omega, *motion, tau)
                 x, v, _, _, _ = derivatives(c.free, c.Omega, *now)
-                v2 = now[SPEED]
-                after1, after2 = after_impact_kernel(c.law, v, v2)
-                state[S_IMPACTS] += 1.0
                 if hit != state[S_RUN_SIDE] or released or state[S_RUN] == 0.0:
                     state[S_RUN] = 1.0
                 else:
                     # The row of the turn between belongs to the chatter too.
                     state[S_RUN] += 2.0 if c.friction > 0.0 else 1.0
                 state[S_RUN_SIDE] = hit
-                place(state, 0.0, hit, 0.0, x, after1, x - hit, after2)
-                state[S_DECIDE] = 1.0
-                write_row(rows[count], state, IMPACT, hit, tau, x, v, x - hit, v2)
+                strike(c.law, state, hit, tau, x, v, now[SPEED], rows[count])
                 count += 1
                 continue
             if code == NO_CONTACT and rest == CONTACT:

@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 from vines.dynamics._advance import IMPACT, KIND, PHASE, RUN, SIDE, SLIDE, STICK, STOP, V1, X1
-from vines.dynamics._flight import decay, derivatives, launched
+from vines.dynamics._flight import derivatives, launched
 from vines.dynamics._integrals import segment_integrals
-from vines.dynamics._sincos import sincos
-from vines.dynamics._tangent import carry_basis, directions, flow_basis, jump_basis, offset
+from vines.dynamics._tangent import carry_basis, directions, flow_basis, jump_basis, offset, swing, swing_of
 from vines.dynamics._totals import (
     add_segment,
     ball_mass,
@@ -43,15 +42,10 @@ def _stored_energy(c, x1, v1, x2, v2, phase):
 @fused_njit
 def _flow_basis(c, mode, tau, Y):
     o = c.stuck.own if mode != 0.0 else c.free.own
-    size = decay(o.half * tau)
-    sine, cosine = sincos(o.gamma * tau)
-    sine *= size * o.inverse
-    cosine *= size
+    sine, cosine = swing_of(o, tau)
     for j in range(4):
         x = Y[0, j]
-        v = Y[1, j]
-        Y[0, j] = (cosine + o.half * sine) * x + sine * v
-        Y[1, j] = -o.stiffness * sine * x + (cosine - o.half * sine) * v
+        swing(o, sine, cosine, Y, j)
         if mode != 0.0:
             # A disturbed run stops elsewhere in the cavity, and stays as far away.
             Y[2, j] += Y[0, j] - x

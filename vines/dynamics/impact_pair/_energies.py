@@ -7,6 +7,7 @@ from vines.dynamics._advance import A_V2, V1, V2
 from vines.dynamics._flight import flight, turn
 from vines.dynamics._integrals import segment_integrals
 from vines.dynamics._totals import (
+    add_integrals,
     add_segment,
     ball_mass,
     base_at,
@@ -76,11 +77,7 @@ def _segment_integrals(c, mode, x1, v1, v2, phase, length):
 @add_segment.register(PairConstants)
 @linked_njit
 def _add_segment(c, out, mode, begins, x1, v1, x2, v2, phase, length):
-    x_square, v_square, ball, work, _ = segment_integrals(c, mode, x1, v1, v2, phase, length)
-    out[entry.DURATION] += length
-    out[entry.X1_SQUARE] += x_square
-    out[entry.V1_SQUARE] += v_square
-    out[entry.V2_SQUARE] += ball
-    out[entry.BASE_WORK] += work
+    x_square, v_square, ball, work, loss = segment_integrals(c, mode, x1, v1, v2, phase, length)
+    add_integrals(out, length, x_square, v_square, ball, work, loss)
     # The capsule swings by itself: nothing is to be searched for.
     out[entry.MAX_ABS_X1] = c.B

@@ -8,10 +8,9 @@ discontinuous.
 from __future__ import annotations
 
 from vines.dynamics._advance import A_V1, A_V2, IMPACT, KIND, PHASE, RUN, SIDE, STICK, V1, V2, X1, X2
-from vines.dynamics._flight import decay, derivatives, flight
+from vines.dynamics._flight import derivatives, flight
 from vines.dynamics._impact_law import after_impact_kernel
-from vines.dynamics._sincos import sincos
-from vines.dynamics._tangent import carry_basis, directions, flow_basis, jump_basis, offset
+from vines.dynamics._tangent import carry_basis, directions, flow_basis, jump_basis, offset, swing, swing_of
 from vines.dynamics.parallel._constants import (
     BETA,
     MU,
@@ -44,14 +43,9 @@ def _flow_basis(c, mode, tau, Y):
         return
     o = c.free.own if mode == 0.0 else frame_with(c, mode).own
     ride = int(abs(mode))
-    size = decay(o.half * tau)
-    sine, cosine = sincos(o.gamma * tau)
-    sine *= size * o.inverse
-    cosine *= size
+    sine, cosine = swing_of(o, tau)
     for j in range(Y.shape[1]):
-        x, v = Y[0, j], Y[1, j]
-        Y[0, j] = (cosine + o.half * sine) * x + sine * v
-        Y[1, j] = -o.stiffness * sine * x + (cosine - o.half * sine) * v
+        swing(o, sine, cosine, Y, j)
         for i in range(c.balls):
             if ride & (1 << i):
                 Y[2 + 2 * i, j], Y[3 + 2 * i, j] = Y[0, j], Y[1, j]

@@ -9,15 +9,11 @@ from vines.dynamics._advance import (
     BUFFER_FULL,
     COMPLETE,
     EVENT_CAP,
-    IMPACT,
     RELEASE,
     S_CLEAR,
     S_DECIDE,
-    S_IMPACTS,
     S_MODE,
     S_PHASE,
-    S_RUN,
-    S_RUN_SIDE,
     S_T,
     S_T_LOW,
     S_V1,
@@ -29,16 +25,17 @@ from vines.dynamics._advance import (
     STEP_LIMIT,
     advance,
     begin,
+    count_run,
     merge,
     move,
     place,
     set_state,
+    strike,
     too_many,
     write_row,
 )
 from vines.dynamics._contact import CONTACT, NO_CONTACT
 from vines.dynamics._flight import advance_phase, drift, phase_after
-from vines.dynamics._impact_law import after_impact_kernel
 from vines.dynamics._sticking import UNRESOLVED, ends_chatter
 from vines.dynamics._window import width_of, write_end
 from vines.dynamics.taylor._constants import TaylorConstants, TaylorTable
@@ -134,17 +131,9 @@ def _advance(c, state, stop, cap, rows, first):
                 x, v = at(a, X, order, s)
                 _, u = at(a, W, order, s)
                 move(c, state, tau)
-                v2 = v - u
-                after1, after2 = after_impact_kernel(c.law, v, v2)
-                state[S_IMPACTS] += 1.0
-                if hit != state[S_RUN_SIDE] or state[col.S_RELEASED] != 0.0:
-                    state[S_RUN] = 0.0
-                state[S_RUN] += 1.0
-                state[S_RUN_SIDE] = hit
-                place(state, 0, hit, 0.0, x, after1, x - hit, after2)
+                count_run(state, hit)
+                strike(c.law, state, hit, tau, x, v, v - u, rows[count])
                 _depart(state)
-                state[S_DECIDE] = 1.0
-                write_row(rows[count], state, IMPACT, hit, tau, x, v, x - hit, v2)
                 count += 1
                 if too_many(state, cap, period):
                     return count, EVENT_CAP

@@ -15,6 +15,7 @@ from vines.dynamics._integrals import energies_between, peak_between
 from vines.dynamics._sincos import sincos
 from vines.dynamics._totals import (
     TOTALS,
+    add_integrals,
     add_segment,
     add_window,
     ball_mass,
@@ -156,12 +157,7 @@ def _add_segment(c, out, mode, begins, x1, v1, x2, v2, phase, length):
         viscous *= f.mu * f.l2
         loss = f.lam * loss + viscous
         out[VISCOUS_LOSS] += viscous
-    out[entry.DURATION] += length
-    out[entry.X1_SQUARE] += xx
-    out[entry.V1_SQUARE] += vv
-    out[entry.V2_SQUARE] += ball
-    out[entry.BASE_WORK] += work
-    out[entry.DAMPER_LOSS] += loss
+    add_integrals(out, length, xx, vv, ball, work, loss)
 
 
 @window_totals.register(TaylorConstants)

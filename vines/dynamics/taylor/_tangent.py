@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 from vines.dynamics._advance import A_V1, A_V2, IMPACT, KIND, MODE, PHASE, SIDE, STICK, V1, V2, X1, X2
-from vines.dynamics._flight import advance_phase, decay
+from vines.dynamics._flight import advance_phase
 from vines.dynamics._impact_law import after_impact_kernel
-from vines.dynamics._sincos import sincos
-from vines.dynamics._tangent import carry_basis, directions, jump_basis, offset
-from vines.dynamics._travel import merged, strike
+from vines.dynamics._tangent import carry_basis, directions, jump_basis, offset, swing, swing_of
+from vines.dynamics._travel import merged, struck_under
 from vines.dynamics.taylor._constants import TaylorConstants
 from vines.dynamics.taylor._series import W, X, at, coefficients, expand, expand_disturbances, slopes
 from vines.kernels import fused_njit, linked_njit, loop_njit, njit
@@ -29,15 +28,9 @@ def _to_gaps(Y):
 @loop_njit
 def _carry_basis(c, row, tau, Y):
     if row[MODE] != 0.0:
-        o = c.stuck
-        size = decay(o.half * tau)
-        sine, cosine = sincos(o.gamma * tau)
-        sine *= size * o.inverse
-        cosine *= size
+        sine, cosine = swing_of(c.stuck, tau)
         for j in range(Y.shape[1]):
-            x, v = Y[0, j], Y[1, j]
-            Y[0, j] = (cosine + o.half * sine) * x + sine * v
-            Y[1, j] = -o.stiffness * sine * x + (cosine - o.half * sine) * v
+            swing(c.stuck, sine, cosine, Y, j)
             Y[2, j], Y[3, j] = Y[0, j], Y[1, j]
         return
     f = c.field
@@ -68,7 +61,7 @@ def _jump_basis(c, row, Y):
         v1, v2, side = row[V1], row[V2], row[SIDE]
         after1, after2 = after_impact_kernel(c.law, v1, v2)
         before = _both_slopes(c, side, row[X1], v1, v2, row[PHASE])
-        strike(c.law, v1, v2, before, _both_slopes(c, side, row[X1], after1, after2, row[PHASE]), Y)
+        struck_under(c.law, v1, v2, before, _both_slopes(c, side, row[X1], after1, after2, row[PHASE]), Y)
     elif row[KIND] == STICK:
         merged(c, Y)
 
