@@ -11,7 +11,7 @@ unexport PYTHONDONTWRITEBYTECODE
 PIP := "$(BIN)/python" -m pip install -qq --disable-pip-version-check --no-compile
 export RERUN_ANALYTICS = 0
 
-.PHONY: run test install lint types rooms acceptance docs system lock clean clean-results help
+.PHONY: screens run test install lint types rooms acceptance docs system lock clean clean-results help
 
 help:            ## list the targets
 	@grep -hE '^[a-z-]+:.*##' Makefile | sed 's/:.*##/\t/'
@@ -50,6 +50,9 @@ rooms: $(INSTALLED_DEV)  ## import-linter: the rooms of the house
 
 acceptance: $(INSTALLED_DEV)  ## everything in full; writes docs/acceptance.md
 	@"$(BIN)/python" -m benchmarks.acceptance
+
+screens: $(INSTALLED_DEV)  ## the viewer's page in Chromium and Rerun without our layout, which make test leaves out
+	@"$(BIN)/python" -m pytest -q -m full tests/viewer/test_web.py tests/viewer/test_picture.py
 
 system:          ## Debian packages for tests: software Vulkan and Chromium for pictures, SLURM for job arrays
 	@if ldconfig -p | grep -q libvulkan.so.1 && ls /usr/share/vulkan/icd.d/lvp_icd*.json >/dev/null 2>&1 \
