@@ -13,7 +13,7 @@ from vines.figures._axes import name_axis
 from vines.figures._colours import CHAOS, HUES
 from vines.figures._fit import place_legend
 from vines.figures._style import font, look, new_figure
-from vines.model import VI_NES, most_balls, read_system
+from vines.model import VI_NES, with_all_balls
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -78,7 +78,7 @@ def start_symbol(name: str, system: str = VI_NES.name) -> str:
     >>> start_symbol("v2"), start_symbol("phase", "impact_pair")
     ("$x_2'$", 'phase $\\theta$')
     """
-    known = read_system(system, most_balls(system))
+    known = with_all_balls(system)
     if name == known.phase.name:
         return f"phase ${known.phase.symbol}$"
     return next(f"${each.symbol}$" for each in known.state if each.name == name)

@@ -1,6 +1,6 @@
 """What the figures call quantities and parameters. Declarations are checked against these names: no heavy import."""
 
-from vines.model import VI_NES, most_balls, read_system, system_names
+from vines.model import VI_NES, system_names, with_all_balls
 
 __all__ = ["ERRORS", "MEASURES", "NAMES", "PANELS", "QUANTITIES", "RIG_PANELS", "RUN_PANELS", "SYMBOLS"]
 
@@ -44,7 +44,7 @@ RUN_PANELS = ("ends", "gap", "phase_plane")
 """Panels that show runs: displacements of the cavity's ends and the ball, gap and relative velocity, their plane."""
 
 _PARAMETERS = [
-    *(each for name in system_names() for each in read_system(name, most_balls(name)).parameters),
+    *(each for name in system_names() for each in with_all_balls(name).parameters),
     *VI_NES.parameters,  # a name that several systems have is called as there
 ]
 SYMBOLS = {each.name: each.symbol for each in _PARAMETERS} | {"V": "V", "level": r"\ell"}

@@ -13,7 +13,7 @@ from vines.errors import SchemaError, UnknownNameError, nearest
 from vines.model._system import Body, Contact, Coordinate, Energies, Parameter, Range, Symmetry, System
 from vines.places import shipped
 
-__all__ = ["most_balls", "read_system", "system_names"]
+__all__ = ["most_balls", "read_system", "system_names", "with_all_balls", "with_one_ball"]
 
 
 @functools.cache
@@ -87,6 +87,28 @@ def most_balls(name: str) -> int:
     (8, 0)
     """
     return _form(name).get("balls", 0)
+
+
+def with_one_ball(name: str) -> System:
+    """Return a system with one ball, with a number where balls have numbers.
+
+    Examples
+    --------
+    >>> with_one_ball("parallel").balls, with_one_ball("impact_pair").balls
+    (1, 0)
+    """
+    return read_system(name, min(most_balls(name), 1))
+
+
+def with_all_balls(name: str) -> System:
+    """Return a system with as many balls as it may have: all its names.
+
+    Examples
+    --------
+    >>> with_all_balls("parallel").balls, with_all_balls("impact_pair").balls
+    (8, 0)
+    """
+    return read_system(name, most_balls(name))
 
 
 @functools.cache

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from vines.orbits._release_of_balls import Release, Section, run_round
+from vines.orbits._release_of_balls import Release, Section, run_closed
 
 __all__ = ["solve_round"]
 
@@ -40,12 +40,11 @@ def solve_round(p: Any, section: Section, span: float, z: Floats, mirrored: bool
     (z, defect)
         Coordinates, and what is left; inf where it does not converge.
     """
-    target, sign = (section.mirrored, -1.0) if mirrored else (section, 1.0)
     z = z.copy()
-    ran = run_round(p, section, span, z, target)
-    if ran is None:
+    met = run_closed(p, section, span, z, mirrored=mirrored)
+    if met is None:
         return z, math.inf
-    defect, slope = section.closing(p, ran, span, z, sign)
+    defect, slope = met[1]
     size, runs = float(np.abs(defect).max()), 1
     while runs < most and size > 0.0:
         try:
@@ -57,10 +56,10 @@ def solve_round(p: Any, section: Section, span: float, z: Floats, mirrored: bool
         trial = z
         while share > 0.5**_HALVINGS and runs < most:
             trial = z + share * step
-            ran = run_round(p, section, span, trial, target)
+            met = run_closed(p, section, span, trial, mirrored=mirrored)
             runs += 1
-            if ran is not None:
-                defect, slope = section.closing(p, ran, span, trial, sign)
+            if met is not None:
+                defect, slope = met[1]
                 better = float(np.abs(defect).max())
                 if better < size:
                     break

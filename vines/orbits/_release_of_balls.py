@@ -19,7 +19,7 @@ from vines.dynamics.kernels import rows as col
 from vines.dynamics.parallel.kernels import B_DECIDE, B_RELEASED, B_V2, B_WALL, B_X2, BALL, R_V2, R_X2, at
 from vines.dynamics.runs import EVENTS_PER_PERIOD, IN_TURN
 
-__all__ = ["Moment", "Ran", "Release", "Section", "falling", "releases_among", "run_on", "run_round"]
+__all__ = ["Moment", "Ran", "Release", "Section", "falling", "releases_among", "run_closed", "run_on", "run_round"]
 
 Floats = npt.NDArray[np.float64]
 
@@ -276,3 +276,14 @@ def run_round(p: Any, section: Section, span: float, z: Floats, target: Section)
     end = target.read(rows[last])
     Y = tangent_product(constants(p), rows, 0, last) @ section.disturbances(p, z)
     return Ran(rows[: last + 1], float(rows[last, col.TIME]), end, target.arrivals(p, end, Y))
+
+
+def run_closed(
+    p: Any, section: Section, span: float, z: Floats, *, mirrored: bool
+) -> tuple[Ran, tuple[Floats, Floats]] | None:
+    """Return what `run_round` does to the section again, or to its mirror image, and what is left to close with slopes.
+
+    None where that is not met then.
+    """
+    ran = run_round(p, section, span, z, section.mirrored if mirrored else section)
+    return None if ran is None else (ran, section.closing(p, ran, span, z, -1.0 if mirrored else 1.0))

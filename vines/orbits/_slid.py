@@ -35,7 +35,7 @@ from vines.model import Word
 from vines.orbits._assemble import asymmetry, begun_first
 from vines.orbits._equations import closing_kernel, closing_unit, prepared
 from vines.orbits._floquet import FIXED_TIME, half_map, monodromy, sorted_multipliers, squared
-from vines.orbits._general import check_word
+from vines.orbits._general import check_word, same
 from vines.orbits._moved import moved
 from vines.orbits._orbit import Orbit
 from vines.orbits._survey import NO_TURNING
@@ -284,13 +284,9 @@ def slid_orbits(word: Word, p: Any) -> tuple[list[Orbit], str]:
         for guess in _guesses(word, p, run)[:2]:
             z = _solved(word, p, guess)
             orbit = None if z is None else _assembled(word, p, z, REMARK)
-            if orbit is not None and not any(_alike(orbit, each) for each in found):
+            if orbit is not None and not any(same(each, orbit.t, orbit.states) for each in found):
                 found.append(orbit)
     return found, REMARK
-
-
-def _alike(one: Orbit, other: Orbit) -> bool:
-    return bool(np.abs(one.states - other.states).max() < 1e3 * _SAME)
 
 
 def refine_slid(word: Word, p: Any, guess: Any) -> Orbit:

@@ -10,7 +10,7 @@ from vines.orbits._chain_curve import second_compound
 from vines.orbits._curve_equations import CurveEquations
 from vines.orbits._moved import moved
 from vines.orbits._orbit import Orbit
-from vines.orbits._release_of_balls import Ran, run_round
+from vines.orbits._release_of_balls import Ran, run_closed
 from vines.orbits._sticking_of_balls import Begun, balls_orbit
 
 __all__ = ["BallsCurve"]
@@ -56,11 +56,11 @@ class BallsCurve(CurveEquations):
         p = moved(self._fixed, dict(zip(self.names, y[-2:], strict=True)))
         if p is None:
             return out
-        section, z, sign = self._section, y[:-2].copy(), -1.0 if self.symmetric else 1.0
+        z = y[:-2].copy()
         span = self.word.p * p.period / (2 if self.symmetric else 1)
-        ran = run_round(p, section, span, z, section.mirrored if self.symmetric else section)
-        if ran is not None:
-            out[:-1] = section.closing(p, ran, span, z, sign)[0]
+        met = run_closed(p, self._section, span, z, mirrored=self.symmetric)
+        if met is not None:
+            ran, (out[:-1], _) = met
             out[-1] = self._condition(ran, z)
         return out
 

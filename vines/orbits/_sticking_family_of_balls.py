@@ -12,7 +12,7 @@ from vines.orbits._closing import difference, stays_symmetric
 from vines.orbits._family import DIFFERENCE
 from vines.orbits._moved import moved
 from vines.orbits._orbit import Orbit
-from vines.orbits._release_of_balls import run_round
+from vines.orbits._release_of_balls import run_closed
 from vines.orbits._sticking_of_balls import Begun, balls_orbit
 
 __all__ = ["BallsProblem"]
@@ -50,10 +50,9 @@ class BallsProblem:
         nothing = np.full(n, math.nan), np.full((n, n), math.nan)
         if p is None:
             return nothing
-        section, z = self._section, y[:-1].copy()
         span = self.word.p * p.period / (2 if self._mirrored else 1)
-        ran = run_round(p, section, span, z, section.mirrored if self._mirrored else section)
-        return nothing if ran is None else section.closing(p, ran, span, z, -1.0 if self._mirrored else 1.0)
+        met = run_closed(p, self._section, span, y[:-1].copy(), mirrored=self._mirrored)
+        return nothing if met is None else met[1]
 
     def equations(self, y: Floats) -> tuple[Floats, Floats]:
         """Return what is left, shape (k,), and its derivatives, shape (k, k + 1); nan without a round.

@@ -15,7 +15,7 @@ import msgspec
 
 from vines import schema
 from vines.errors import FileMissingError
-from vines.model import most_balls, read_system
+from vines.model import with_all_balls
 from vines.pipeline._code import CodeDigests
 from vines.pipeline._declaration import Stage
 from vines.places import shipped
@@ -69,7 +69,7 @@ class Ingredients:
     def _series(self) -> dict[str, Any]:
         """Return that flights are not exact, and the order of their series, for a system where that is so."""
         name = self.form["options"].get("system")
-        order = read_system(name, most_balls(name)).order if name else 0
+        order = with_all_balls(name).order if name else 0
         return {"exact": False, "order": order} if order else {}
 
     def _plain(self) -> dict[str, Any]:

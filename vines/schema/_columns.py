@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from vines.model import VI_NES, most_balls, read_system
+from vines.model import VI_NES, with_all_balls
 
 __all__ = ["DTYPES", "Column", "Table"]
 
@@ -114,7 +114,7 @@ class Table:
         """
         if not {"word", "side"} & set(self.names):
             return {}
-        contacts = read_system(self.system, most_balls(self.system)).contacts
+        contacts = with_all_balls(self.system).contacts
         return {each.letter: f"{each.text}, side {each.sign:+d}" for each in contacts}
 
     @property

@@ -6,7 +6,7 @@ import functools
 import tomllib
 from typing import Any
 
-from vines.model import VI_NES, System, most_balls, read_system, system_names
+from vines.model import VI_NES, System, system_names, with_all_balls
 from vines.places import shipped
 from vines.schema._columns import Column, Table
 from vines.schema._declared import expand
@@ -32,7 +32,7 @@ def of_systems() -> dict[str, tuple[str, str]]:
 
 def _tables_of(system: str) -> list[str]:
     """Return the tables that a system has: only what has a damper of its own decays, and few can have scatter."""
-    decays = "damper_loss" in read_system(system, most_balls(system)).energies.lost
+    decays = "damper_loss" in with_all_balls(system).energies.lost
     none = set() if decays else {"transients"}
     none |= set() if system in WITH_SCATTER else {"exit_points", "exit_regimes", "exits"}
     return [base for base in OF_EACH_SYSTEM if base not in none]
@@ -52,7 +52,7 @@ def system_table(system: str, base: str) -> str:
 def of_system(name: str) -> Table:
     """Return a table like one of the VI-NES: with the names of the system, and what every other system has beside."""
     called, base = of_systems()[name]
-    system = read_system(called, most_balls(called))
+    system = with_all_balls(called)
     folder = shipped("schemas")
     form = tomllib.loads((folder / f"{base}.toml").read_text("utf-8"))
     more = folder / "systems" / "columns" / f"{base}.toml"

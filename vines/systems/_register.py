@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import importlib
 
-from vines.model import Parameters, most_balls, read_system
+from vines.model import Parameters, with_one_ball
 from vines.model import system_names as names
 
 __all__ = ["names", "parameters"]
@@ -23,6 +23,6 @@ def parameters(name: str) -> type[Parameters]:
     >>> parameters("impact_pair").__name__
     'ImpactPair'
     """
-    declared = read_system(name, min(most_balls(name), 1))
+    declared = with_one_ball(name)
     package, _, form = declared.parameters_of.partition(":")
     return getattr(importlib.import_module(package), form)

@@ -10,7 +10,7 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from vines.model import VI_NES, most_balls, read_system, system_names
+from vines.model import VI_NES, system_names, with_one_ball
 from vines.schema import system_table
 from vines.schema import table as declared
 from vines.stages.api._home import Home, current
@@ -132,7 +132,7 @@ def _symbols(result: Result) -> list[str]:
     system = next(name for name in system_names() if system_table(name, "points") == points)
     if system == VI_NES.name:
         return ["mu", "A", "Omega"]
-    return [each.name for each in read_system(system, min(most_balls(system), 1)).parameters if each.default is None]
+    return [each.name for each in with_one_ball(system).parameters if each.default is None]
 
 
 def _verdicts(results: dict[str, Result]) -> str:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from vines import schema
-from vines.model import most_balls, read_system
+from vines.model import with_all_balls
 from vines.stages.audit._compare import (
     TOLERANCE,
     Comparison,
@@ -76,7 +76,7 @@ class PointsAgain:
 def _rough(table: str) -> list[str]:
     """Return the columns of a table of attractors that say different things of each run on chaos."""
     spec = schema.table(table)
-    given = {each.name for each in read_system(spec.system, most_balls(spec.system)).parameters}
+    given = {each.name for each in with_all_balls(spec.system).parameters}
     return [c.name for c in spec.columns if c.dtype == "float64" and c.name not in given]
 
 

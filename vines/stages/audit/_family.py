@@ -7,7 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from vines import schema
-from vines.model import most_balls, read_system
+from vines.model import most_balls, with_all_balls
 from vines.stages.audit._bifurcations import curve_equations
 from vines.stages.audit._defect import Defect, forced_amplitude, relative
 from vines.stages.audit._others import cell_defects
@@ -32,7 +32,7 @@ def _parameters(table: str, rows: Rows) -> Defect:
     """Return the check of the parameters that a row has; those of a ball that is not there are empty."""
     system = schema.table(table).system
     outside = np.zeros(len(rows))
-    for each in read_system(system, most_balls(system)).parameters:
+    for each in with_all_balls(system).parameters:
         if rows.has(each.name):
             value = rows[each.name]
             with np.errstate(invalid="ignore"):

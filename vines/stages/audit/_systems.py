@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 from vines import schema
-from vines.model import VI_NES, Params, most_balls, read_system
+from vines.model import VI_NES, Params, with_all_balls
 from vines.pipeline import Kind, kind
 from vines.systems import parameters
 
@@ -45,7 +45,7 @@ def kind_of(result: Result) -> Kind:
 
 def parameters_of_row(system: str, row: Mapping[str, Any]) -> Any:
     """Return the parameters of a row; of balls that it has none of the columns are empty."""
-    known = [each.name for each in read_system(system, most_balls(system)).parameters]
+    known = [each.name for each in with_all_balls(system).parameters]
     given = {name: row[name] for name in known if row.get(name) is not None}
     return Params(**given) if system == VI_NES.name else parameters(system).of(given)
 

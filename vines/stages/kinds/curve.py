@@ -8,7 +8,7 @@ import msgspec
 from msgspec import Meta
 
 from vines.errors import DeclarationError, ParameterError
-from vines.model import VI_NES, Parameters, Params, Word, most_balls, read_system, word_for
+from vines.model import VI_NES, Parameters, Params, Word, with_one_ball, word_for
 from vines.pipeline import Kind, Pipeline, Stage
 from vines.stages.kinds._checks import check_axes
 from vines.stages.kinds._family import of_systems
@@ -77,13 +77,13 @@ def _fits(stage: Stage, pipeline: Pipeline) -> None:
             f"type is {options.type!r}: where orbits that stick end is followed for the system {VI_NES.name!r} only; "
             "give another word or type, or branches, which end there"
         )
-    if sticking and not (system == VI_NES.name or read_system(system, min(most_balls(system), 1)).balls):
+    if sticking and not (system == VI_NES.name or with_one_ball(system).balls):
         raise DeclarationError(
             f"orbits of the system {system!r} that stick have multipliers of zero and no {options.type}; "
             "give a word without a star"
         )
     varied = [axis.name for axis in stage.axes]
-    for name in read_system(system, min(most_balls(system), 1)).mirror.broken_by:
+    for name in with_one_ball(system).mirror.broken_by:
         if options.type == "symmetry_breaking" and (name in varied or stage.params.get(name, 0) != 0):
             raise DeclarationError(f"there is no symmetry to break unless {name} = 0; give that and vary others")
 

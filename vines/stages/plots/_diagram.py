@@ -11,7 +11,7 @@ import pyarrow as pa
 import pyarrow.compute as pc
 
 from vines.figures import BranchLine, ImpactDots, Marker
-from vines.model import Word, most_balls, read_system
+from vines.model import Word, with_all_balls
 from vines.schema import table
 from vines.stages.plots._caption import listed, shared_params
 from vines.stages.plots._checks import called
@@ -56,7 +56,7 @@ def diagram_parts(
 def _mirrored(stage: Input) -> bool:
     """Return whether the mirror image of a motion is one, which a tilt ends."""
     own = table(called(stage.tables, "orbits")).system
-    broken_by = read_system(own, most_balls(own)).mirror.broken_by
+    broken_by = with_all_balls(own).mirror.broken_by
     return all(stage.params.get(name, 0.0) == 0 and name not in stage.axes for name in broken_by)
 
 

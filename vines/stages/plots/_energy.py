@@ -10,7 +10,7 @@ import pyarrow as pa
 import pyarrow.compute as pc
 
 from vines.figures import FOUND, EnergyCurve, EnergyPanel, VelocityPanel
-from vines.model import most_balls, read_system
+from vines.model import with_all_balls
 from vines.schema import table
 from vines.stages.bodies._distinct import Seen, all_attractors
 from vines.stages.plots._caption import listed
@@ -61,7 +61,7 @@ def _fixed(stages: list[Input], cell: Any) -> dict[str, float]:
 def _parameters(stage: Input) -> list[str]:
     """Return the parameters of a stage's system, of as many balls as it has: of others the columns are empty."""
     own, rows = table(stage.tables[0]).system, stage.table()
-    names = [each.name for each in read_system(own, most_balls(own)).parameters]
+    names = [each.name for each in with_all_balls(own).parameters]
     return [name for name in names if rows[name].null_count < rows.num_rows or not rows.num_rows]
 
 

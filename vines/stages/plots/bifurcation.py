@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 from msgspec import Meta
 
 from vines.figures import PANELS
-from vines.model import most_balls, read_system
+from vines.model import with_one_ball
 from vines.stages.plots._checks import check_panels, check_window, one_axis, one_system
 from vines.stages.plots._plot import Plot, PlotOptions
 
@@ -38,7 +38,7 @@ def _check(stage: Stage, pipeline: Pipeline) -> None:
     check_window(stage.options)
     one_axis(stage, pipeline)
     system = one_system((pipeline.stages[name] for name in stage.needs), "a bifurcation diagram")
-    without = read_system(system, min(most_balls(system), 1)).without
+    without = with_one_ball(system).without
     check_panels(stage.options, [panel for panel in PANELS if panel not in without])
 
 

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 from vines.errors import DeclarationError
-from vines.model import most_balls, read_system
+from vines.model import most_balls, with_all_balls
 from vines.schema import table
 from vines.stages.plots._checks import called, one_system
 from vines.stages.plots._lines import lines
@@ -61,7 +61,7 @@ def _measure(system: str, points: Any) -> str:
     columns = _COLUMNS_OF["harvested_power"]
     if set(columns) <= set(points.column_names) and points.num_rows > points[columns[0]].null_count:
         return "harvested_power"
-    driven = "x1_no_ball" in read_system(system, most_balls(system)).without
+    driven = "x1_no_ball" in with_all_balls(system).without
     return "impact_power" if driven else "kinetic_ratio"
 
 

@@ -10,7 +10,7 @@ import msgspec
 from msgspec import Meta
 
 from vines.errors import DeclarationError
-from vines.model import most_balls, read_system
+from vines.model import with_one_ball
 from vines.stages.plots._checks import called, cells, has_runs, one_system
 from vines.stages.plots._plot import Plot, PlotOptions
 
@@ -61,7 +61,7 @@ def _check(stage: Stage, pipeline: Pipeline) -> None:
         if not listed or len(carried) != 1 or carried == {""}:
             raise DeclarationError(f"{where} shows stages of kind 'sweep' that are carried along one axis")
         system = one_system(shown, where)
-        driven = sorted(_SIZES & set(read_system(system, min(most_balls(system), 1)).without))
+        driven = sorted(_SIZES & set(with_one_ball(system).without))
         if cell.show != "w_dot" and driven:
             raise DeclarationError(f"{where}: the system {system!r} has no {', '.join(driven)}; it can show w_dot")
         for name, value in cell.where.items():

@@ -11,7 +11,7 @@ from msgspec import Meta
 
 from vines.errors import DeclarationError
 from vines.figures import PANELS, RUN_PANELS
-from vines.model import most_balls, read_system
+from vines.model import with_one_ball
 from vines.stages.plots._checks import called, cells, has_diagram, has_runs, one_system
 from vines.stages.plots._plot import Plot, PlotOptions
 
@@ -66,7 +66,7 @@ class SheetOptions(PlotOptions, frozen=True, tag="sheet"):
 def _check(stage: Stage, pipeline: Pipeline) -> None:
     for where, cell, shown in cells(stage, pipeline, _SHOWN):
         system = one_system(shown, where)
-        without = read_system(system, min(most_balls(system), 1)).without
+        without = with_one_ball(system).without
         if cell.show in without:
             shows = ", ".join(name for name in _SHOWN if name not in without)
             raise DeclarationError(f"{where}: the system {system!r} has no {cell.show}; a sheet of it shows {shows}")
