@@ -338,3 +338,52 @@ def test_what_cannot_be_is_refused():
         systems.Hybrid(mu=0.02, A=0.1, mu_n=0.01, k1=-1.0)
     with pytest.raises(ParameterError, match="mu_n is -1"):
         systems.Hybrid(mu=0.02, A=0.1, mu_n=-1.0)
+
+
+def test_an_orbit_and_its_branch():
+    orbit = vines.find_orbit("LR", H)
+    assert (orbit.symmetric, orbit.stable, orbit.admissible, orbit.residual < 1e-12) == (True,) * 4
+    rate = H.lam + (1 + H.mu_n) * H.l2
+    assert np.prod(orbit.multipliers).real == pytest.approx(H.r**4 * math.exp(-rate * H.period), rel=1e-11)
+    assert abs(orbit.energy_imbalance) < 1e-13
+    early, late = (vines.simulate(H, **orbit.start(), periods=periods).final for periods in (0.2, 1.2))
+    assert [late[name] for name in STATE] == pytest.approx([early[name] for name in STATE], abs=1e-11)
+    rough = np.column_stack([orbit.t, orbit.states]) + 1e-4
+    assert vines.find_orbit("LR", H, guess=rough).states == pytest.approx(orbit.states, abs=1e-12)
+    settled = vines.settle(H)
+    assert sorted(np.abs(settled.multipliers)) == pytest.approx(sorted(np.abs(orbit.multipliers)), abs=1e-8)
+    assert settled.measures.kinetic_ratio_mass == pytest.approx(orbit.measures.kinetic_ratio_mass, abs=1e-9)
+    # Without the mass it is the orbit of the VI-NES.
+    plain = vines.find_orbit("LR", systems.Hybrid(mu=0.01, A=0.015, k3=1.0, l2=0.2))
+    other = vines.find_orbit("LR", vines.Params(mu=0.01, A=0.015))
+    assert plain.states[:, :4] == pytest.approx(other.states, abs=1e-12)
+    for root in other.multipliers:
+        assert np.abs(plain.multipliers - root).min() < 1e-11
+
+
+def test_an_orbit_closes_in_dop853():
+    orbit = vines.find_orbit("LR", H)
+    begin = orbit.start()
+    t, y = begin["t"], np.array([begin[name] for name in STATE])
+    for gap in orbit.flight_times:
+        y = flown(H, H.Omega * t, y, gap).y[:, -1]
+        t += gap
+        w = y[1] - y[3]
+        y[1], y[3] = y[1] - H.mu * (1 + H.r) * w / (1 + H.mu), y[3] + (1 + H.r) * w / (1 + H.mu)
+    assert y == pytest.approx([begin[name] for name in STATE], abs=1e-11)
+
+
+def test_a_branch_loses_its_symmetry():
+    orbit = vines.find_orbit("LR", H)
+    branch = vines.continue_orbit(orbit, "A", 0.04, step=0.2)
+    (breaking,) = branch.bifurcations
+    assert (breaking.type, branch.ends) == ("symmetry_breaking", ("range", "range"))
+    pair = vines.switch_branch(breaking)
+    assert [each.symmetric for each in pair] == [False, False]
+    assert pair[0].states == pytest.approx(-np.roll(pair[1].states, 1, axis=0), abs=1e-11)
+    # Found again where the mass varies: one curve in two parameters.
+    other = vines.continue_orbit(vines.find_orbit("LR", breaking.params.replace(A=0.036)), "A", 0.04, step=0.2)
+    assert other.bifurcations[0].value == pytest.approx(breaking.value, abs=1e-11)
+    heavier = vines.continue_orbit(orbit, "mu_n", 0.011, step=0.2).orbits[-1]
+    fresh = vines.find_orbit("LR", heavier.params, guess=orbit)
+    assert heavier.states == pytest.approx(fresh.states, abs=1e-11)
