@@ -2,6 +2,7 @@
 
 import json
 
+import numpy as np
 import pyarrow.parquet as pq
 import pytest
 
@@ -9,6 +10,7 @@ import vines
 from vines.errors import VinesError
 from vines.logs import read
 from vines.stages import run, verify
+from vines.viewer._recording import write_recording
 
 HYBRID = """
 title = "a ball and a mass on a spring"
@@ -63,6 +65,13 @@ def test_tables_hold_what_each_of_the_two_takes_and_verify_agrees(project, monke
     results = project.root / "data" / "results"
     (log,) = (read(file) for file in results.rglob("*.mcap"))
     assert (log.system, log.attractor) == ("hybrid", "1:1")
+    beside = log.nes.to_pydict()
+    assert beside["t"] == log.states["t"].to_pylist()
+    energies = (*(log.states[name].to_numpy() for name in ("kinetic_1", "kinetic_2", "potential")), beside["kinetic_3"])
+    given, taken, struck = (log.states[name].to_numpy() for name in ("base_work", "damper_loss", "impact_loss"))
+    assert np.ptp(np.sum(energies, axis=0) - given + taken + struck) < 1e-12
+    write_recording([log], project.root / "run.rrd")
+    assert (project.root / "run.rrd").stat().st_size > 10_000
     told = [json.loads(pq.read_schema(file).metadata[b"vines"])["provenance"] for file in results.rglob("*.parquet")]
     assert {(each["exact"], each["order"]) for each in told} == {(False, 20)}
     checked = verify("hybrid", recompute=20)

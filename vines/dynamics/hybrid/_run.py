@@ -54,8 +54,8 @@ def hybrid_measures(p: Any, totals: npt.NDArray[np.float64]) -> HybridMeasures:
 class HybridRun(TaylorRun):
     """One run with a ball and a mass on a spring; see `Trajectory`.
 
-    Samples have x3, v3 of the mass, its kinetic energy `kinetic_3`, the part `spring` = mu_n (k1 u²/2 + k3 u⁴/4) of the
-    potential energy with u = x1 - x3, and `viscous_loss`, the part of the damper loss since the start of the run that
+    Samples have x3, v3 of the mass, u = x1 - x3, u_dot, its kinetic energy `kinetic_3`, the part `spring` = mu_n (k1 u²/2 + k3 u⁴/4) of the
+    potential energy, and `viscous_loss`, the part of the damper loss since the start of the run that
     the damper beside the spring took.
     """
 
@@ -74,8 +74,9 @@ class HybridRun(TaylorRun):
         before: npt.NDArray[np.bool_],
     ) -> Table:
         found = super()._fill(t, segment, tau, before)
-        out = np.empty(len(found), dtype=[*found.dtype.descr, ("kinetic_3", "f8")])
+        out = np.empty(len(found), dtype=[*found.dtype.descr, ("u", "f8"), ("u_dot", "f8"), ("kinetic_3", "f8")])
         for name in found.dtype.names or ():
             out[name] = found[name]
+        out["u"], out["u_dot"] = out["x1"] - out["x3"], out["v1"] - out["v3"]
         out["kinetic_3"] = 0.5 * self.params.mu_n * out["v3"] ** 2
         return out
