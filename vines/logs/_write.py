@@ -14,7 +14,7 @@ import numpy as np
 
 from vines.errors import FileMissingError, SchemaError
 from vines.logs._balls import ball_rows, has_balls
-from vines.logs._bare import bare_rows
+from vines.logs._bare import BESIDE, bare_rows
 from vines.logs._bare_balls import profile_of_balls
 from vines.logs._channels import CHANNELS, NES, ORBIT, PARAMETERS, PROVENANCE, RUN, Rows, as_rows
 from vines.logs._file import LogFile
@@ -82,13 +82,13 @@ def write_run(
     FileMissingError
         If the folder does not exist.
     """
-    several = has_balls(states)
+    several, beside = has_balls(states), "x3" in (states.dtype.names or ())
     if several:
         rows = ball_rows(states, impacts, sticks)
     else:
         every = zip((states, impacts, sticks), CHANNELS, strict=True)
         rows = [as_rows(array, channel) for array, channel in every]
-    if "x3" in (states.dtype.names or ()):
+    if beside:
         rows.append(as_rows(states, NES))
     about = {"name": name, "kind": "run"}
     if orbit is not None:
@@ -99,9 +99,9 @@ def write_run(
     if system is not None:
         about["system"] = system
     if bare:
-        # Those of one ball as they are packed, those of several as they were given: packed they are a table a ball.
-        shown = [states, impacts, sticks] if several else [each.values for each in rows[:3]]
-        profile = profile_of_balls(states, parameters) if several else None
+        # Those of one ball as they are packed, those of several bodies as given: packed they are a table each.
+        shown = [states, impacts, sticks] if several or beside else [each.values for each in rows[:3]]
+        profile = profile_of_balls(states, parameters) if several else BESIDE if beside else None
         rows += bare_rows(shown[0], shown[1], shown[2], name, parameters, profile)
     return write_rows(path, rows, about, provenance, parameters, declaration)
 

@@ -34,7 +34,7 @@ _HEIGHT = 0.34
 _MOUNT = 1.9
 """Where the shaken base is drawn, in b left of where the mass turns; only its displacement is to scale."""
 _FLOOR = 0.62
-_BESIDE = -0.62
+_BESIDE = 0.5
 """Height of a mass beside the ball."""
 _CAVITY_HEIGHT = (-0.85, 1.05)
 """What the view of the cavity shows in y."""
@@ -145,7 +145,7 @@ def _coil(rec: rr.RecordingStream, path: str, sway: float, colour: tuple[int, in
 
 
 def mass_beside(rec: rr.RecordingStream, root: str, states: dict[str, np.ndarray], clock: Clock) -> None:
-    """Draw the mass on a spring beside the ball, above the cavity: at x3, on a spring from the middle of the cavity.
+    """Draw the mass on a spring beside the ball, under the cavity: at x3, on a spring from the middle of the cavity.
 
     Parameters are those of `cavity`; `states` have the columns of ``vines.v1.Nes`` too.
     """

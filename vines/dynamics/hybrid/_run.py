@@ -54,9 +54,9 @@ def hybrid_measures(p: Any, totals: npt.NDArray[np.float64]) -> HybridMeasures:
 class HybridRun(TaylorRun):
     """One run with a ball and a mass on a spring; see `Trajectory`.
 
-    Samples have x3, v3 of the mass, u = x1 - x3, u_dot, its kinetic energy `kinetic_3`, the part `spring` = mu_n (k1 u²/2 + k3 u⁴/4) of the
-    potential energy, and `viscous_loss`, the part of the damper loss since the start of the run that
-    the damper beside the spring took.
+    Samples have x3, v3 of the mass, u = x1 - x3, u_dot, its kinetic energy `kinetic_3`, the part `spring` =
+    mu_n (k1 u²/2 + k3 u⁴/4) of the potential energy, and `viscous_loss`, the part of the damper loss since the start of
+    the run that the damper beside the spring took.
     """
 
     def _push(self, rows: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
