@@ -389,3 +389,12 @@ def test_a_branch_loses_its_symmetry():
     heavier = vines.continue_orbit(orbit, "mu_n", 0.0102, step=0.2).orbits[-1]
     fresh = vines.find_orbit("LR", heavier.params, guess=orbit)
     assert heavier.states == pytest.approx(fresh.states, abs=1e-11)
+
+
+def test_what_is_too_fast_to_follow_ends_with_a_status():
+    wild = vines.simulate(systems.Hybrid(mu=0.5, A=1e4, mu_n=0.5, k3=1e4), x3=1e6, periods=1)
+    assert wild.status == "step_limit"
+    assert wild.measures().duration < wild.params.period
+    stiff = vines.simulate(systems.Hybrid(mu=0.5, A=0.1, mu_n=0.5, k1=1e3, k3=1e3, l2=20.0), x3=0.5, periods=2)
+    assert stiff.status == "complete"
+    assert abs(stiff.measures().balance) < 1e-11
