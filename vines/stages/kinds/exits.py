@@ -177,6 +177,7 @@ _VI_NES = Kind(
     parameters={**PARAMETERS, "level": 1.0},
     vary="grid",
     check=_check,
+    again="long_points",
     kernels=_kernels,
     meaningless={"parallel": "its kernels have no scatter"},
 )
