@@ -5,6 +5,7 @@ import pytest
 
 import vines
 from vines.errors import DeclarationError, ParameterError
+from vines.model import system_names
 from vines.stages import run
 
 EXITS = """
@@ -79,6 +80,14 @@ def test_tables_tell_of_runs_and_regimes_and_shards_agree_bit_for_bit(exits, mon
         run("held", stages=["held"], jobs=1, shard=f"{k}/2")
     run("held", stages=["held"], merge=True)
     assert {name: _rows(name) for name in whole} == whole
+
+
+@pytest.mark.parametrize("system", [name for name in system_names() if name not in ("vi_nes", "impact_pair")])
+def test_systems_without_scatter_are_refused_before_any_work(exits, system):
+    exits(EXITS.replace('kind = "exits"', f'kind = "exits"\nsystem = "{system}"'))
+    with pytest.raises(DeclarationError, match=f"{system}.*scatter; it can do impact_pair, vi_nes") as caught:
+        run("held")
+    assert "\n" not in str(caught.value)
 
 
 @pytest.mark.parametrize(
