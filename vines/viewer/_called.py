@@ -82,7 +82,7 @@ def called(log: Log) -> Called:
     if log.balls or log.system not in system_names():
         return Called()
     system, given = read_system(log.system), log.parameters
-    body = system.bodies[-1].name
+    body = next(each.name for each in system.bodies if each.position.name in ("x2", "w"))
     also = [meant for name, meant in _ALSO_LOST.items() if given.get(name)]
     springs = bool(given.get("k1") or given.get("k3"))
     stored = "springs" if springs else "spring and weight" if given.get("G") else Called.stored

@@ -28,7 +28,7 @@ from vines.viewer._layout import Shown, blueprint
 from vines.viewer._overlay import check_overlay, overlaid, send_overlay
 from vines.viewer._remarks import is_foreign
 from vines.viewer._rig import is_rig, send_rig, shown_rig
-from vines.viewer._scene import DRIVEN, cavity, phase_plane
+from vines.viewer._scene import DRIVEN, cavity, mass_beside, phase_plane
 from vines.viewer._text import about, send_impact_log
 
 __all__ = ["APPLICATION", "send_run", "write_recording"]
@@ -167,6 +167,8 @@ def _send(rec: rr.RecordingStream, root: str, part: Drawn) -> None:
         send_rig(rec, root, log)
         return
     states, impacts = _columns(log.states), _columns(log.impacts)
+    if log.nes.num_rows:
+        states |= _columns(log.nes)
     start, end = float(states["t"][0]), float(states["t"][-1])
     clock = Clock(start, float(states["phase"][0]), log.parameters.get("Omega", 1.0), impacts["t"], end)
     if log.balls:
@@ -177,6 +179,8 @@ def _send(rec: rr.RecordingStream, root: str, part: Drawn) -> None:
     names, stops = called(log), stops_of(log)
     widest = 1.0 if names.walls else max(1.0, float(np.abs(states["w"]).max()))
     cavity(rec, f"{root}/cavity", states, clock, sprung=sprung, walls=names.walls, stops=stops)
+    if "x3" in states:
+        mass_beside(rec, f"{root}/cavity", states, clock)
     phase = f"{root}/phase"
     phase_plane(rec, phase, states, impacts, clock, part.parts, widest=widest, walls=names.walls, stops=stops)
     curves(rec, root, states, impacts, clock, sprung=sprung, names=names, stops=stops)

@@ -29,7 +29,7 @@ def run_curves(stages: Iterable[Input]) -> list[RunCurves]:
         period = 2 * math.pi / log.parameters.get("Omega", 1.0)
         state, hit = _columns(log.states), _columns(log.impacts)
         begin = state["t"][0]
-        body = "ball" if log.balls else read_system(log.system).bodies[-1].name
+        body = "ball" if log.balls else _body(log)
         ends = "barriers" if "walls" in log.parameters else "cavity ends"
         own = {k: v for k, v in log.parameters.items() if any(other.parameters.get(k) != v for other in logs)}
         for number, ball in ({k: _columns(rows) for k, rows in log.balls.items()} or {0: state}).items():
@@ -55,6 +55,11 @@ def run_curves(stages: Iterable[Input]) -> list[RunCurves]:
                 )
             )
     return curves
+
+
+def _body(log: Log) -> str:
+    """Return what the body between the walls is called."""
+    return next(each.name for each in read_system(log.system).bodies if each.position.name in ("x2", "w"))
 
 
 def _stops(log: Log, begin: float) -> np.ndarray:
