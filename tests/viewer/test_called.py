@@ -1,5 +1,6 @@
 """What the viewer says and draws of other systems: names of bodies, barriers, stops in mid-cavity."""
 
+import matplotlib.colors
 import matplotlib.figure
 import numpy as np
 import pytest
