@@ -23,7 +23,11 @@ __all__ = [
 def atlas_defects(rows: Rows) -> Iterator[Defect]:
     """Yield the checks of rows of the table ``atlas``."""
     done = rows.text("status") == "ok"
-    bad = ~(rows["incomplete"] <= rows["words"]) | ~(rows["stable"] <= rows["orbits"])
+    sought, less = (
+        [set((text or "").replace(",", " ").split()) for text in rows.text(name)] for name in ("words", "incomplete")
+    )
+    stray = np.array([not few <= all_of_them for few, all_of_them in zip(less, sought, strict=True)], dtype=bool)
+    bad = stray | ~(rows["stable"] <= rows["orbits"])
     yield Defect("counts", "parts are no more than the whole", 0.0, np.where(done, np.where(bad, np.inf, 0.0), np.nan))
 
 
