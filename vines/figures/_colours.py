@@ -4,7 +4,17 @@ from __future__ import annotations
 
 from vines.figures._look import WornColours, WornList, WornPairs
 
-__all__ = ["BALLS", "CHAOS", "COLOURS", "COLOUR_NAMES", "CURVES", "FAMILIES", "HUES", "PALETTE", "REGIME_CLASSES"]
+__all__ = [
+    "BALLS",
+    "CHAOS",
+    "COLOURS",
+    "COLOUR_NAMES",
+    "CURVES",
+    "FAMILIES",
+    "HUES",
+    "PALETTE",
+    "REGIME_CLASSES",
+]
 
 
 def _lighter(colour: str) -> str:
@@ -26,10 +36,12 @@ COLOURS = WornColours(
         "R light": "#85b0e6",
         "ink": "#222222",
         "mark": "#555555",
+        "stop": "#8f949c",
     },
     follow={"L light": ("L", _lighter), "R light": ("R", _lighter)},
 )
-"""As in the paper: impacts on the left end red, on the right end blue; light for simulated dots, full for branches."""
+"""As in the paper: impacts on the left end red, on the right end blue; light for simulated dots, full for branches;
+grey where a ball stops in mid-cavity."""
 
 FAMILIES = WornPairs(
     {

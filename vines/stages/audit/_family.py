@@ -8,7 +8,7 @@ import numpy as np
 
 from vines import schema
 from vines.model import most_balls, with_all_balls
-from vines.stages.audit._bifurcations import curve_equations
+from vines.stages.audit._bifurcations import critical_defect, curve_equations
 from vines.stages.audit._defect import Defect, forced_amplitude, relative
 from vines.stages.audit._others import cell_defects
 from vines.stages.audit._points import share_defects
@@ -17,6 +17,8 @@ from vines.stages.audit._rows import Floats, Rows
 __all__ = [
     "family_attractor_defects",
     "family_basin_defects",
+    "family_bifurcation_defects",
+    "family_branch_defects",
     "family_curve_defects",
     "family_impact_defects",
     "family_orbit_defects",
@@ -157,6 +159,18 @@ def family_orbit_defects(table: str, rows: Rows) -> Iterator[Defect]:
     flat = np.isclose(size.max(axis=1), rows["max_multiplier"], rtol=1e-9)
     right = flat & ((rows["stable"] == 1) == (rows["max_multiplier"] < 1))
     yield Defect("stability", "max_multiplier, and stable where it is below 1", 0.0, np.where(right, 0.0, np.inf))
+
+
+def family_bifurcation_defects(table: str, rows: Rows) -> Iterator[Defect]:
+    """Yield the checks of rows of a table of bifurcations."""
+    yield _parameters(table, rows)
+    yield critical_defect(rows)
+
+
+def family_branch_defects(table: str, rows: Rows) -> Iterator[Defect]:
+    """Yield the checks of rows of a table of branches."""
+    yield _parameters(table, rows)
+    yield Defect("orbits", "one at least", 0.0, np.where(rows["orbits"] >= 1, 0.0, np.inf))
 
 
 def family_curve_defects(table: str, rows: Rows) -> Iterator[Defect]:
