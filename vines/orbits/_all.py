@@ -24,6 +24,7 @@ from vines.orbits._seeds import base_word, doubled_times, harvested_times, rando
 from vines.orbits._shooting import shoots
 from vines.orbits._shooting_search import gather_shots, of_the_vi_nes
 from vines.orbits._slid import slid_orbits, slides
+from vines.orbits._smooth_search import smooth_orbits
 from vines.orbits._sticking_capsule import capsule_orbits, rides_capsule
 from vines.orbits._sticking_of_balls import rides_in_parallel
 from vines.orbits._sticking_search import search_sticking
@@ -112,6 +113,9 @@ def all_orbits(word: str | Word, p: Any, *, proof: bool = False) -> Orbits:
     (True, [(True, False), (False, True), (False, True)])
     """
     word = whole_word(word, p)
+    if word.unstruck:
+        found, how = smooth_orbits(word, p)
+        return Orbits(_in_order(found), complete=False, remark=how, nearest=np.inf)
     if word.sticking:
         word = sticking_word(word, p)
         if rides_capsule(p):
@@ -179,7 +183,7 @@ def _searched(word: Word, p: Any) -> Orbits:
 def _shot(word: Word, p: Any) -> Orbits:
     """Return the orbits of a word that are shot for."""
     if not p.walls:
-        raise ParameterError("walls is 0: a word tells of impacts; vines.settle finds what there is without barriers")
+        raise ParameterError(f"walls is 0: {word} tells of impacts; orbits without barriers have the words -, -/2T, …")
     found, tried = gather_shots(word, p, all_orbits(word, of_the_vi_nes(p)))
     gathered = _Gathered(word, p)
     for orbit in found:

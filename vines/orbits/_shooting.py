@@ -21,6 +21,7 @@ from vines.orbits._closing import Closed, Closing
 from vines.orbits._moved import moved
 from vines.orbits._orbit import Orbit
 from vines.orbits._shots import shots_kernel
+from vines.orbits._smooth_closing import SmoothClosing
 from vines.orbits._values import frequency_of, marks_of
 
 __all__ = ["Shooting", "closing_of", "shoots", "shot", "shot_from"]
@@ -40,8 +41,10 @@ def shoots(p: Any) -> bool:
     return isinstance(constants(p), TaylorConstants)
 
 
-def closing_of(orbit: Orbit, names: Sequence[str], symmetric: bool) -> Closing | Shooting:
+def closing_of(orbit: Orbit, names: Sequence[str], symmetric: bool) -> Closing | Shooting | SmoothClosing:
     """Return the closing equations of the word of an orbit, in the form that its system has; see `Closing`."""
+    if orbit.word.unstruck:
+        return SmoothClosing(orbit, names, symmetric)
     return (Shooting if shoots(orbit.params) else Closing)(orbit, names, symmetric)
 
 
@@ -101,7 +104,7 @@ def shot_from(word: Word, p: Any, guess: object) -> tuple[bool, Floats, float, F
         If there are no barriers, or the guess is neither an orbit nor an (N, 5) array of t, x1, v1, x2, v2.
     """
     if not p.walls:
-        raise ParameterError("walls is 0: a word tells of impacts; vines.settle finds what there is without barriers")
+        raise ParameterError(f"walls is 0: {word} tells of impacts; orbits without barriers have the words -, -/2T, …")
     if isinstance(guess, Orbit):
         return shot(word, p, guess.t * frequency_of(guess.params) / frequency_of(p), guess.states)
     try:
