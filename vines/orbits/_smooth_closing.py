@@ -19,8 +19,8 @@ __all__ = ["SmoothClosing", "smooth_solved"]
 
 Floats = npt.NDArray[np.float64]
 
-_ITERATIONS = 40
-_LEAST_SHARE = 1.0 / 256.0
+_ITERATIONS = 20
+_LEAST_SHARE = 1.0 / 16.0
 _ROUNDING = 1e-12
 _CLOSES = 1e-9
 """Defect at which Newton's method has come to an orbit; it is taken on to rounding."""

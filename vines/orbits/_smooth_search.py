@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from vines.domains import Numbers
+from vines.bounds import shown
 from vines.dynamics.kernels import constants, room_of
 from vines.errors import OrbitNotFound, ParameterError
 from vines.model import Word
@@ -24,7 +24,7 @@ Floats = npt.NDArray[np.float64]
 _RUNS, _SETTLED, _SEEN = 6, 200, 40
 """Runs from random states, forcing periods they are left, and those after which they are looked through."""
 
-_RANDOM = 60
+_RANDOM = 40
 """Random states from which Newton's method sets out."""
 
 _KICKS = (0.03, 0.3)
@@ -45,20 +45,13 @@ def refine_smooth(word: Word, p: Any, guess: Any) -> Orbit:
         If there is none near it.
     """
     _refuse_loose(word, p)
-    names = [each.name for each in p.system.state]
     symmetric = isinstance(guess, Orbit) and guess.symmetric and p.mirrored
     if isinstance(guess, Orbit):
         if guess.word != word:
             raise ParameterError(f"the guess is an orbit of {guess.word}, not of {word}; give one of the same word")
         start = guess.states[0]
     else:
-        Numbers(most=len(names)).check("guess", guess, ParameterError)
-        start = np.asarray(guess, dtype=np.float64)
-        if start.shape != (len(names),):
-            raise ParameterError(
-                f"the guess for {word} has to be an orbit or the {len(names)} numbers {', '.join(names)} at phase 0 of "
-                f"the forcing; it has the shape {start.shape}"
-            )
+        start = _state_of(word, p, guess)
     converged, start, defect = smooth_solved(word, p, start, symmetric=symmetric)
     if not converged:
         raise OrbitNotFound(
@@ -70,6 +63,24 @@ def refine_smooth(word: Word, p: Any, guess: Any) -> Orbit:
             f"no {word} orbit from this guess at {p}: it leads to one of a shorter period; give another"
         )
     return assemble_smooth(word, p, start)
+
+
+def _state_of(word: Word, p: Any, guess: Any) -> Floats:
+    """Return the state at phase 0 of a guess, which may also tell a state and its time, as of an impact."""
+    names = [each.name for each in p.system.state]
+    try:
+        found = np.asarray(guess, dtype=np.float64)
+    except (TypeError, ValueError):
+        found = np.empty(0)
+    if found.shape == (1, len(names) + 1) and np.isfinite(found).all():
+        t, start = float(found[0, 0]), found[0, 1:]
+        return fly(constants(p), start, -t % p.period, p.Omega * t % (2 * np.pi)).end
+    if found.shape != (len(names),) or not np.isfinite(found).all():
+        raise ParameterError(
+            f"the guess is {shown(guess)}; for {word} give an orbit at nearby parameters, or the {len(names)} numbers "
+            f"{', '.join(names)} at phase 0 of the forcing"
+        )
+    return found
 
 
 def smooth_orbits(word: Word, p: Any) -> tuple[list[Orbit], str]:
