@@ -119,9 +119,7 @@ def test_a_linear_absorber_has_its_closed_form():
     [orbit] = all_orbits("-", p)
     kappa = p.k1 + 1j * p.l2 * p.Omega
     # x2'' = kappa w and x1'' + lam x1' + x1 + mu kappa w = F of the phasors
-    M = np.array(
-        [[1 - p.Omega**2 + 1j * p.lam * p.Omega + p.mu * kappa, -p.mu * kappa], [-kappa, kappa - p.Omega**2]]
-    )
+    M = np.array([[1 - p.Omega**2 + 1j * p.lam * p.Omega + p.mu * kappa, -p.mu * kappa], [-kappa, kappa - p.Omega**2]])
     X = np.linalg.solve(M, [p.A * (1 + 1j * p.lam * p.Omega), 0])
     rate = 1j * p.Omega
     assert orbit.states[0] == pytest.approx([*np.ravel([[x.imag, (rate * x).imag] for x in X])], abs=1e-13)

@@ -6,17 +6,15 @@ import math
 
 from vines.attractors import _verdict as v
 from vines.attractors._approach import nearest_orbit
-from vines.attractors._judge import ROUNDING, UNSTABLE, without_impact
+from vines.attractors._judge import NEAR, ROUNDING, UNSTABLE, without_impact
 from vines.attractors._multipliers import multipliers
+from vines.attractors._smooth_watch import LONGEST, apart, watch_smooth
 from vines.dynamics.kernels import rows as col
 from vines.dynamics.kernels import tangent_product
 from vines.dynamics.taylor import TaylorConstants
-from vines.kernels import cold_njit, complex_vector, njit
+from vines.kernels import cold_njit, complex_vector
 
 __all__: list[str] = []
-
-LONGEST = 32
-"""Most forcing periods over which a repetition without impacts is looked for."""
 
 
 @nearest_orbit.register(TaylorConstants)
@@ -26,14 +24,6 @@ def _nearest_orbit(c, rows, kept, p, lag, scale, tolerance):
     return False, math.nan, math.inf, math.inf
 
 
-@njit
-def _apart(rows, i, j, scale):
-    """Return how far the states just after two rows are from each other."""
-    away = max(abs(rows[i, col.X1] - rows[j, col.X1]), abs(rows[i, col.A_V1] - rows[j, col.A_V1]))
-    away = max(away, abs(rows[i, col.X2] - rows[j, col.X2]))
-    return max(away, abs(rows[i, col.A_V2] - rows[j, col.A_V2])) / scale
-
-
 @without_impact.register(TaylorConstants)
 @cold_njit
 def _without_impact(c, rows, n, tolerance, verdict):
@@ -41,12 +31,13 @@ def _without_impact(c, rows, n, tolerance, verdict):
     verdict[v.REGIME], verdict[v.LYAPUNOV_ERROR] = v.NO_IMPACT, 0.0
     verdict[v.REMAINING] = math.nan
     last = n - 2
+    told = last >= LONGEST
     scale = 1e-3
     for i in range(last + 1):
         scale = max(scale, abs(rows[i, col.A_V1]), abs(rows[i, col.A_V2]))
     best, nearest = 0, math.inf
     for p in range(1, min(LONGEST, last // 2) + 1):
-        away = _apart(rows, last, last - p, scale)
+        away = apart(rows, last, last - p, scale)
         if away < 0.5 * nearest:
             best, nearest = p, away
         if away <= 2.5 * tolerance:
@@ -56,13 +47,19 @@ def _without_impact(c, rows, n, tolerance, verdict):
     if nearest > 2.5 * tolerance:
         # Whether it comes nearer, and when it will be there.
         before = last // 2
-        earlier = _apart(rows, before, before - best, scale) if before >= best else math.inf
-        if nearest < 0.9 * earlier < math.inf:
+        earlier = apart(rows, before, before - best, scale) if before >= best else math.inf
+        first = max(best, last // 4)
+        # A torus may come nearer by chance, but neither steadily nor near.
+        steady = not told or (nearest < NEAR and earlier < apart(rows, first, first - best, scale))
+        if nearest < 0.9 * earlier < math.inf and steady:
             rate = (nearest / earlier) ** (1.0 / (last - before))
             verdict[v.REGIME] = v.UNSETTLED
             verdict[v.REMAINING], verdict[v.REASON], verdict[v.VALUE] = (
                 math.log(nearest / tolerance) / -math.log(rate), v.COMES, rate,
             )  # fmt: skip
+        elif told:
+            verdict[v.SCALE] = scale
+            watch_smooth(c, rows[n - 1], tolerance, verdict)
         return
     roots = complex_vector(4)
     largest = multipliers(tangent_product(c, rows, last - best, last), roots)
