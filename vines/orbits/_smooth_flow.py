@@ -36,6 +36,16 @@ def _flow(c, start, phase, span, end, Y):
 
 
 @entry_njit
+def _pass(c, points, period):
+    """Fill the rows of `points` behind the first with the states that follow it, a time `period` apart each."""
+    row = zero_vector(col.ROW)
+    for k in range(1, points.shape[0]):
+        row[col.X1], row[col.A_V1] = points[k - 1, 0], points[k - 1, 1]
+        row[col.X2], row[col.A_V2] = points[k - 1, 2], points[k - 1, 3]
+        points[k, 0], points[k, 1], points[k, 2], points[k, 3], _ = segment_state(c, row, period)
+
+
+@entry_njit
 def _seen(c, start, span):
     """Return least clearance of a turning point, time and wall of the first contact, over a time from phase 0 on."""
     row = zero_vector(col.ROW)
@@ -84,10 +94,10 @@ def fly(c: Any, start: Floats, span: float, phase: float = 0.0) -> Flown:
 
 def passages(p: Any, c: Any, start: Floats, periods: int) -> Floats:
     """Return the states at phase 0 once a forcing period, the first included, shape (periods + 1, d)."""
-    found = [np.array(start, dtype=np.float64)]
-    for _ in range(periods):
-        found.append(fly(c, found[-1], p.period).end)
-    return np.array(found)
+    found = np.empty((periods + 1, len(start)))
+    found[0] = start
+    _pass(c, found, p.period)
+    return found
 
 
 def seen(c: Any, start: Floats, span: float) -> tuple[float, float, int]:

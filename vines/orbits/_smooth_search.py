@@ -158,7 +158,7 @@ def _returning(word: Word, p: Any, rng: np.random.Generator) -> Iterator[Floats]
     for _ in range(_RUNS):
         drawn = room.draw(p, rng)
         start = np.array([drawn[name] for name in names])
-        points = passages(p, c, fly(c, start, _SETTLED * p.period).end, _SEEN + word.p)
+        points = passages(p, c, start, _SETTLED + _SEEN + word.p)[_SETTLED:]
         away = np.abs(points[word.p :] - points[: -word.p]).max(axis=1)
         if np.isfinite(away).any():
             yield points[int(np.nanargmin(away))]
