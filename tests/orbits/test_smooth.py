@@ -266,7 +266,7 @@ def test_what_has_no_such_orbit_says_why():
         find_orbit("-", systems.CubicBarriers(mu=0.01, A=0.02))
     with pytest.raises(ParameterError, match="the 4 numbers x1, v1, x2, v2 at phase 0"):
         find_orbit("-", C8, guess=[0.1, 0.2])
-    with pytest.raises(ParameterError, match="orbits without barriers have the words -"):
+    with pytest.raises(ParameterError, match="orbits without any have the words -"):
         find_orbit("LR", C8)
     assert Word("0:0/3T") == Word("-/3T")
     assert (Word("-").symmetric, Word("-/2T").symmetric, Word("-/3T").symmetric) == (True, False, True)

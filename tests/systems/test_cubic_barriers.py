@@ -267,7 +267,7 @@ def test_what_cannot_be_is_refused():
         systems.CubicBarriers(mu=0.02, A=0.03, walls=0.5)
     with pytest.raises(ParameterError, match="k3 is -1"):
         systems.CubicBarriers(mu=0.02, A=0.03, k3=-1.0)
-    with pytest.raises(ParameterError, match="walls is 0: LR tells of impacts"):
+    with pytest.raises(ParameterError, match="walls is 0: a word tells of impacts"):
         vines.find_orbit("LR", C3.replace(walls=False))
     with pytest.raises(ParameterError, match="give an orbit at nearby parameters"):
         vines.find_orbit("LR", C3, guess=[0.1, 3.0])

@@ -7,10 +7,13 @@ import math
 from vines.attractors import _verdict as v
 from vines.attractors._follow import BLOCKS, FLAT, LONGER, SURE, spectrum
 from vines.attractors._judge import NEAR
+from vines.dynamics.hybrid import HybridConstants
+from vines.dynamics.hybrid.kernels import R_V3, R_X3
 from vines.dynamics.kernels import directions, lyapunov_blocks, open_window, run_window, shift_time
 from vines.dynamics.kernels import rows as col
+from vines.dynamics.taylor import TaylorConstants
 from vines.dynamics.taylor.kernels import TAYLOR_STATE, set_mass
-from vines.kernels import cold_njit, identity, new_matrix, njit, zero_vector
+from vines.kernels import by_type, cold_njit, identity, new_matrix, njit, zero_vector
 
 __all__ = ["LONGEST", "apart", "watch_smooth"]
 
@@ -25,19 +28,34 @@ CAP = 1000
 
 
 @njit
-def apart(rows, i, j, scale):
+def _differs(rows, i, j, columns):
+    """Return the largest difference of two rows in some columns."""
+    away = 0.0
+    for k in columns:
+        away = max(away, abs(rows[i, k] - rows[j, k]))
+    return away
+
+
+@by_type(TaylorConstants)
+@njit
+def apart(c, rows, i, j):
     """Return how far the states just after two rows are from each other."""
-    away = max(abs(rows[i, col.X1] - rows[j, col.X1]), abs(rows[i, col.A_V1] - rows[j, col.A_V1]))
-    away = max(away, abs(rows[i, col.X2] - rows[j, col.X2]))
-    return max(away, abs(rows[i, col.A_V2] - rows[j, col.A_V2])) / scale
+    return _differs(rows, i, j, (col.X1, col.A_V1, col.X2, col.A_V2))
+
+
+@apart.register(HybridConstants)
+@njit
+def _apart_beside(c, rows, i, j):
+    # The ball stays where it is.
+    return _differs(rows, i, j, (col.X1, col.A_V1, R_X3, R_V3))
 
 
 @cold_njit
-def _ends(rows, count, scale, tolerance, verdict):
+def _ends(c, rows, count, scale, tolerance, verdict):
     """Say whether chaos has ended before the last of the rows, once a period, and the run comes to an orbit."""
     last = count - 1
     for p in range(1, LONGEST + 1):
-        newest, before = apart(rows, last, last - p, scale), apart(rows, last - p, last - 2 * p, scale)
+        newest, before = apart(c, rows, last, last - p) / scale, apart(c, rows, last - p, last - 2 * p) / scale
         if newest < NEAR and newest < before:
             rate = max(newest / before, 1e-300) ** (1.0 / p)
             verdict[v.REASON], verdict[v.VALUE] = v.COMES, rate
@@ -46,6 +64,7 @@ def _ends(rows, count, scale, tolerance, verdict):
     return False
 
 
+@by_type(TaylorConstants)
 @cold_njit
 def watch_smooth(c, end, tolerance, verdict):
     """Decide what a window without impacts left open, from the row of its end on; fill the verdict on.
@@ -86,7 +105,7 @@ def watch_smooth(c, end, tolerance, verdict):
         rate, error = spectrum(grown, filled, verdict)
         verdict[v.WATCHED] = passed
         if rate > SURE * error:
-            if _ends(rows, count, verdict[v.SCALE], tolerance, verdict):
+            if _ends(c, rows, count, verdict[v.SCALE], tolerance, verdict):
                 verdict[v.REMAINING] += passed
                 return
             verdict[v.REGIME], verdict[v.SETTLED], verdict[v.REMAINING] = v.CHAOTIC, 1.0, 0.0
@@ -99,3 +118,10 @@ def watch_smooth(c, end, tolerance, verdict):
         verdict[v.REGIME], verdict[v.SETTLED], verdict[v.REMAINING] = v.QUASIPERIODIC, 1.0, 0.0
     else:
         verdict[v.REASON], verdict[v.VALUE], verdict[v.OTHER] = v.UNDECIDED, rate, error
+
+
+@watch_smooth.register(HybridConstants)
+@cold_njit
+def _beside_a_ball(c, end, tolerance, verdict):
+    # A ball that hits nothing keeps any place and velocity: two exponents are 0 whatever the motion is.
+    pass

@@ -1,4 +1,4 @@
-"""What a run on a cubic spring comes to: a stroboscope where it meets no barrier, no closing equations beside it."""
+"""What a run by series comes to: a stroboscope where it hits nothing, no closing equations beside it."""
 
 from __future__ import annotations
 
@@ -6,13 +6,14 @@ import math
 
 from vines.attractors import _verdict as v
 from vines.attractors._approach import nearest_orbit
-from vines.attractors._judge import NEAR, ROUNDING, UNSTABLE, without_impact
+from vines.attractors._judge import NEAR, ROUNDING, UNSTABLE, note_drift, without_impact
 from vines.attractors._multipliers import multipliers
 from vines.attractors._smooth_watch import LONGEST, apart, watch_smooth
+from vines.dynamics.hybrid import HybridConstants
+from vines.dynamics.kernels import directions, tangent_product
 from vines.dynamics.kernels import rows as col
-from vines.dynamics.kernels import tangent_product
 from vines.dynamics.taylor import TaylorConstants
-from vines.kernels import cold_njit, complex_vector
+from vines.kernels import by_type, cold_njit, complex_vector, new_matrix, njit
 
 __all__: list[str] = []
 
@@ -24,20 +25,62 @@ def _nearest_orbit(c, rows, kept, p, lag, scale, tolerance):
     return False, math.nan, math.inf, math.inf
 
 
+nearest_orbit.register(HybridConstants)(_nearest_orbit)
+
+
+@by_type(TaylorConstants)
+@cold_njit
+def _roots(c, rows, first, last, roots):
+    """Fill the multipliers from one row to another, those first that are 1 for any motion; return their number."""
+    multipliers(tangent_product(c, rows, first, last), roots)
+    return 0
+
+
+@_roots.register(HybridConstants)
+@cold_njit
+def _roots_beside(c, rows, first, last, roots):
+    Y = tangent_product(c, rows, first, last)
+    # The ball acts on nothing, and keeps what it is given in position and velocity.
+    own = new_matrix(4, 4)
+    for i in range(4):
+        for k in range(4):
+            own[i, k] = Y[i if i < 2 else i + 2, k if k < 2 else k + 2]
+    multipliers(own, roots[2:])
+    roots[0] = roots[1] = 1.0
+    return 2
+
+
+@by_type(TaylorConstants)
+@njit
+def _stays(c, rows, last, verdict):
+    """Say whether what flies freely, if anything does, comes to no wall within sight."""
+    return True
+
+
+@_stays.register(HybridConstants)
+@njit
+def _ball_stays(c, rows, last, verdict):
+    rides = rows[last, col.MODE] != 0.0
+    return note_drift(verdict, c.period, 0.0 if rides else abs(rows[last, col.A_V2]))
+
+
 @without_impact.register(TaylorConstants)
 @cold_njit
 def _without_impact(c, rows, n, tolerance, verdict):
     """Judge a run without impacts by its states once a period, where its flights are started afresh."""
     verdict[v.REGIME], verdict[v.LYAPUNOV_ERROR] = v.NO_IMPACT, 0.0
-    verdict[v.REMAINING] = math.nan
     last = n - 2
     told = last >= LONGEST
+    if not _stays(c, rows, n - 1, verdict):
+        verdict[v.REGIME] = v.UNSETTLED
+        return
+    verdict[v.REMAINING], verdict[v.REASON] = math.nan, v.NOTHING
     scale = 1e-3
     for i in range(last + 1):
         scale = max(scale, abs(rows[i, col.A_V1]), abs(rows[i, col.A_V2]))
     best, nearest = 0, math.inf
     for p in range(1, min(LONGEST, last // 2) + 1):
-        away = apart(rows, last, last - p, scale)
+        away = apart(c, rows, last, last - p) / scale
         if away < 0.5 * nearest:
             best, nearest = p, away
         if away <= 2.5 * tolerance:
@@ -47,10 +90,10 @@ def _without_impact(c, rows, n, tolerance, verdict):
     if nearest > 2.5 * tolerance:
         # Whether it comes nearer, and when it will be there.
         before = last // 2
-        earlier = apart(rows, before, before - best, scale) if before >= best else math.inf
+        earlier = apart(c, rows, before, before - best) / scale if before >= best else math.inf
         first = max(best, last // 4)
         # A torus may come nearer by chance, but neither steadily nor near.
-        steady = not told or (nearest < NEAR and earlier < apart(rows, first, first - best, scale))
+        steady = not told or (nearest < NEAR and earlier < apart(c, rows, first, first - best) / scale)
         if nearest < 0.9 * earlier < math.inf and steady:
             rate = (nearest / earlier) ** (1.0 / (last - before))
             verdict[v.REGIME] = v.UNSETTLED
@@ -61,14 +104,16 @@ def _without_impact(c, rows, n, tolerance, verdict):
             verdict[v.SCALE] = scale
             watch_smooth(c, rows[n - 1], tolerance, verdict)
         return
-    roots = complex_vector(4)
-    largest = multipliers(tangent_product(c, rows, last - best, last), roots)
+    d = len(directions(c))
+    roots = complex_vector(d)
+    given = _roots(c, rows, last - best, last, roots)
+    largest = abs(roots[given])
     gap = math.inf
-    for k in range(4):
+    for k in range(d):
         size = abs(roots[k])
-        gap = min(gap, abs(1.0 - roots[k]))
+        gap = min(gap, abs(1.0 - roots[k])) if k >= given else gap
         verdict[v.EXPONENTS + k] = math.log(size) / (best * c.period) if size > 0.0 else -math.inf
-        verdict[v.EXPONENTS + 4 + k], verdict[v.EXPONENTS + 8 + k] = roots[k].real, roots[k].imag
+        verdict[v.EXPONENTS + d + k], verdict[v.EXPONENTS + 2 * d + k] = roots[k].real, roots[k].imag
     if largest > 1.0 + UNSTABLE:
         verdict[v.REGIME], verdict[v.UNSTABLE] = v.UNSETTLED, 1.0
         verdict[v.REMAINING], verdict[v.REASON], verdict[v.VALUE] = math.inf, v.ON_UNSTABLE, largest
@@ -79,3 +124,6 @@ def _without_impact(c, rows, n, tolerance, verdict):
         verdict[v.REMAINING] = best * math.log(distance / tolerance) / -math.log(largest) if largest < 1.0 else math.inf
         return
     verdict[v.SETTLED], verdict[v.P], verdict[v.REMAINING] = 1.0, best, 0.0
+
+
+without_impact.register(HybridConstants)(_without_impact)
