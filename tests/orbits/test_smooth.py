@@ -259,6 +259,17 @@ def test_a_family_ends_where_it_grazes_a_barrier():
     assert beyond.violation_side in (1, -1)
 
 
+def test_an_isola_is_followed_once_round():
+    p = systems.CubicBarriers(mu=0.05, A=0.015, Omega=0.92, k3=3.0, l2=0.1, walls=False)
+    large = max(all_orbits("-", p), key=lambda orbit: orbit.measures.max_abs_x1)
+    branch = continue_orbit(large, "Omega", 1.0, within=(0.85, 1.0), step=0.3)
+    assert branch.ends == ("closed", "closed")
+    assert [each.type for each in branch.bifurcations] == ["fold", "fold"]
+    assert branch.orbits[-1] is branch.orbits[0]
+    assert branch.values.min() > 0.88
+    assert branch.values.max() < 0.957
+
+
 def test_what_has_no_such_orbit_says_why():
     with pytest.raises(ParameterError, match="no isolated orbits"):
         find_orbit("-", Params(mu=0.01, A=0.02))
