@@ -54,7 +54,9 @@ def write_region_names(
     for _, name, inside in sorted(regions, key=lambda region: -region[0])[:LABELS]:
         # The frame counts as an edge, so that no name is cut by it.
         depth = np.asarray(distance_transform_edt(np.pad(inside, 1)))[1:-1, 1:-1]
-        row, column = np.unravel_index(int(np.argmax(depth)), depth.shape)
+        # a band is as wide in many places: its middle is the best of them
+        deepest = np.argwhere(depth >= 0.999 * depth.max())
+        row, column = deepest[np.argmin(np.hypot(*(deepest - deepest.mean(axis=0)).T))]
         if depth[row, column] < max(_DEEP, ROOM * max(depth.shape)):
             continue
         ax.text(

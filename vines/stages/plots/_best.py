@@ -20,6 +20,9 @@ __all__ = ["Worth", "rank", "worth_of"]
 
 Floats = npt.NDArray[np.float64]
 
+_ALIKE = 1e-6
+"""Relative difference below which two measures are one: they are those of settled motions, or of runs of chaos."""
+
 
 @dataclass(frozen=True, slots=True)
 class Worth:
@@ -95,7 +98,8 @@ def worth_of(
 def rank(values: Sequence[Floats], better: Literal["less", "more"]) -> tuple[npt.NDArray[np.int64], Floats]:
     """Return the place of the best of several measures at each point, -1 where none is known, and its lead.
 
-    The lead is the ratio of the second to the best, or of the best to the second where more is better: 1 or more.
+    The lead is the ratio of the second to the best, or of the best to the second where more is better: 1 or more. Of
+    those that are alike to rounding the first counts: a stop that is never met changes nothing.
 
     Examples
     --------
@@ -105,9 +109,10 @@ def rank(values: Sequence[Floats], better: Literal["less", "more"]) -> tuple[npt
     """
     stacked = np.stack(values)
     known = np.where(np.isfinite(stacked), stacked if better == "less" else -stacked, np.inf)
-    place = np.argmin(known, axis=0)
-    first = np.take_along_axis(stacked, place[None], axis=0)[0]
-    place[~np.isfinite(known).any(axis=0)] = -1
+    least = known.min(axis=0)
+    place = np.argmax(known <= least + _ALIKE * np.abs(least), axis=0)
+    first = np.take_along_axis(stacked, np.argmin(known, axis=0)[None], axis=0)[0]
+    place[~np.isfinite(least)] = -1
     if len(values) < 2:
         return place, np.full(place.shape, np.nan)
     second = np.sort(known, axis=0)[1] * (1.0 if better == "less" else -1.0)
