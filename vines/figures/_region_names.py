@@ -56,12 +56,12 @@ def write_region_names(
         depth = np.asarray(distance_transform_edt(np.pad(inside, 1)))[1:-1, 1:-1]
         # a band is as wide in many places: its middle is the best of them
         deepest = np.argwhere(depth >= 0.999 * depth.max())
-        row, column = deepest[np.argmin(np.hypot(*(deepest - deepest.mean(axis=0)).T))]
+        row, column = map(int, deepest[np.argmin(np.hypot(*(deepest - deepest.mean(axis=0)).T))])
         if depth[row, column] < max(_DEEP, ROOM * max(depth.shape)):
             continue
         ax.text(
-            x[column],
-            y[row],
+            float(x[column]),
+            float(y[row]),
             name,
             ha="center",
             va="center",
