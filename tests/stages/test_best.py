@@ -198,11 +198,12 @@ def fewer():
             small[f"stages.{name}.vary.A.count"] = 3 if name.startswith("one") else 9
             if not name.startswith("one"):
                 small[f"stages.{name}.vary.Omega.count"] = 3
-    return small
+    hybrid = "stages.tune_hybrid.vary"
+    return small | {f"{hybrid}.mu_n": [0.01], f"{hybrid}.k3": [1.0], f"{hybrid}.l2": [0.4]}
 
 
 def test_the_queries_of_the_page_count_as_numpy_does_on_a_small_grid(root):
-    search, own = ["tune_ball", "tune_ball_down", "tune_tmd"], ["ball_rest", "ball_down", "tmd"]
+    search, own = ["tune_ball", "tune_ball_down", "tune_tmd", "tune_hybrid"], ["ball_rest", "ball_down", "tmd"]
     run("best_absorber", stages=search + own, overrides=fewer())
     # a linear damper of two masses in closed form
     for row in vines.query('select * from "best_absorber.tmd"').to_pylist():
@@ -215,7 +216,7 @@ def test_the_queries_of_the_page_count_as_numpy_does_on_a_small_grid(root):
     page = (REPOSITORY / "docs" / "absorbers.md").read_text("utf-8")
     designs, shares = re.findall(r"^```sql\n(.*?)^```", page, re.MULTILINE | re.DOTALL)
     found = {row["absorber"]: row for row in vines.query(designs).to_pylist()}
-    assert set(found) == {"ball", "tmd"}
+    assert set(found) == {"ball", "hybrid", "tmd"}
     rows = vines.query("select A, max_abs_x1 from parallel_attractors where stage like 'tune%'").to_pylist()
     lows = sorted({row["A"] for row in rows})
     highest = {
