@@ -134,7 +134,7 @@ class Trajectory:
     @cached_property
     def impacts(self) -> Table:
         """The impacts: t, side (+1 L, -1 R), state and w_dot just before, velocities just after, phase, index."""
-        return impacts_of(self.rows, self.rows.shape[1] > col.ROW)
+        return impacts_of(self.rows, self.params.system.balls > 0)
 
     @cached_property
     def sticks(self) -> Table:

@@ -217,6 +217,8 @@ class System(msgspec.Struct, frozen=True, dict=True):
         Whether a ball may stop in mid-cavity.
     starred : bool
         Whether orbits that stick are computed.
+    modes : int
+        How many modes have numbers after their parameters; 0 where there is one without a number.
     """
 
     name: str
@@ -236,6 +238,7 @@ class System(msgspec.Struct, frozen=True, dict=True):
     order: int = 0
     stops: bool = False
     starred: bool = True
+    modes: int = 0
 
     @property
     def state(self) -> tuple[Coordinate, ...]:

@@ -1,0 +1,279 @@
+"""The numbers that the kernels need for a structure of several modes; one kernel serves any number of them.
+
+The structure alone and with the ball riding on it are both sums of complex exponentials, u_j' = s_j u_j + G_j, of
+which x1 and the modes are linear combinations beside a motion that turns with the forcing (docs/dynamics.md, "Several
+modes").
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any, NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from vines.dynamics._constants import LARGE, NARROW, Oscillator, constants_at, oscillator
+from vines.dynamics._impact_law import ImpactLaw, impact_law
+from vines.errors import ParameterError
+from vines.kernels import constant_at, fused_njit, njit
+
+__all__ = [
+    "GAMMA",
+    "LAM",
+    "PHI",
+    "RATE",
+    "STIFFNESS",
+    "ModesConstants",
+    "ModesTable",
+    "Structure",
+    "modes_constants",
+    "of_mode",
+    "oscillator_at",
+    "weight_at",
+]
+
+FIELDS = len(Oscillator._fields)
+WIDTH = FIELDS + 2
+"""Doubles of one exponential in a table: its `Oscillator`, and the complex weight with which x1 has it."""
+
+PHI, GAMMA, STIFFNESS, LAM, RATE = range(5)
+"""What stands of each mode: shape and participation, squared frequency and damping, and the k-th largest of the
+exponents of the structure alone."""
+
+NUMBERS = 5
+
+DEFECTIVE = 1e7
+"""Condition of the modes of the loaded structure above which they are too nearly parallel to be told apart."""
+
+
+class Structure(NamedTuple):
+    """The structure alone, or with the ball riding on it.
+
+    ``x1 = Re sum a_j u_j + Re h E`` over n exponentials, E = exp(i (Omega t + phi)). In the room at an address stand E
+    and all u at the start of the present motion.
+
+    Attributes
+    ----------
+    n : int
+    loaded : float
+        1 with the ball riding on it.
+    table, room : int
+        Addresses.
+    hr, hi : float
+        h.
+    forced : float
+        Sum of |a_j G_j|.
+    to, back : int
+        Addresses of what makes exponentials of the modes and back, with the ball riding on it; else 0.
+    """
+
+    n: int
+    loaded: float
+    table: int
+    room: int
+    hr: float
+    hi: float
+    forced: float
+    to: int
+    back: int
+
+
+class _Fields(NamedTuple):
+    mu: float
+    A: float
+    Omega: float
+    r: float
+    mobility: float
+    direct: float
+    Omega4: float
+    Omega5: float
+    period: float
+    window: float
+    near: float
+    correction: float
+    law: ImpactLaw
+    free: Structure
+    stuck: Structure
+    modes: int
+    each: int
+    noted: int
+
+
+class ModesConstants(_Fields):
+    """As `Constants`; what there is once a mode stands in a table of `modes` rows, and `each` is its address.
+
+    So a kernel is compiled once for all numbers of modes. The doubles live as long as the constants do: they are an
+    attribute of them, no field. At `noted` stand the modes of a motion that kernels begin by x1 and v1 alone.
+    """
+
+    space: list[npt.NDArray[np.float64]]
+
+
+class ModesTable(NamedTuple):
+    """The constants of one run, where kernels for many runs take a table."""
+
+    constants: ModesConstants
+
+
+def _driven(rate: complex, force: complex, Omega: float) -> Oscillator:
+    """Return the `Oscillator` of u' = rate u + force E."""
+    size = rate.real * rate.real + rate.imag * rate.imag
+    pair = oscillator(1.0 / size, 0.0, Omega, -2.0 * rate.real / size)
+    detuning = complex(pair.dr, pair.di)
+    away = abs(detuning)
+    q = force / detuning if away > 0.0 else complex(math.inf, math.inf)
+    reach = 0.0
+    if away < NARROW or abs(q) > LARGE:
+        reach = 1.0 / away if away > 0.0 else math.inf
+    return pair._replace(gr=force.real, gi=force.imag, qr=q.real, qi=q.imag, reach=reach)
+
+
+def _structure(
+    space: list[npt.NDArray[np.float64]], driven: list[Oscillator], weights: Any, h: complex, loaded: float = 0.0,
+    to: int = 0, back: int = 0,
+) -> Structure:  # fmt: skip
+    n = len(driven)
+    table, room = np.empty((n, WIDTH)), np.zeros(2 + 2 * n)
+    for row, own, a in zip(table, driven, weights, strict=True):
+        row[:FIELDS] = own
+        row[FIELDS:] = a.real, a.imag
+    space += [table, room]
+    forced = sum(abs(a) * math.hypot(own.gr, own.gi) for own, a in zip(driven, weights, strict=True))
+    return Structure(n, loaded, table.ctypes.data, room.ctypes.data, h.real, h.imag, float(forced), to, back)
+
+
+def _loaded(
+    space: list[npt.NDArray[np.float64]], mu: float, A: float, Omega: float, direct: float,
+    omega: npt.NDArray[np.float64], lam: npt.NDArray[np.float64], phi: npt.NDArray[np.float64],
+    gamma: npt.NDArray[np.float64],
+) -> Structure:  # fmt: skip
+    """Return the structure with the ball riding on it.
+
+    The ball presses with ``-mu x1''``: ``(1 + mu phi phi^T) z'' + lam z' + omega² z = gamma (omega² e + lam e')
+    - mu direct e'' phi``, whose 2n exponents are n pairs as long as each mode is underdamped.
+    """
+    n = len(omega)
+    square = omega * omega
+    inverse = np.eye(n) - mu / (1.0 + mu * phi @ phi) * np.outer(phi, phi)
+    # Amplitudes times frequencies beside velocities, so that all entries are of one size.
+    state = np.zeros((2 * n, 2 * n))
+    state[:n, n:] = np.diag(omega)
+    state[n:, :n] = -inverse * omega
+    state[n:, n:] = -inverse * lam
+    rates, right = np.linalg.eig(state)
+    if not np.linalg.cond(right) < DEFECTIVE:
+        raise ParameterError(
+            f"mu is {mu:g}: with the ball riding on it two modes of the structure coincide; change mu or a lam a little"
+        )
+    left = np.linalg.inv(right)
+    kept = np.argsort(rates.imag)[n:]
+    rates, right, left = rates[kept], right[:, kept], left[kept]
+    force = A * (gamma * (-1j * square + lam * Omega) - 1j * mu * direct * Omega**2 * phi)
+    push = np.concatenate([np.zeros(n), inverse @ force])
+    other = left @ push.conj() / (-1j * Omega - rates)
+    turning = (right @ other).conj()
+    # From z and z' to exponentials and back, mode by mode.
+    to = np.empty((n, 2 * n + 1), dtype=complex)
+    to[:, 0:-1:2], to[:, 1:-1:2], to[:, -1] = 2.0 * left[:, :n] * omega, 2.0 * left[:, n:], -other
+    back = np.empty((2 * n, n + 1), dtype=complex)
+    back[0::2, :-1], back[1::2, :-1] = right[:n] / omega[:, None], right[n:]
+    back[0::2, -1], back[1::2, -1] = turning[:n] / omega, turning[n:]
+    weights = phi @ back[0::2, :-1]
+    h = complex(phi @ back[0::2, -1]) - 1j * direct * A
+    to, back = (np.ascontiguousarray(each).view(np.float64) for each in (to, back))
+    space += [to, back]
+    driven = [_driven(complex(rate), complex(g), Omega) for rate, g in zip(rates, left @ push, strict=True)]
+    return _structure(space, driven, weights, h, 1.0, to.ctypes.data, back.ctypes.data)
+
+
+def modes_constants(mu: float, A: float, Omega: float, r: float, *modes: float) -> ModesConstants:
+    """Return the `ModesConstants` at bare parameter values; `modes` is all omega, lam, phi and gamma.
+
+    Raises
+    ------
+    ParameterError
+        If two modes of the structure with the ball riding on it coincide.
+    """
+    omega, lam, phi, gamma = np.reshape(np.array(modes, dtype=np.float64), (4, -1))
+    n = len(omega)
+    mobility, direct = float(phi @ phi), 1.0 - float(phi @ gamma)
+    space: list[npt.NDArray[np.float64]] = []
+    square = omega * omega
+    driven = [
+        oscillator(1.0 / k, g * A, Omega, damped / k) for k, damped, g in zip(square, lam, gamma, strict=True)
+    ]  # fmt: skip
+    free = _structure(space, driven, phi.astype(complex), -1j * direct * A)
+    stuck = _loaded(space, mu, A, Omega, direct, omega, lam, phi, gamma)
+    each, noted = np.column_stack([phi, gamma, square, lam, np.sort(-0.5 * lam)[::-1]]), np.zeros(2 * n)
+    space += [each, noted]
+    fastest = max(1.0, Omega, float(omega.max()))
+    cube, pull = 1.0 - r**3, mu * mobility
+    found = ModesConstants(
+        mu, A, Omega, r, mobility, direct, Omega**4, Omega**5, 2.0 * math.pi / Omega, 2.0 / fastest,
+        4e-3 / fastest**1.25, 2.0 / 3.0 * pull / (1.0 + pull) ** 2 / cube if cube > 0.0 else math.inf,
+        impact_law(pull, r), free, stuck, n, each.ctypes.data, noted.ctypes.data,
+    )  # fmt: skip
+    found.space = space
+    return found
+
+
+@constants_at.register(ModesTable)
+@njit
+def _constants_at(table, k):
+    return table.constants
+
+
+@fused_njit
+def of_mode(each, k, what):
+    """Return a number of mode k, from 0 on, in the table of modes at an address."""
+    return constant_at(each, NUMBERS * k + what)  # pyright: ignore[reportCallIssue]
+
+
+@fused_njit
+def weight_at(table, j):
+    """Return the weight of exponential j in x1, as two reals."""
+    first = WIDTH * j + FIELDS
+    return constant_at(table, first), constant_at(table, first + 1)  # pyright: ignore[reportCallIssue]
+
+
+@fused_njit
+def oscillator_at(table, j):
+    """Return the `Oscillator` of exponential j."""
+    at = WIDTH * j
+    return Oscillator(
+        constant_at(table, at + 0),  # pyright: ignore[reportCallIssue]
+        constant_at(table, at + 1),
+        constant_at(table, at + 2),
+        constant_at(table, at + 3),
+        constant_at(table, at + 4),
+        constant_at(table, at + 5),
+        constant_at(table, at + 6),
+        constant_at(table, at + 7),
+        constant_at(table, at + 8),
+        constant_at(table, at + 9),
+        constant_at(table, at + 10),
+        constant_at(table, at + 11),
+        constant_at(table, at + 12),
+        constant_at(table, at + 13),
+        constant_at(table, at + 14),
+        constant_at(table, at + 15),
+        constant_at(table, at + 16),
+        constant_at(table, at + 17),
+        constant_at(table, at + 18),
+        constant_at(table, at + 19),
+        constant_at(table, at + 20),
+        constant_at(table, at + 21),
+        constant_at(table, at + 22),
+        constant_at(table, at + 23),
+        constant_at(table, at + 24),
+        constant_at(table, at + 25),
+        constant_at(table, at + 26),
+        constant_at(table, at + 27),
+        constant_at(table, at + 28),
+        constant_at(table, at + 29),
+        constant_at(table, at + 30),
+        constant_at(table, at + 31),
+        constant_at(table, at + 32),
+        constant_at(table, at + 33),
+    )
