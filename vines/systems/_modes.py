@@ -134,9 +134,9 @@ class Modes(Parameters):
         return read_system("modes", self.modes)
 
     @classmethod
-    def declared(cls, count: int = 0) -> System:
+    def declared(cls, balls: int = 0) -> System:
         """Return the declaration with so many modes."""
-        return read_system("modes", max(count, 1))
+        return read_system("modes", max(balls, 1))
 
     @property
     def mobility(self) -> float:

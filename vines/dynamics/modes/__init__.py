@@ -46,7 +46,7 @@ class _Modes(Room):
         return start["x1"], start["v1"], x2, v2
 
     def leave(self, p: Any, at: Sequence[float], phase: float, more: Sequence[float] = ()) -> dict[str, float]:
-        found = dict(zip(("x1", "v1", "x2", "v2"), at, strict=True))
+        found: dict[str, float] = dict(zip(("x1", "v1", "x2", "v2"), at, strict=True))
         for k in range(2, p.modes + 1):
             found[f"q_{k}"], found[f"q_dot_{k}"] = more[1 + 2 * k], more[2 + 2 * k]
         return found
@@ -74,6 +74,19 @@ class _Modes(Room):
 
     def law(self, p: Any, balls: Any) -> ImpactLaw:
         return impact_law(p.mu * p.mobility, p.r)
+
+    def frame_energy(self, p: Any, at: Mapping[str, float], sag: float) -> float:
+        others = [
+            (phi, at[f"q_{k}"], at[f"q_dot_{k}"]) for k, phi in enumerate(p.phi[1:], start=2)
+        ]  # fmt: skip
+        first = (
+            (at["x1"] - sum(phi * q for phi, q, _ in others)) / p.phi[0],
+            (at["v1"] - sum(phi * q_dot for phi, _, q_dot in others)) / p.phi[0],
+        )
+        each = [first, *((q, q_dot) for _, q, q_dot in others)]
+        return sum(
+            0.5 * (q_dot**2 + (omega * q) ** 2) for omega, (q, q_dot) in zip(p.omega, each, strict=True)
+        )  # fmt: skip
 
     def conserves(self, p: Any) -> bool:
         return all(lam == 0.0 for lam in p.lam) and p.r == 1.0

@@ -181,10 +181,10 @@ def _loaded(
     back[0::2, -1], back[1::2, -1] = turning[:n] / omega, turning[n:]
     weights = phi @ back[0::2, :-1]
     h = complex(phi @ back[0::2, -1]) - 1j * direct * A
-    to, back = (np.ascontiguousarray(each).view(np.float64) for each in (to, back))
-    space += [to, back]
+    away, home = np.ascontiguousarray(to).view(np.float64), np.ascontiguousarray(back).view(np.float64)
+    space += [away, home]
     driven = [_driven(complex(rate), complex(g), Omega) for rate, g in zip(rates, left @ push, strict=True)]
-    return _structure(space, driven, weights, h, 1.0, to.ctypes.data, back.ctypes.data)
+    return _structure(space, driven, weights, h, 1.0, away.ctypes.data, home.ctypes.data)
 
 
 def modes_constants(mu: float, A: float, Omega: float, r: float, *modes: float) -> ModesConstants:
