@@ -42,7 +42,7 @@ class FamilyClassified(Classified):
     def attractor(self, k: int) -> Attractor:
         """Return run k as `settle` would."""
         p = self.params[k]
-        hits = impacts_of(np.empty((0, room_of(p).layout(p).width)), room_of(p).layout(p).width > col.ROW)
+        hits = impacts_of(np.empty((0, room_of(p).layout(p).width)), p.system.balls > 0)
         kept = hits if self.hits is None else self.hits[k]
         return attractor_from(p, self.verdicts[k], self.totals[k], self.words[k], kept, 0.0, True)
 
@@ -110,9 +110,11 @@ def classify_family(
     points = (params,) if isinstance(params, Parameters) else tuple(params)
     if not points:
         raise ParameterError("params is empty; give at least one point")
-    kinds = {(p.system.name, getattr(p, "balls", 0)) for p in points}
+    kinds = {(p.system.name, p.system.balls, p.system.modes) for p in points}
     if len(kinds) > 1:
-        raise ParameterError(f"points of {len(kinds)} systems or numbers of balls; classify those of each alone")
+        raise ParameterError(
+            f"points of {len(kinds)} systems or numbers of balls or modes; classify those of each alone"
+        )
     n = _count(len(points), given)
     points = points * n if len(points) == 1 else points
     begins = []
