@@ -38,8 +38,9 @@ from vines.dynamics._flight import advance_phase, derivatives, free_ball, turn
 from vines.dynamics._sticking import merges, release_within
 from vines.dynamics._window import width_of, write_end
 from vines.dynamics.modes._constants import ModesConstants, ModesTable
+from vines.dynamics.modes._jet import launch, modal_at
 from vines.dynamics.modes._layout import BALL, BEFORE, MODAL, R_MODAL
-from vines.dynamics.modes._motion import kick, launch, modal_at, place_first
+from vines.dynamics.modes._motion import kick, place_first
 from vines.kernels import entry_njit, fused_njit, linked_njit, loop_njit, njit
 
 __all__ = ["set_modes"]

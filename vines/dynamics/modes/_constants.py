@@ -1,20 +1,19 @@
 """The numbers that the kernels need for a structure of several modes; one kernel serves any number of them.
 
-The structure alone and with the ball riding on it are both sums of complex exponentials, u_j' = s_j u_j + G_j, of
-which x1 and the modes are linear combinations beside a motion that turns with the forcing (docs/dynamics.md, "Several
-modes").
+Those of the structure with the ball riding on it follow from an eigenvalue problem (docs/dynamics.md, "Several modes").
 """
 
 from __future__ import annotations
 
 import math
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
-from vines.dynamics._constants import LARGE, NARROW, Oscillator, constants_at, oscillator
+from vines.dynamics._constants import constants_at, oscillator
 from vines.dynamics._impact_law import ImpactLaw, impact_law
+from vines.dynamics.modes._structure import Structure, driven, structure
 from vines.errors import ParameterError
 from vines.kernels import constant_at, fused_njit, njit
 
@@ -26,16 +25,9 @@ __all__ = [
     "STIFFNESS",
     "ModesConstants",
     "ModesTable",
-    "Structure",
     "modes_constants",
     "of_mode",
-    "oscillator_at",
-    "weight_at",
 ]
-
-FIELDS = len(Oscillator._fields)
-WIDTH = FIELDS + 2
-"""Doubles of one exponential in a table: its `Oscillator`, and the complex weight with which x1 has it."""
 
 PHI, GAMMA, STIFFNESS, LAM, RATE = range(5)
 """What stands of each mode: shape and participation, squared frequency and damping, and the k-th largest of the
@@ -45,38 +37,6 @@ NUMBERS = 5
 
 DEFECTIVE = 1e7
 """Condition of the modes of the loaded structure above which they are too nearly parallel to be told apart."""
-
-
-class Structure(NamedTuple):
-    """The structure alone, or with the ball riding on it.
-
-    ``x1 = Re sum a_j u_j + Re h E`` over n exponentials, E = exp(i (Omega t + phi)). In the room at an address stand E
-    and all u at the start of the present motion.
-
-    Attributes
-    ----------
-    n : int
-    loaded : float
-        1 with the ball riding on it.
-    table, room : int
-        Addresses.
-    hr, hi : float
-        h.
-    forced : float
-        Sum of |a_j G_j|.
-    to, back : int
-        Addresses of what makes exponentials of the modes and back, with the ball riding on it; else 0.
-    """
-
-    n: int
-    loaded: float
-    table: int
-    room: int
-    hr: float
-    hi: float
-    forced: float
-    to: int
-    back: int
 
 
 class _Fields(NamedTuple):
@@ -116,33 +76,6 @@ class ModesTable(NamedTuple):
     constants: ModesConstants
 
 
-def _driven(rate: complex, force: complex, Omega: float) -> Oscillator:
-    """Return the `Oscillator` of u' = rate u + force E."""
-    size = rate.real * rate.real + rate.imag * rate.imag
-    pair = oscillator(1.0 / size, 0.0, Omega, -2.0 * rate.real / size)
-    detuning = complex(pair.dr, pair.di)
-    away = abs(detuning)
-    q = force / detuning if away > 0.0 else complex(math.inf, math.inf)
-    reach = 0.0
-    if away < NARROW or abs(q) > LARGE:
-        reach = 1.0 / away if away > 0.0 else math.inf
-    return pair._replace(gr=force.real, gi=force.imag, qr=q.real, qi=q.imag, reach=reach)
-
-
-def _structure(
-    space: list[npt.NDArray[np.float64]], driven: list[Oscillator], weights: Any, h: complex, loaded: float = 0.0,
-    to: int = 0, back: int = 0,
-) -> Structure:  # fmt: skip
-    n = len(driven)
-    table, room = np.empty((n, WIDTH)), np.zeros(2 + 2 * n)
-    for row, own, a in zip(table, driven, weights, strict=True):
-        row[:FIELDS] = own
-        row[FIELDS:] = a.real, a.imag
-    space += [table, room]
-    forced = sum(abs(a) * math.hypot(own.gr, own.gi) for own, a in zip(driven, weights, strict=True))
-    return Structure(n, loaded, table.ctypes.data, room.ctypes.data, h.real, h.imag, float(forced), to, back)
-
-
 def _loaded(
     space: list[npt.NDArray[np.float64]], mu: float, A: float, Omega: float, direct: float,
     omega: npt.NDArray[np.float64], lam: npt.NDArray[np.float64], phi: npt.NDArray[np.float64],
@@ -161,7 +94,7 @@ def _loaded(
     state[:n, n:] = np.diag(omega)
     state[n:, :n] = -inverse * omega
     state[n:, n:] = -inverse * lam
-    rates, right = np.linalg.eig(state)
+    rates, right = (np.asarray(each, dtype=np.complex128) for each in np.linalg.eig(state))
     if not np.linalg.cond(right) < DEFECTIVE:
         raise ParameterError(
             f"mu is {mu:g}: with the ball riding on it two modes of the structure coincide; change mu or a lam a little"
@@ -183,8 +116,8 @@ def _loaded(
     h = complex(phi @ back[0::2, -1]) - 1j * direct * A
     away, home = np.ascontiguousarray(to).view(np.float64), np.ascontiguousarray(back).view(np.float64)
     space += [away, home]
-    driven = [_driven(complex(rate), complex(g), Omega) for rate, g in zip(rates, left @ push, strict=True)]
-    return _structure(space, driven, weights, h, 1.0, away.ctypes.data, home.ctypes.data)
+    each = [driven(complex(rate), complex(g), Omega) for rate, g in zip(rates, left @ push, strict=True)]
+    return structure(space, each, weights, h, 1.0, away.ctypes.data, home.ctypes.data)
 
 
 def modes_constants(mu: float, A: float, Omega: float, r: float, *modes: float) -> ModesConstants:
@@ -200,10 +133,10 @@ def modes_constants(mu: float, A: float, Omega: float, r: float, *modes: float) 
     mobility, direct = float(phi @ phi), 1.0 - float(phi @ gamma)
     space: list[npt.NDArray[np.float64]] = []
     square = omega * omega
-    driven = [
+    alone = [
         oscillator(1.0 / k, g * A, Omega, damped / k) for k, damped, g in zip(square, lam, gamma, strict=True)
     ]  # fmt: skip
-    free = _structure(space, driven, phi.astype(complex), -1j * direct * A)
+    free = structure(space, alone, phi.astype(complex), -1j * direct * A)
     stuck = _loaded(space, mu, A, Omega, direct, omega, lam, phi, gamma)
     each, noted = np.column_stack([phi, gamma, square, lam, np.sort(-0.5 * lam)[::-1]]), np.zeros(2 * n)
     space += [each, noted]
@@ -228,52 +161,3 @@ def _constants_at(table, k):
 def of_mode(each, k, what):
     """Return a number of mode k, from 0 on, in the table of modes at an address."""
     return constant_at(each, NUMBERS * k + what)  # pyright: ignore[reportCallIssue]
-
-
-@fused_njit
-def weight_at(table, j):
-    """Return the weight of exponential j in x1, as two reals."""
-    first = WIDTH * j + FIELDS
-    return constant_at(table, first), constant_at(table, first + 1)  # pyright: ignore[reportCallIssue]
-
-
-@fused_njit
-def oscillator_at(table, j):
-    """Return the `Oscillator` of exponential j."""
-    at = WIDTH * j
-    return Oscillator(
-        constant_at(table, at + 0),  # pyright: ignore[reportCallIssue]
-        constant_at(table, at + 1),
-        constant_at(table, at + 2),
-        constant_at(table, at + 3),
-        constant_at(table, at + 4),
-        constant_at(table, at + 5),
-        constant_at(table, at + 6),
-        constant_at(table, at + 7),
-        constant_at(table, at + 8),
-        constant_at(table, at + 9),
-        constant_at(table, at + 10),
-        constant_at(table, at + 11),
-        constant_at(table, at + 12),
-        constant_at(table, at + 13),
-        constant_at(table, at + 14),
-        constant_at(table, at + 15),
-        constant_at(table, at + 16),
-        constant_at(table, at + 17),
-        constant_at(table, at + 18),
-        constant_at(table, at + 19),
-        constant_at(table, at + 20),
-        constant_at(table, at + 21),
-        constant_at(table, at + 22),
-        constant_at(table, at + 23),
-        constant_at(table, at + 24),
-        constant_at(table, at + 25),
-        constant_at(table, at + 26),
-        constant_at(table, at + 27),
-        constant_at(table, at + 28),
-        constant_at(table, at + 29),
-        constant_at(table, at + 30),
-        constant_at(table, at + 31),
-        constant_at(table, at + 32),
-        constant_at(table, at + 33),
-    )

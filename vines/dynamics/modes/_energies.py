@@ -23,8 +23,9 @@ from vines.dynamics._totals import (
 )
 from vines.dynamics._travel import OF_A_WINDOW
 from vines.dynamics.modes._constants import GAMMA, LAM, STIFFNESS, ModesConstants, of_mode
+from vines.dynamics.modes._jet import launch, modal_at
 from vines.dynamics.modes._layout import DAMPER, EACH, R_MODAL, SPEED_SQUARE, STRAIN_SQUARE
-from vines.dynamics.modes._motion import base, launch, modal_at
+from vines.dynamics.modes._motion import base
 from vines.kernels import linked_njit, njit, zero_vector
 
 __all__ = ["add_motion", "of_row"]

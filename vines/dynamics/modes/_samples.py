@@ -6,8 +6,8 @@ from vines.dynamics import _advance as col
 from vines.dynamics import _totals as entry
 from vines.dynamics._totals import event_loss, event_work, segment_state
 from vines.dynamics.modes._energies import add_motion, of_row
+from vines.dynamics.modes._jet import modal_at
 from vines.dynamics.modes._layout import EACH, R_MODAL
-from vines.dynamics.modes._motion import modal_at
 from vines.kernels import entry_njit, zero_vector
 
 __all__ = ["FIRST_MODE", "sample_modes"]

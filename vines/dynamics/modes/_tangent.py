@@ -10,9 +10,10 @@ from vines.dynamics._flight import decay
 from vines.dynamics._impact_law import after_impact_kernel
 from vines.dynamics._sincos import sincos
 from vines.dynamics._tangent import carry_basis, directions, flow_basis, jump_basis, swing_of
-from vines.dynamics.modes._constants import LAM, PHI, ModesConstants, of_mode, oscillator_at
+from vines.dynamics.modes._constants import LAM, PHI, ModesConstants, of_mode
 from vines.dynamics.modes._layout import R_MODAL
 from vines.dynamics.modes._motion import acceleration
+from vines.dynamics.modes._structure import oscillator_at
 from vines.kernels import doubles_at, linked_njit, njit, zero_vector
 
 __all__: list[str] = []

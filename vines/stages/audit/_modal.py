@@ -17,7 +17,8 @@ def _each(rows: Rows) -> Iterator[tuple[Floats, Floats, Floats, Floats]]:
         if rows.has(f"omega_{number}"):
             omega, lam, phi, gamma = (rows[f"{name}_{number}"] for name in ("omega", "lam", "phi", "gamma"))
             none = np.isnan(omega)
-            yield np.where(none, 1.0, omega), *(np.where(none, 0.0, each) for each in (lam, phi, gamma))
+            lam, phi, gamma = (np.where(none, 0.0, each) for each in (lam, phi, gamma))
+            yield np.where(none, 1.0, omega), lam, phi, gamma
 
 
 def modal_amplitude(rows: Rows, mass: Floats | float) -> Floats:
