@@ -2,6 +2,7 @@
 
 import math
 
+import numpy as np
 import pytest
 
 import vines
@@ -85,6 +86,31 @@ def test_tables_hold_the_energies_of_the_modes(structure):
     assert math.isclose(sum(shares), 1, abs_tol=1e-12)
     curve = vines.table("modes_curves").to_pylist()
     assert len(curve) > 3
+
+
+def test_the_cantilever_is_one():
+    """Numbers of the pipeline are those of the closed form of its modes."""
+    beta = np.array([1.8751040687119611, 4.694091132974175])
+    assert np.cosh(beta) * np.cos(beta) == pytest.approx(-1, abs=1e-12)
+    sigma = (np.cosh(beta) + np.cos(beta)) / (np.sinh(beta) + np.sin(beta))
+
+    def shape(place):
+        y = np.multiply.outer(place, beta)
+        return np.cosh(y) - np.cos(y) - sigma * (np.sinh(y) - np.sin(y))
+
+    x, weight = np.polynomial.legendre.leggauss(40)
+    along, weight = 0.5 + 0.5 * x, 0.5 * weight
+    assert weight @ shape(along) ** 2 == pytest.approx(1, abs=1e-12)
+    omega, gamma = (beta / beta[0]) ** 2, weight @ shape(along)
+    node = shape(0.7834445505005600)
+    assert node[1] == pytest.approx(0, abs=1e-12)
+    phi = {"tip": (2.0, -2.0), "none": (2.0, -2.0), "node": (node[0], 0.0)}
+    for name, stage in load_pipeline("cantilever").stages.items():
+        if stage.kind.name == "sweep":
+            for k in (0, 1):
+                known = [omega[k], gamma[k], 0.02 * omega[k], phi[name.partition("_")[0]][k]]
+                given = [stage.params[f"{each}_{k + 1}"] for each in ("omega", "gamma", "lam", "phi")]
+                assert given == pytest.approx(known, abs=1e-11)
 
 
 @pytest.mark.parametrize(
