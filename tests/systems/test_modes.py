@@ -14,8 +14,8 @@ from scipy.integrate import solve_ivp
 import vines
 from vines import systems
 from vines.dynamics import lyapunov_spectrum, tangent_map
-from vines.dynamics._advance import A_V2, MODE, PHASE, TAU, V2, X2
-from vines.dynamics.kernels import constants, tangent_product
+from vines.dynamics._advance import A_V2, MODE, PHASE, SIDE, TAU, V2, X2
+from vines.dynamics.kernels import constants, segment_state, tangent_product
 from vines.dynamics.modes.kernels import R_MODAL
 from vines.errors import ParameterError
 
@@ -256,6 +256,25 @@ def test_orbits_and_their_multipliers():
     ours, theirs = vines.find_orbit("LR", one), vines.find_orbit("LR", vines.Params(mu=0.01, A=0.015))
     assert ours.states == pytest.approx(theirs.states, abs=1e-12)
     assert ours.multipliers == pytest.approx(theirs.multipliers, abs=1e-12)
+
+
+def test_modes_that_coincide_with_the_ball_riding_are_refused_and_beside_it_hold():
+    p = systems.Modes(
+        mu=0.05439048676388367, A=0.3, omega=(1.0, 0.98), phi=(1.0, 0.5), gamma=(0.8, 0.3),
+        lam=(0.01, 0.061514287059221504),
+    )  # fmt: skip
+    with pytest.raises(ParameterError, match="two modes of the structure coincide; change mu"):
+        vines.simulate(p, periods=1)
+    near = p.replace(mu=p.mu * (1 + 1e-6))
+    start = [0.1, 0.3, -0.2, 0.1, 0.0, 0.0]
+    row = np.zeros((1, R_MODAL + 4))
+    row[0, R_MODAL:] = start[:4]
+    row[0, [SIDE, MODE, PHASE]] = 1.0, 1.0, 0.4
+    c = constants(near)
+    x1, v1, _, v2, _ = segment_state(c, row[0], 2.0)
+    end = flown(near, 0.4, start, 2.0, rides=True)[:, -1]
+    assert [x1, v1] == pytest.approx([float(each) for each in cavity(near, end, 0.4 + 2.0 * near.Omega)], abs=1e-11)
+    assert v1 == v2
 
 
 @pytest.mark.parametrize(

@@ -51,10 +51,12 @@ def curves(
     clock: Clock,
     *,
     sprung: bool = True,
+    modal: bool = False,
 ) -> None:
     """Send all curves and the marks of the impacts on them.
 
-    Parameters are those of `vines.viewer._scene.cavity`; `impacts` has the columns of ``vines.v1.Impact``.
+    Parameters are those of `vines.viewer._scene.cavity`; `impacts` has the columns of ``vines.v1.Impact``, and with
+    `modal` energies of the frame are those of its modes.
     """
     x1, x2 = states["x1"], states["x2"]
     indexes = clock.columns(states["t"])
@@ -75,6 +77,9 @@ def curves(
         ("spring, (x1 − e)²/2", states["potential"], SPRING),
         ("ball, µ v2²/2", states["kinetic_2"], BALL),
     ]
+    if modal:
+        energies[1] = ("modes, Σ q'²/2", states["kinetic_1"], LINE)
+        energies[2] = ("springs, Σ ω²(q − γ e)²/2", states["potential"], SPRING)
     if "x3" in states:
         of_frame = states["potential"] - states["spring"]
         energies[2] = ("spring, (x1 − e)²/2", of_frame, SPRING)

@@ -173,7 +173,7 @@ def _send(rec: rr.RecordingStream, root: str, part: Drawn) -> None:
     if "x3" in states:
         mass_beside(rec, f"{root}/cavity", states, clock)
     phase_plane(rec, f"{root}/phase", states, impacts, clock, part.parts)
-    curves(rec, root, states, impacts, clock, sprung=sprung)
+    curves(rec, root, states, impacts, clock, sprung=sprung, modal=log.system == "modes")
     dial(rec, f"{root}/dial", states, impacts, clock)
     lanes(rec, f"{root}/lanes", states, impacts, clock)
     send_impact_log(rec, f"{root}/impacts", impacts, clock)

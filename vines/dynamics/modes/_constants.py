@@ -35,7 +35,7 @@ exponents of the structure alone."""
 
 NUMBERS = 5
 
-DEFECTIVE = 1e7
+DEFECTIVE = 1e6
 """Condition of the modes of the loaded structure above which they are too nearly parallel to be told apart."""
 
 
