@@ -18,6 +18,8 @@ from vines.dynamics._advance import A_V2, MODE, PHASE, SIDE, TAU, V2, X2
 from vines.dynamics.kernels import constants, segment_state, tangent_product
 from vines.dynamics.modes.kernels import R_MODAL
 from vines.errors import ParameterError
+from vines.orbits import continue_orbit, switch_branch
+from vines.orbits._turnings_of_balls import turnings_kernel
 
 BEAM = {"omega": (1.0, 6.267), "phi": (2.0, -2.0), "gamma": (0.783, 0.434), "lam": (0.012, 0.1)}
 TWO = {"omega": (1.0, 2.4), "phi": (1.0, -0.6), "gamma": (0.8, 0.3), "lam": (0.02, 0.03)}
@@ -256,6 +258,34 @@ def test_orbits_and_their_multipliers():
     ours, theirs = vines.find_orbit("LR", one), vines.find_orbit("LR", vines.Params(mu=0.01, A=0.015))
     assert ours.states == pytest.approx(theirs.states, abs=1e-12)
     assert ours.multipliers == pytest.approx(theirs.multipliers, abs=1e-12)
+
+
+def test_a_family_loses_its_symmetry_where_runs_do():
+    p = systems.Modes(mu=0.05, A=0.046, **THREE)
+    family = continue_orbit(vines.find_orbit("LR", p), "A", 0.049)
+    (breaking,) = family.bifurcations
+    assert breaking.type == "symmetry_breaking"
+    assert breaking.value == pytest.approx(0.0481379859734, abs=1e-12)
+    orbit = continue_orbit(switch_branch(breaking)[0], "A", 0.05).orbits[-1]
+    assert (orbit.symmetric, orbit.stable) == (False, True)
+    start = {name: value for name, value in orbit.start().items() if name != "t"}
+    found = vines.settle(orbit.params, phi=float(orbit.phase[0]), settle=0, **start)
+    assert (found.name, found.symmetric) == ("1:1", False)
+    assert found.measures.max_abs_x1 == pytest.approx(orbit.measures.max_abs_x1, abs=1e-12)
+
+
+def test_a_flight_turns_where_samples_do():
+    orbit = vines.find_orbit("LLR", systems.Modes(mu=0.05, A=0.08, **THREE))
+    side, t, states = orbit.side.astype(np.int64), orbit.t.copy(), orbit.states.copy()
+    ((flight, when, wall, clearance, bend, _),) = turnings_kernel(
+        constants(orbit.params), orbit.period, side, t, states
+    )  # fmt: skip
+    assert clearance == orbit.min_clearance
+    run = vines.simulate(orbit.params, periods=1, **orbit.start())
+    (at,) = run.sample(times=[t[int(flight)] + when])
+    assert at["w_dot"] == pytest.approx(0, abs=1e-13)
+    assert 1 - wall * at["w"] == pytest.approx(clearance, abs=1e-13)
+    assert wall * bend < 0
 
 
 def test_modes_that_coincide_with_the_ball_riding_are_refused_and_beside_it_hold():
