@@ -73,14 +73,14 @@ class Kind:
         others; ``kernels(options, carried)`` where it depends on the stage.
     systems : mapping of str to callable
         What it is for each other system that it can do beside the VI-NES: ``make(balls)`` returns the kind of the same
-        name with the parameters, options, tables and body for that system with so many numbered balls (0 where none
-        has a number). Its options have the field ``system``, which so belongs to the key.
+        name with the parameters, options, tables and body for that system with so many numbered balls or modes (0 where
+        none has a number). Its options have the field ``system``, which so belongs to the key.
     meaningless : mapping of str to str
         Systems that it does not do for what they are, and why; the refusal says so.
     system : str
         The system that it is for.
     balls : int
-        How many balls of that system have numbers.
+        How many balls, or modes, of that system have numbers.
     """
 
     name: str

@@ -55,10 +55,12 @@ def curves(
     sprung: bool = True,
     names: Called | None = None,
     stops: np.ndarray = NO_STOPS,
+    modal: bool = False,
 ) -> None:
     """Send all curves and the marks of the impacts on them.
 
-    Parameters are those of `vines.viewer._scene.cavity`; `impacts` has the columns of ``vines.v1.Impact``.
+    Parameters are those of `vines.viewer._scene.cavity`; `impacts` has the columns of ``vines.v1.Impact``, and with
+    `modal` energies of the frame are those of its modes.
     """
     names = names or Called()
     x1, x2 = states["x1"], states["x2"]
@@ -82,6 +84,9 @@ def curves(
         (names.stored, states["potential"], SPRING),
         (f"{names.body}, µ v2²/2", states["kinetic_2"], BALL),
     ]
+    if modal:
+        energies[1] = ("modes, Σ q'²/2", states["kinetic_1"], LINE)
+        energies[2] = ("springs, Σ ω²(q − γ e)²/2", states["potential"], SPRING)
     if "x3" in states:
         of_frame = states["potential"] - states["spring"]
         energies[2] = ("spring, (x1 − e)²/2", of_frame, SPRING)

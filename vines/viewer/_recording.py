@@ -183,7 +183,7 @@ def _send(rec: rr.RecordingStream, root: str, part: Drawn) -> None:
         mass_beside(rec, f"{root}/cavity", states, clock)
     phase = f"{root}/phase"
     phase_plane(rec, phase, states, impacts, clock, part.parts, widest=widest, walls=names.walls, stops=stops)
-    curves(rec, root, states, impacts, clock, sprung=sprung, names=names, stops=stops)
+    curves(rec, root, states, impacts, clock, sprung=sprung, names=names, stops=stops, modal=log.system == "modes")
     dial(rec, f"{root}/dial", states, impacts, clock)
     lanes(rec, f"{root}/lanes", states, impacts, clock, stops)
     send_impact_log(rec, f"{root}/impacts", impacts, clock)

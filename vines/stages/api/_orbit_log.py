@@ -104,7 +104,7 @@ def _in_flight(orbit: Orbit) -> dict[str, float]:
     """Return where the orbit is in the middle of its longest flight, its time and its phase."""
     p, longest = orbit.params, int(np.argmax(orbit.flight_times))
     ahead = float(orbit.flight_times[longest]) / 2
-    if getattr(p, "balls", 0):
+    if p.system.balls or p.system.modes:
         at = orbit.start()
         t, phase = at.pop("t"), float(orbit.phase[0])
         ahead += float(orbit.t[longest]) - t
