@@ -35,7 +35,7 @@ from vines.orbits._sticking_curve import bound_beside
 from vines.orbits._sticking_ends import end_of
 from vines.orbits._sticking_family import StickingProblem
 from vines.orbits._sticking_family_of_balls import BallsProblem
-from vines.orbits._sticking_of_balls import rides_in_parallel
+from vines.orbits._sticking_of_balls import by_sections
 from vines.orbits._symmetric import SymmetricProblem
 
 __all__ = ["continue_orbit"]
@@ -147,7 +147,7 @@ def continue_orbit(
 def _problem(orbit: Orbit, parameter: str) -> Problem:
     if orbit.word.sticking and rides_capsule(orbit.params):
         return CapsuleSticking(orbit, parameter)
-    if orbit.word.sticking and rides_in_parallel(orbit.params):
+    if orbit.word.sticking and by_sections(orbit.params):
         return BallsProblem(orbit, parameter)
     if slides(orbit.params):
         return SlidProblem(orbit, parameter)

@@ -19,7 +19,7 @@ from vines.orbits._problem import ZeroSet
 from vines.orbits._shooting import shoots
 from vines.orbits._slid import SlidProblem, slid_image, slides
 from vines.orbits._sticking_capsule import capsule_sticks, rides_capsule
-from vines.orbits._sticking_of_balls import mirrored_balls, rides_in_parallel
+from vines.orbits._sticking_of_balls import by_sections, mirrored_balls
 from vines.orbits._sticking_orbit import mirrored_sticking
 from vines.orbits._values import frequency_of
 
@@ -51,7 +51,7 @@ def mirror_image(orbit: Orbit) -> Orbit:
     if orbit.word.sticking and rides_capsule(orbit.params):
         return capsule_sticks(orbit.word.mirror, orbit.params)
     if orbit.word.sticking:
-        return (mirrored_balls if rides_in_parallel(orbit.params) else mirrored_sticking)(orbit)
+        return (mirrored_balls if by_sections(orbit.params) else mirrored_sticking)(orbit)
     if slides(orbit.params):
         return slid_image(orbit)
     word, t, states = orbit.word.mirror, orbit.t + orbit.params.period / 2, -orbit.states

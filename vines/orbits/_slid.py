@@ -40,7 +40,17 @@ from vines.orbits._moved import moved
 from vines.orbits._orbit import Orbit
 from vines.orbits._survey import NO_TURNING
 
-__all__ = ["SlidProblem", "refine_slid", "slid_image", "slid_orbits", "slides"]
+__all__ = [
+    "SlidProblem",
+    "SlidRound",
+    "clearance_of_rests",
+    "first_impact",
+    "refine_slid",
+    "slid_image",
+    "slid_orbit",
+    "slid_orbits",
+    "slides",
+]
 
 Floats = npt.NDArray[np.float64]
 
@@ -81,7 +91,7 @@ def slides(p: Any) -> bool:
     return isinstance(constants(p), FrictionConstants)
 
 
-class _Round:
+class SlidRound:
     """A run from an impact on, over so many contacts of a word.
 
     Attributes
@@ -93,7 +103,7 @@ class _Round:
     """
 
     def __init__(self, word: Word, p: Any, z: Floats, contacts: int) -> None:
-        self.word, self.p = word, p
+        self.word, self.p, self.begun = word, p, z
         self.c = constants(p)
         self.rows, self.places = np.empty((0, col.ROW)), []
         x1, v1, v2, phase = z.tolist()
@@ -121,6 +131,18 @@ class _Round:
                     self.rows, self.places = rows[: i + 1].copy(), places
                     return
 
+    def closing(self, half: bool) -> Floats:
+        """Return by how much x1, v1, v2 and the time at the return of the first contact, or of its image, are off."""
+        x1, v1, v2, t = self.end
+        sign, lasts = (-1.0, 0.5) if half else (1.0, 1.0)
+        z = self.begun
+        return np.array([sign * x1 - z[0], sign * v1 - z[1], sign * v2 - z[2], t - lasts * self.word.p * self.p.period])
+
+    @property
+    def slopes(self) -> Floats:
+        """The tangent map from just after the first contact to just after the last, at fixed times."""
+        return tangent_product(self.c, self.rows, 0, self.places[-1])
+
     @property
     def end(self) -> Floats:
         """x1, v1, v2 and the time at the last contact; nan where the contacts are others."""
@@ -145,7 +167,7 @@ class SlidProblem:
         self._fixed = orbit.params
         breaks = parameter in orbit.params.system.mirror.broken_by
         self._half = orbit.symmetric and not breaks if symmetric is None else symmetric
-        self.start = np.append(_before(orbit), orbit.params.as_dict()[parameter])
+        self.start = np.append(first_impact(orbit), orbit.params.as_dict()[parameter])
 
     def equations(self, y: Floats) -> tuple[Floats, Floats]:
         """Return what does not close, shape (4,), and its derivatives, (4, 5); nan where the word does not follow."""
@@ -167,24 +189,20 @@ class SlidProblem:
 
     def orbit(self, y: Floats) -> Orbit:
         """Return the orbit of a solution."""
-        found = _assembled(self.word, self._fixed.replace(**{self.parameter: float(y[-1])}), y[:4])
+        found = slid_orbit(self.word, self._fixed.replace(**{self.parameter: float(y[-1])}), y[:4])
         if found is None:
             raise OrbitNotFound(f"the {self.word} branch ends at {self.parameter} = {y[-1]:.9g}; stop before")
         return found
 
 
-def _before(orbit: Orbit) -> Floats:
+def first_impact(orbit: Orbit) -> Floats:
     """Return x1, v1, v2 and the phase of the first impact; one turn more: the size of unknowns sets that of steps."""
     x1, v1, _, v2 = orbit.states[0]
     return np.array([x1, v1, v2, orbit.phase[0] + 2 * math.pi])
 
 
 def _defect(word: Word, p: Any, z: Floats, half: bool) -> Floats:
-    """Return by how much x1, v1, v2 and the time at the return of the first contact, or of its image, are off."""
-    contacts = len(word) // 2 if half else len(word)
-    x1, v1, v2, t = _Round(word, p, z, contacts).end
-    sign, lasts = (-1.0, 0.5) if half else (1.0, 1.0)
-    return np.array([sign * x1 - z[0], sign * v1 - z[1], sign * v2 - z[2], t - lasts * word.p * p.period])
+    return SlidRound(word, p, z, len(word) // 2 if half else len(word)).closing(half)
 
 
 def _solved(word: Word, p: Any, z: Floats) -> Floats | None:
@@ -209,9 +227,9 @@ def _solved(word: Word, p: Any, z: Floats) -> Floats | None:
     return None
 
 
-def _assembled(word: Word, p: Any, z: Floats, remark: str = "") -> Orbit | None:
+def slid_orbit(word: Word, p: Any, z: Floats, remark: str = "") -> Orbit | None:
     """Return the orbit with this first impact, None if the contacts are not those of the word."""
-    way = _Round(word, p, z, len(word))
+    way = SlidRound(word, p, z, len(word))
     if not way.places:
         return None
     rows, places, c = way.rows, way.places, way.c
@@ -238,7 +256,7 @@ def _assembled(word: Word, p: Any, z: Floats, remark: str = "") -> Orbit | None:
         half_multipliers=halves,
         symmetric=symmetric,
         admissible=True,
-        min_clearance=_clearance(rows),
+        min_clearance=clearance_of_rests(rows),
         violation_time=math.nan,
         violation_side=0,
         residual=float(np.abs(np.array([x1, v1, v2]) - z[:3]).max()),
@@ -247,7 +265,7 @@ def _assembled(word: Word, p: Any, z: Floats, remark: str = "") -> Orbit | None:
     )
 
 
-def _clearance(rows: Floats) -> float:
+def clearance_of_rests(rows: Floats) -> float:
     """Return the least distance of a turn or stop to the wall that the ball came towards."""
     least = NO_TURNING
     for row in rows[1:]:
@@ -283,7 +301,7 @@ def slid_orbits(word: Word, p: Any) -> tuple[list[Orbit], str]:
         run = simulate(p, **start, periods=_PERIODS, max_impacts_per_period=2000)
         for guess in _guesses(word, p, run)[:2]:
             z = _solved(word, p, guess)
-            orbit = None if z is None else _assembled(word, p, z, REMARK)
+            orbit = None if z is None else slid_orbit(word, p, z, REMARK)
             if orbit is not None and not any(same(each, orbit.t, orbit.states) for each in found):
                 found.append(orbit)
     return found, REMARK
@@ -312,7 +330,7 @@ def refine_slid(word: Word, p: Any, guess: Any) -> Orbit:
             )
         first = first * [1.0, 1.0, 1.0, p.Omega]
     z = _solved(word, p, first)
-    orbit = None if z is None else _assembled(word, p, z)
+    orbit = None if z is None else slid_orbit(word, p, z)
     if orbit is None:
         raise OrbitNotFound(f"no {word} orbit from this guess at {p}; give a nearer one, or look what a run settles to")
     return orbit
@@ -324,6 +342,6 @@ def slid_image(orbit: Orbit) -> Orbit:
     sides = [-side for side in orbit.word.sides]
     k = next(k for k in range(len(sides)) if tuple(sides[k:] + sides[:k]) == word.sides)
     x1, v1, _, v2 = -orbit.states[k]
-    found = _assembled(word, orbit.params, np.array([x1, v1, v2, orbit.phase[k] + math.pi]), orbit.remark)
+    found = slid_orbit(word, orbit.params, np.array([x1, v1, v2, orbit.phase[k] + math.pi]), orbit.remark)
     assert found is not None
     return found

@@ -15,6 +15,7 @@ import numpy as np
 
 from vines.orbits._conditions import TIE, tie_margin
 from vines.orbits._problem import Point
+from vines.orbits._riding_alone import only_held
 
 __all__ = [
     "GRAZING",
@@ -100,16 +101,22 @@ def chatter_exponent(r: float) -> float:
 
 def _speeds(point: Point) -> float:
     orbit = point.orbit
-    return float(min(np.min(orbit.side * orbit.w_dot), np.min(orbit.spells["slowest"])))
+    # A ball that stops in mid-cavity has no speed, and always so.
+    speeds = (orbit.side * orbit.w_dot)[orbit.side != 0]
+    return float(min(np.min(speeds), np.min(orbit.spells["slowest"])))
 
 
 def _stick(point: Point) -> float:
     """Return the length of the shortest spell, to the power with which it falls as the distance to its end.
 
-    On the curve of such an end spells without length are not those that end next.
+    On the curve of such an end spells without length are not those that end next. With friction hops end where it
+    alone would hold the ball, and the time left until then falls as that distance itself.
     """
-    spells, r = point.orbit.spells, point.orbit.params.r
+    spells, p = point.orbit.spells, point.orbit.params
+    r = p.r
     lengths = spells["t_release"] - spells["t_start"]
+    if getattr(p, "f", 0.0) > 0:
+        return float(np.min(lengths - [only_held(p, spell) for spell in spells]))
     shortest = float(np.min(lengths[lengths > 0], initial=math.inf))
     if isinstance(r, tuple):
         ball = point.orbit.word.balls[int(spells["contact"][np.argmin(lengths)])]

@@ -18,7 +18,7 @@ from vines.orbits._orbit import Orbit
 from vines.orbits._problem import Problem
 from vines.orbits._sticking_family import StickingProblem
 from vines.orbits._sticking_family_of_balls import BallsProblem
-from vines.orbits._sticking_of_balls import rides_in_parallel
+from vines.orbits._sticking_of_balls import by_sections
 from vines.orbits._sticking_search import refine_sticking
 from vines.orbits._sticking_search_of_balls import refine_balls
 
@@ -98,7 +98,7 @@ def _unfolded(bifurcation: Bifurcation) -> Problem:
         return family_through(unfolded(bifurcation.type, orbit), parameter, symmetric=False)
     twice = bifurcation.type == "period_doubling"
     word = Word(f"{orbit.word.letters * 2}/{2 * orbit.word.p}T") if twice else orbit.word
-    form = BallsProblem if rides_in_parallel(orbit.params) else StickingProblem
+    form = BallsProblem if by_sections(orbit.params) else StickingProblem
     return form(orbit, parameter, word=word, symmetric=False)
 
 
@@ -143,7 +143,7 @@ def _step_off(problem: Problem, step: float) -> Orbit | None:
 def _solver(orbit: Orbit) -> Callable[[Word, Any, Orbit], Orbit]:
     if not orbit.word.sticking:
         return refine
-    return refine_balls if rides_in_parallel(orbit.params) else refine_sticking
+    return refine_balls if by_sections(orbit.params) else refine_sticking
 
 
 def _size(p: Any) -> float:
