@@ -197,7 +197,7 @@ class _Branch:
             only_inside=True,
             is_on=None if self.symmetric or origin(self.orbit, _ELSEWHERE) else self._is_on,
         ).follow(here, self._record, self.max_points)
-        if end == "lost" and self.orbit.word.sticking:
+        if end == "lost" and (self.orbit.word.sticking or slides(self.orbit.params)):
             end = self._ended() or end
         return Branch(
             self.problem.word,

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 import numpy.typing as npt
 
@@ -10,11 +12,16 @@ from vines.orbits._chain_curve import second_compound
 from vines.orbits._curve_equations import CurveEquations
 from vines.orbits._moved import moved
 from vines.orbits._orbit import Orbit
-from vines.orbits._slid import SlidRound, first_impact, slid_orbit
+from vines.orbits._problem import Point
+from vines.orbits._slid import SlidRound, first_impact, slid_again
+from vines.orbits._sticking_ends import what_vanishes
 
 __all__ = ["SlidCurve"]
 
 Floats = npt.NDArray[np.float64]
+
+_MOVES = 4.0
+"""By how many of its last moves farther a curve may end where a margin runs out: the last ones are short."""
 
 _FOLLOWED = ("fold", "period_doubling", "symmetry_breaking", "neimark_sacker")
 
@@ -55,11 +62,11 @@ class SlidCurve(CurveEquations):
         way = None if p is None else SlidRound(self.word, p, y[:4].copy(), self._contacts)
         if way is None or not way.places:
             return np.full(5, np.nan)
-        return np.append(way.closing(self.symmetric), self._condition(way.slopes))
+        return np.append(way.closing(self.symmetric), self._condition(way.tangent))
 
-    def _condition(self, slopes: Floats) -> float:
+    def _condition(self, tangent: Floats) -> float:
         """Return det(I - M), det(I + M) or det(I - M∧M), over a power of the size of M."""
-        M = -slopes if self.symmetric else slopes
+        M = -tangent if self.symmetric else tangent
         size = 1.0 + float(np.linalg.norm(M))
         if self.kind == "neimark_sacker":
             return float(np.linalg.det(np.eye(6) - second_compound(M))) / size**2
@@ -74,10 +81,12 @@ class SlidCurve(CurveEquations):
             If other contacts come.
         """
         p = moved(self._fixed, dict(zip(self.names, y[-2:], strict=True)))
-        found = None if p is None else slid_orbit(self.word, p, y[:4])
-        if found is None:
-            raise OrbitNotFound(f"the {self.word} orbit is lost next to a {self.kind}; follow it with a smaller step")
-        return found
+        return slid_again(self.word, p, y[:4])
+
+    def runs_out(self, points: Sequence[Point]) -> str | None:
+        """Return what the orbits of the curve need that runs out just behind its last point, None if nothing does."""
+        found = what_vanishes(points[-2], points[-1], _MOVES) if len(points) > 1 else None
+        return None if found is None else found[0]
 
     def bend(self, y: Floats) -> float:
         """Return nan: nothing touches."""
