@@ -242,6 +242,7 @@ def test_a_family_ends_where_its_chatter_does(p, within, model):
         find_orbit("L*R*", p.replace(A=end - within), guess=branch.orbits[-1])
 
 
+@pytest.mark.full
 def test_a_word_of_one_wall_with_friction_and_what_is_refused():
     p = Friction(mu=0.1738, A=0.729, Omega=0.5817, r=0.0706, lam=0.0468, f=0.1522, G=0.05)
     attractor = vines.settle(p, lyapunov=False, errors=False)

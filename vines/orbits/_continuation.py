@@ -50,6 +50,9 @@ _ELSEWHERE = 1e-6
 _EXTRAPOLATED = 1e-5
 """Most by which an extrapolated end may be wrong, in ranges of the parameter."""
 
+_BESIDE = 1e-4
+"""Length of a step, next to an end of a family beyond which its map does not exist, that may be of rounding alone."""
+
 _TOLERANCE = 1e-14
 """Of the root of a defining equation, as a fraction of the step in which it lies."""
 
@@ -197,7 +200,7 @@ class _Branch:
             only_inside=True,
             is_on=None if self.symmetric or origin(self.orbit, _ELSEWHERE) else self._is_on,
         ).follow(here, self._record, self.max_points)
-        if end == "lost" and (self.orbit.word.sticking or slides(self.orbit.params)):
+        if end == "lost" and self._ends_by_itself:
             end = self._ended() or end
         return Branch(
             self.problem.word,
@@ -207,6 +210,11 @@ class _Branch:
             tuple(self.events),
             ("range", end),
         )
+
+    @property
+    def _ends_by_itself(self) -> bool:
+        """Whether the orbits are those of a map that does not exist beyond the end of the family."""
+        return bool(self.orbit.word.sticking) or slides(self.orbit.params)
 
     def _is_on(self, point: Point) -> bool:
         """Say whether a point is not on the family that this one comes out of, whose orbits solve its equations too."""
@@ -264,6 +272,16 @@ class _Branch:
         if not (math.isfinite(first) and math.isfinite(second)) or (first > 0) == (second > 0):
             return None
         chord = Chord(self.curve, here, there)
+        try:
+            return self._root(condition, chord, first)
+        except OrbitNotFound:
+            far = float(np.linalg.norm((there.y - here.y) / self.curve.scale))
+            if self._ends_by_itself and (condition.type in _MARGINS or far < _BESIDE):
+                # Next to the end, on one side of which no equations hold; steps get short there.
+                return None
+            raise
+
+    def _root(self, condition: Condition, chord: Chord, first: float) -> tuple[float, str, Point]:
         try:
             root = chord.root(condition.function, _TOLERANCE)
         except OrbitNotFound:

@@ -18,7 +18,7 @@ import numpy.typing as npt
 from vines.dynamics.kernels import constants, room_of, segment_state
 from vines.dynamics.kernels import rows as col
 from vines.orbits._orbit import Orbit
-from vines.orbits._release_of_balls import run_round
+from vines.orbits._release_of_balls import force_slope, run_round
 from vines.orbits._slid import SlidRound, first_impact
 
 __all__ = ["RESTS", "rest_margins"]
@@ -31,8 +31,8 @@ ADDING = "adding_sliding"
 TOUCHING = "grazing_sliding"
 
 RESTS = (CROSSING, SWITCHING, ADDING, TOUCHING)
-"""Types of ends of families with friction: a turn becomes a stop or a stop a turn; what stopped would go on as it came;
-friction is only just enough in the middle of a stop; the ball all but stops on its way."""
+"""Types of ends of families with friction: a turn becomes a stop, or a stop a turn; a ball stops that turned first, and
+stopped soon after; friction is only just enough inside a stop; the ball stops on its way, and goes on."""
 
 _PARTS = 48
 """Parts of a stop, or of a slide, in which an extremum is looked for."""
@@ -74,16 +74,25 @@ def _margins(p: Any, rows: Floats) -> Iterator[tuple[str, float]]:
     for row, following in pairwise(rows):
         lasts = float(following[col.TAU])
         if row[col.KIND] == col.STOP:
-            against = -row[col.SIDE] * pull(row, 0.0)
-            yield CROSSING, held - against
-            yield SWITCHING, held + against
+            kind, against = _met(p, row, row[col.SIDE], pull(row, 0.0))
+            yield kind, held - against
+            yield TOUCHING, held + against
             for sign in (1.0, -1.0):
                 yield ADDING, held - _largest(lambda tau, row=row, sign=sign: sign * pull(row, tau), lasts)
         elif row[col.KIND] == col.SLIDE and row[col.RUN] == 0.0:
-            yield CROSSING, abs(pull(row, 0.0)) - held
+            kind, against = _met(p, row, -row[col.SIDE], pull(row, 0.0))
+            yield kind, against - held
         if row[col.MODE] == 0.0 and lasts > 0.0:
             sense = math.copysign(1.0, speed(row, 0.5 * lasts))
             yield TOUCHING, -_largest(lambda tau, row=row, sense=sense: -sense * speed(row, tau), lasts)
+
+
+def _met(p: Any, row: Floats, came: float, pull: float) -> tuple[str, float]:
+    """Return what it is if the pull on a ball that comes to rest is at the limit, and the pull against its motion."""
+    a = pull / (1.0 + p.mu) - p.G
+    rate = force_slope(p, float(row[col.PHASE])) - p.lam * a - float(row[col.V1])
+    # A pull that grows takes the ball along soon, and a stop is short; one that falls lets it stop soon if it turned.
+    return (CROSSING if -came * rate > 0.0 else SWITCHING), -came * pull
 
 
 def _largest(function: Callable[[float], float], lasts: float) -> float:
