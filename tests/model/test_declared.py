@@ -17,6 +17,7 @@ ALL = [
         ("cubic_barriers", 0),
         ("drag", 0),
         ("friction", 0),
+        ("hybrid", 0),
         ("impact_pair", 0),
         ("parallel", 1),
         ("parallel", 8),

@@ -33,7 +33,7 @@ from vines.dynamics.taylor._held import held, ride
 from vines.dynamics.taylor._series import W, X, at, bounds, coefficients, derivatives_at, expand
 from vines.kernels import linked_njit, loop_njit, zero_vector
 
-__all__ = ["TAYLOR_TOTALS", "VISCOUS_LOSS"]
+__all__ = ["NODES", "TAYLOR_TOTALS", "VISCOUS_LOSS", "WEIGHTS", "peak"]
 
 VISCOUS_LOSS = TOTALS
 """Entry of the totals of a window behind those of one ball: what of the damper loss the damper of the spring takes."""
@@ -72,7 +72,7 @@ def _segment_state(c, row, tau):
 
 
 @loop_njit
-def _peak(a, order, h, best):
+def peak(a, order, h, best):
     """Return the largest |x1| over a step if it is above `best`, and when it is reached, else (best, -1)."""
     bend, third, _ = bounds(a, X, order, h)
     when = -1.0
@@ -148,7 +148,7 @@ def _add_segment(c, out, mode, begins, x1, v1, x2, v2, phase, length):
                 work += weight * (base - x + f.lam * (speed - v)) * speed
                 loss += weight * (v - speed) * (v - speed)
                 viscous += weight * rate * rate
-            best, when = _peak(a, f.order, h, out[entry.MAX_ABS_X1])
+            best, when = peak(a, f.order, h, out[entry.MAX_ABS_X1])
             if when >= 0.0:
                 out[entry.MAX_ABS_X1], out[entry.T_MAX_ABS_X1] = best, begins + done + when
             x1, v1 = at(a, X, f.order, h)

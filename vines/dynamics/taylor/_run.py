@@ -15,7 +15,7 @@ from vines.dynamics._measures import Measures, of_the_frame
 from vines.dynamics._room import constants, room_of
 from vines.dynamics._trajectory import SAMPLE, Table, Trajectory
 from vines.dynamics.taylor._energies import VISCOUS_LOSS
-from vines.dynamics.taylor._samples import sample_flights
+from vines.dynamics.taylor._samples import OF_ONE_BALL, sample_flights
 
 __all__ = ["TaylorMeasures", "TaylorRun", "spring_energy", "taylor_measures"]
 
@@ -48,9 +48,9 @@ def taylor_measures(p: Any, totals: npt.NDArray[np.float64]) -> TaylorMeasures:
 TAYLOR_SAMPLE = np.dtype([*SAMPLE.descr, ("spring", "f8"), ("viscous_loss", "f8")])
 
 
-def spring_energy(p: Any, w: Any) -> Any:
-    """Return the energy of the spring at a gap."""
-    return p.mu * w**2 * (0.5 * p.k1 + 0.25 * p.k3 * w**2)
+def spring_energy(p: Any, mass: float, w: Any) -> Any:
+    """Return the energy of the spring of a mass at a gap."""
+    return mass * w**2 * (0.5 * p.k1 + 0.25 * p.k3 * w**2)
 
 
 class TaylorRun(Trajectory):
@@ -60,13 +60,18 @@ class TaylorRun(Trajectory):
     damper loss since the start of the run that the damper beside it took.
     """
 
-    def _rest_of_chatter(self, begins: npt.NDArray[np.int64]) -> npt.NDArray[np.float64]:
+    def _push(self, rows: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+        """Return (1 + mu) times how a wall that the mass were to ride on would press, towards L."""
+        p = self.params
+        push = room_of(p).push(p, rows[:, col.X1], rows[:, col.V1], rows[:, col.PHASE])
         # The spring pushes too, which `Room.push` of one wall alone could not say.
+        return push - rows[:, col.SIDE] * (1 + p.mu) * (p.k1 + p.k3)
+
+    def _rest_of_chatter(self, begins: npt.NDArray[np.int64]) -> npt.NDArray[np.float64]:
         p, rows = self.params, self.rows[begins]
         side = rows[:, col.SIDE]
         speed = np.maximum(side * (rows[:, col.V2] - rows[:, col.V1]), 0.0)
-        push = side * room_of(p).push(p, rows[:, col.X1], rows[:, col.V1], rows[:, col.PHASE])
-        push = push - (1 + p.mu) * (p.k1 + p.k3)
+        push = side * self._push(rows)
         lasts = np.zeros(len(rows))
         good = (push > 0) & (p.r < 1)
         lasts[good] = 2 * speed[good] / (push[good] * (1 - p.r))
@@ -81,16 +86,17 @@ class TaylorRun(Trajectory):
         before: npt.NDArray[np.bool_],
     ) -> Table:
         p, room = self.params, room_of(self.params)
-        raw = np.empty((len(t), 10))
-        sample_flights(constants(p), self.rows, segment, tau, before, raw)
-        out = np.empty(len(t), dtype=TAYLOR_SAMPLE)
+        raw = np.empty((len(t), OF_ONE_BALL + len(room.beside)))
+        sums = np.zeros(room.layout(p).totals)
+        sample_flights(constants(p), self.rows, segment, tau, before, sums, raw)
+        out = np.empty(len(t), dtype=[*TAYLOR_SAMPLE.descr, *((name, "f8") for name in room.beside)])
         out["t"] = t
         names = ("x1", "v1", "x2", "v2", "phase", "stuck", "base_work", "damper_loss", "impact_loss", "viscous_loss")
-        for k, name in enumerate(names):
+        for k, name in enumerate((*names, *room.beside)):
             out[name] = raw[:, k]
         out["w"] = out["x1"] - out["x2"]
         out["w_dot"] = out["v1"] - out["v2"]
         out["base"] = room.base(p, out["phase"])
         out["kinetic_1"], out["kinetic_2"], out["potential"] = room.stored(p, out)
-        out["spring"] = spring_energy(p, out["w"])
+        out["spring"] = room.spring(p, out)
         return out
