@@ -1,7 +1,8 @@
 """One step of the series: coefficients by recurrences, how far they reach, and the polynomial they are.
 
 ``x1'' = F - lam x1' - x1 - mu f`` and ``w'' = x1'' - f`` with ``f = k1 w + k3 w³ + l2 w'``. The square and the cube of
-w are Cauchy products of their series; the force of the base is known in closed form.
+w are Cauchy products of their series; the force of the base is known in closed form. That is the first field; other
+fields bring equations of their own for the type of their constants, in the same room.
 """
 
 from __future__ import annotations
@@ -9,8 +10,8 @@ from __future__ import annotations
 import math
 
 from vines.dynamics._sincos import sincos
-from vines.dynamics.taylor._constants import LENGTH, ORDER, ROOM
-from vines.kernels import doubles_at, fused_njit, loop_njit, njit
+from vines.dynamics.taylor._constants import LENGTH, ORDER, ROOM, Field
+from vines.kernels import by_type, doubles_at, fused_njit, loop_njit, njit
 
 __all__ = [
     "W",
@@ -41,6 +42,7 @@ def coefficients(f):
     return doubles_at(f.room, ROOM)
 
 
+@by_type(Field)
 @loop_njit
 def expand(f, x, v, w, u, phase):
     """Fill the room with the series of x1 and w from a state, and return how long the step may be.
@@ -157,6 +159,7 @@ def rate(f, w, u):
     return f.k1 * w + f.k3 * w * w * w + f.l2 * u
 
 
+@by_type(Field)
 @fused_njit
 def slopes(f, x, v, w, u, phase):
     """Return x1'' and x2'' of a flight at a state."""
@@ -165,6 +168,7 @@ def slopes(f, x, v, w, u, phase):
     return f.A * (sine + f.lam * f.Omega * cosine) - f.lam * v - x - f.mu * spring, spring
 
 
+@by_type(Field)
 @loop_njit
 def expand_disturbances(f, h, Y):
     """Carry disturbances of (x1, x1', w, w'), the columns of Y, over h of the step that the room holds.
