@@ -178,7 +178,7 @@ def _searched(word: Word, p: Any) -> Orbits:
 
 def _shot(word: Word, p: Any) -> Orbits:
     """Return the orbits of a word that are shot for."""
-    if not p.walls:
+    if not getattr(p, "walls", True):
         raise ParameterError("walls is 0: a word tells of impacts; vines.settle finds what there is without barriers")
     found, tried = gather_shots(word, p, all_orbits(word, of_the_vi_nes(p)))
     gathered = _Gathered(word, p)

@@ -100,7 +100,7 @@ def shot_from(word: Word, p: Any, guess: object) -> tuple[bool, Floats, float, F
     ParameterError
         If there are no barriers, or the guess is neither an orbit nor an (N, 5) array of t, x1, v1, x2, v2.
     """
-    if not p.walls:
+    if not getattr(p, "walls", True):
         raise ParameterError("walls is 0: a word tells of impacts; vines.settle finds what there is without barriers")
     if isinstance(guess, Orbit):
         return shot(word, p, guess.t * frequency_of(guess.params) / frequency_of(p), guess.states)

@@ -1,4 +1,4 @@
-"""Orbits whose flights no closed form gives: from simulations, and from those of the VI-NES as the spring grows."""
+"""Orbits whose flights no closed form gives: from simulations, and from those of the VI-NES as the springs grow."""
 
 from __future__ import annotations
 
@@ -19,10 +19,11 @@ __all__ = ["gather_shots", "of_the_vi_nes"]
 
 Floats = npt.NDArray[np.float64]
 
-_SPRING = ("k1", "k3", "l2")
+_SPRINGS = ("k1", "k3", "l2", "alpha")
+"""Parameters without which a system is the VI-NES."""
 
 _LEAST = 1.0 / 256.0
-"""Smallest step, as a part of the spring, in which an orbit is followed from that of the VI-NES."""
+"""Smallest step, as a part of the springs, in which an orbit is followed from that of the VI-NES."""
 
 
 def gather_shots(word: Word, p: Any, likes: list[Orbit]) -> tuple[list[Orbit], int]:
@@ -43,24 +44,24 @@ def _starts(word: Word, p: Any, likes: list[Orbit]) -> Iterator[tuple[Floats, Fl
     for times, hits in stretches(word, p):
         yield times, np.stack([hits[name] for name in ("x1", "v1", "x2", "v2")], axis=1)
     for orbit in likes:
-        followed = _with_spring(word, p, orbit)
+        followed = _with_springs(word, p, orbit)
         if followed is not None:
             yield followed
 
 
 def of_the_vi_nes(p: Any) -> Params:
-    """Return the parameters of the same system without its spring."""
+    """Return the parameters of the same system without its springs."""
     values = p.as_dict()
     return Params(**{name: values[name] for name in PARAMETER_NAMES})
 
 
-def _with_spring(word: Word, p: Any, orbit: Orbit) -> tuple[Floats, Floats] | None:
-    """Return times and states of an orbit of the VI-NES followed as the spring grows to its own, None if it is lost."""
+def _with_springs(word: Word, p: Any, orbit: Orbit) -> tuple[Floats, Floats] | None:
+    """Return times and states of an orbit of the VI-NES followed as the springs grow to their own, None if lost."""
     values = p.as_dict()
     t, states, done, step = orbit.t, orbit.states, 0.0, 0.25
     while done < 1.0:
         share = min(done + step, 1.0)
-        there = p.replace(**{name: share * values[name] for name in _SPRING})
+        there = p.replace(**{name: share * values[name] for name in _SPRINGS if name in values})
         converged, near, _, other = shot(word, there, t, states)
         if converged and proper(word, word.p * p.period, near, other):
             t, states, done, step = near, other, share, 2 * step

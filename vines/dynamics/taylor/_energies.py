@@ -10,8 +10,8 @@ import numpy as np
 
 from vines.dynamics import _totals as entry
 from vines.dynamics._advance import A_V1, A_V2, MODE, PHASE, X1, X2
-from vines.dynamics._flight import advance_phase, phasors, turn
 from vines.dynamics._constants import Oscillator
+from vines.dynamics._flight import advance_phase, phasors, turn
 from vines.dynamics._integrals import energies_between, peak_between
 from vines.dynamics._sincos import sincos
 from vines.dynamics._totals import (
@@ -34,7 +34,7 @@ from vines.dynamics.taylor._held import held, ride
 from vines.dynamics.taylor._series import W, X, at, bounds, coefficients, derivatives_at, expand
 from vines.kernels import by_type, fused_njit, linked_njit, loop_njit, njit, zero_vector
 
-__all__ = ["TAYLOR_TOTALS", "VISCOUS_LOSS", "by_series", "held_energy", "ride_integrals", "viscosity"]
+__all__ = ["TAYLOR_TOTALS", "VISCOUS_LOSS", "by_series", "held_energy", "largest_of", "ride_integrals", "viscosity"]
 
 VISCOUS_LOSS = TOTALS
 """Entry of the totals of a window behind those of one ball: what of the damper loss the damper of the spring takes."""
@@ -87,7 +87,7 @@ def _segment_state(c, row, tau):
 
 
 @loop_njit
-def _peak(a, order, h, best):
+def largest_of(a, order, h, best):
     """Return the largest |x1| over a step if it is above `best`, and when it is reached, else (best, -1)."""
     bend, third, _ = bounds(a, X, order, h)
     when = -1.0
@@ -166,7 +166,7 @@ def by_series(f, out, begins, x1, v1, w, u, phase, length):
             work += weight * (base - x + f.lam * (speed - v)) * speed
             loss += weight * (v - speed) * (v - speed)
             viscous += weight * rate * rate
-        best, when = _peak(a, f.order, h, out[entry.MAX_ABS_X1])
+        best, when = largest_of(a, f.order, h, out[entry.MAX_ABS_X1])
         if when >= 0.0:
             out[entry.MAX_ABS_X1], out[entry.T_MAX_ABS_X1] = best, begins + done + when
         x1, v1 = at(a, X, f.order, h)

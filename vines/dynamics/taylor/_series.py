@@ -14,6 +14,9 @@ from vines.dynamics.taylor._constants import LENGTH, ORDER, ROOM, Field
 from vines.kernels import by_type, doubles_at, fused_njit, loop_njit, njit
 
 __all__ = [
+    "DIRECTIONS",
+    "DISTURBED",
+    "SQUARE",
     "W",
     "X",
     "at",

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from vines.dynamics._advance import A_V1, A_V2, IMPACT, KIND, MODE, PHASE, SIDE, STICK, V1, V2, X1, X2
+from vines.dynamics._constants import Oscillator
 from vines.dynamics._flight import advance_phase
 from vines.dynamics._impact_law import after_impact_kernel
 from vines.dynamics._tangent import carry_basis, directions, jump_basis, offset, swing, swing_of
 from vines.dynamics._travel import merged, struck_under
-from vines.dynamics._constants import Oscillator
 from vines.dynamics.taylor._constants import TaylorConstants
 from vines.dynamics.taylor._series import W, X, at, coefficients, expand, expand_disturbances, slopes
 from vines.kernels import by_type, fused_njit, linked_njit, loop_njit, njit
