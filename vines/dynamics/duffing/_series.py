@@ -36,6 +36,26 @@ def _product(a, first, second, k):
     return even + odd
 
 
+@fused_njit
+def _square(a, k):
+    """Return coefficient k of the square of the series of x1, each pair of factors once."""
+    even = 0.0
+    odd = 0.0
+    i = 0
+    j = k
+    while i + 1 < j - 1:
+        even += a[X + i] * a[X + j]
+        odd += a[X + i + 1] * a[X + j - 1]
+        i += 2
+        j -= 2
+    while i < j:
+        even += a[X + i] * a[X + j]
+        i += 1
+        j -= 1
+    found = 2.0 * (even + odd)
+    return found + a[X + i] * a[X + i] if i == j else found
+
+
 @expand.register(DuffingField)
 @loop_njit
 def _expand(f, x, v, w, u, phase):
@@ -47,7 +67,7 @@ def _expand(f, x, v, w, u, phase):
     later = f.A * f.Omega * (cosine - lam * f.Omega * sine)
     turn = f.Omega * f.Omega
     for k in range(f.order - 1):
-        a[SQUARE + k] = _product(a, X, X, k)
+        a[SQUARE + k] = _square(a, k)
         share = 1.0 / ((k + 1.0) * (k + 2.0))
         cube = _product(a, SQUARE, X, k)
         own = inverse * (force - lam * (k + 1) * a[X + k + 1] - a[X + k] - alpha * cube)
