@@ -50,10 +50,12 @@ def curves(
     clock: Clock,
     *,
     sprung: bool = True,
+    springs: str = "spring, (x1 − e)²/2",
 ) -> None:
     """Send all curves and the marks of the impacts on them.
 
-    Parameters are those of `vines.viewer._scene.cavity`; `impacts` has the columns of ``vines.v1.Impact``.
+    Parameters are those of `vines.viewer._scene.cavity`; `impacts` has the columns of ``vines.v1.Impact``; `springs` is
+    what the potential energy is called.
     """
     x1, x2 = states["x1"], states["x2"]
     indexes = clock.columns(states["t"])
@@ -69,7 +71,7 @@ def curves(
     energies: list[tuple[str, np.ndarray, _Colour]] = [
         ("total", _stored(states), MASS),
         ("mass, v1²/2", states["kinetic_1"], LINE),
-        ("spring, (x1 − e)²/2", states["potential"], SPRING),
+        (springs, states["potential"], SPRING),
         ("ball, µ v2²/2", states["kinetic_2"], BALL),
     ]
     if not sprung:  # a capsule that is driven stores nothing

@@ -27,7 +27,7 @@ from vines.viewer._layout import Shown, blueprint
 from vines.viewer._overlay import check_overlay, overlaid, send_overlay
 from vines.viewer._remarks import is_foreign
 from vines.viewer._rig import is_rig, send_rig, shown_rig
-from vines.viewer._scene import DRIVEN, cavity, phase_plane
+from vines.viewer._scene import CUBIC, DRIVEN, cavity, phase_plane
 from vines.viewer._text import about, send_impact_log
 
 __all__ = ["APPLICATION", "send_run", "write_recording"]
@@ -169,7 +169,8 @@ def _send(rec: rr.RecordingStream, root: str, part: Drawn) -> None:
     sprung = log.system not in DRIVEN
     cavity(rec, f"{root}/cavity", states, clock, sprung=sprung)
     phase_plane(rec, f"{root}/phase", states, impacts, clock, part.parts)
-    curves(rec, root, states, impacts, clock, sprung=sprung)
+    springs = "springs" if log.system in CUBIC else "spring, (x1 − e)²/2"
+    curves(rec, root, states, impacts, clock, sprung=sprung, springs=springs)
     dial(rec, f"{root}/dial", states, impacts, clock)
     lanes(rec, f"{root}/lanes", states, impacts, clock)
     send_impact_log(rec, f"{root}/impacts", impacts, clock)

@@ -14,6 +14,7 @@ from vines.viewer._clock import Clock
 from vines.viewer._style import BALL, BASE, GRID, LEFT, LINE, MASS, RIGHT, SPRING, TRAIL
 
 __all__ = [
+    "CUBIC",
     "DRIVEN",
     "PHASE_BOUNDS",
     "cavity",
@@ -27,6 +28,10 @@ __all__ = [
 
 DRIVEN = frozenset({"impact_pair"})
 """Systems whose capsule moves as it is driven: they have neither base nor spring."""
+
+CUBIC = frozenset({"cubic_barriers", "duffing"})
+"""Systems that have a cubic spring beside the linear one."""
+
 _RADIUS = 0.09
 _WALL = 0.07
 _HEIGHT = 0.34
