@@ -18,6 +18,7 @@ ALL = [
         ("drag", 0),
         ("duffing", 0),
         ("friction", 0),
+        ("hybrid", 0),
         ("impact_pair", 0),
         ("parallel", 1),
         ("parallel", 8),

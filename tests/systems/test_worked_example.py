@@ -81,6 +81,7 @@ TOOK = {
         ("vines/orbits/_shots.py", "vines/orbits/_shooting*.py"),
         (),
     ),
+    "hybrid": ("_hybrid", "hybrid", ("vines/orbits/_motions.py",), ()),
 }
 """Of each system: the files that serve it alone, by room."""
 

@@ -42,7 +42,7 @@ class FamilyClassified(Classified):
     def attractor(self, k: int) -> Attractor:
         """Return run k as `settle` would."""
         p = self.params[k]
-        hits = impacts_of(np.empty((0, room_of(p).layout(p).width)), room_of(p).layout(p).width > col.ROW)
+        hits = impacts_of(np.empty((0, room_of(p).layout(p).width)), p)
         kept = hits if self.hits is None else self.hits[k]
         return attractor_from(p, self.verdicts[k], self.totals[k], self.words[k], kept, 0.0, True)
 

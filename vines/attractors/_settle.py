@@ -279,4 +279,4 @@ def settled(p: Any, begin: tuple[Any, Any, Any, Any, float], how: Patience, erro
             spare -= wait
     verdict[v.NUDGED], verdict[v.PERIODS] = nudged, ran - how.window
     word = word_of(sides, int(verdict[v.P]), p) if len(sides) else None
-    return Settled(verdict, totals[0], word, impacts_of(hits, layout.width > col.ROW))
+    return Settled(verdict, totals[0], word, impacts_of(hits, p))

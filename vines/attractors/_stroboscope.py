@@ -1,4 +1,4 @@
-"""What a run by series comes to: a stroboscope where nothing is struck, no closing equations beside it."""
+"""What a run by series comes to: a stroboscope where it hits nothing, no closing equations beside it."""
 
 from __future__ import annotations
 
@@ -9,8 +9,10 @@ from vines.attractors._approach import nearest_orbit
 from vines.attractors._judge import ROUNDING, UNSTABLE, note_drift, without_impact
 from vines.attractors._multipliers import multipliers
 from vines.dynamics.duffing import DuffingField
+from vines.dynamics.hybrid import HybridConstants
+from vines.dynamics.hybrid.kernels import R_V3, R_X3
+from vines.dynamics.kernels import directions, tangent_product
 from vines.dynamics.kernels import rows as col
-from vines.dynamics.kernels import tangent_product
 from vines.dynamics.taylor import Field, TaylorConstants
 from vines.kernels import by_type, cold_njit, complex_vector, new_matrix, njit
 
@@ -27,62 +29,98 @@ def _nearest_orbit(c, rows, kept, p, lag, scale, tolerance):
     return False, math.nan, math.inf, math.inf
 
 
+nearest_orbit.register(HybridConstants)(_nearest_orbit)
+
+
 @njit
-def _apart(rows, i, j, scale):
+def _differs(rows, i, j, columns):
+    """Return the largest difference of two rows in some columns."""
+    away = 0.0
+    for k in columns:
+        away = max(away, abs(rows[i, k] - rows[j, k]))
+    return away
+
+
+@by_type(TaylorConstants)
+@njit
+def _apart(c, rows, i, j):
     """Return how far the states just after two rows are from each other."""
-    away = max(abs(rows[i, col.X1] - rows[j, col.X1]), abs(rows[i, col.A_V1] - rows[j, col.A_V1]))
-    away = max(away, abs(rows[i, col.X2] - rows[j, col.X2]))
-    return max(away, abs(rows[i, col.A_V2] - rows[j, col.A_V2])) / scale
+    return _differs(rows, i, j, (col.X1, col.A_V1, col.X2, col.A_V2))
+
+
+@_apart.register(HybridConstants)
+@njit
+def _apart_beside(c, rows, i, j):
+    # The ball stays where it is.
+    return _differs(rows, i, j, (col.X1, col.A_V1, R_X3, R_V3))
+
+
+@by_type(TaylorConstants)
+@cold_njit
+def _roots(c, rows, first, last, roots):
+    """Fill the multipliers from one row to another, those first that are 1 for any motion; return their number."""
+    return _roots_of(c.field, tangent_product(c, rows, first, last), roots)
+
+
+@by_type(Field)
+@cold_njit
+def _roots_of(f, Y, roots):
+    multipliers(Y, roots)
+    return 0
+
+
+@_roots_of.register(DuffingField)
+@cold_njit
+def _roots_of_a_frame(f, Y, roots):
+    # The ball acts on nothing, and keeps what it is given.
+    frame = new_matrix(2, 2)
+    for i in range(2):
+        for k in range(2):
+            frame[i, k] = Y[i, k]
+    multipliers(frame, roots[2:])
+    roots[0] = roots[1] = 1.0
+    return 2
+
+
+@_roots.register(HybridConstants)
+@cold_njit
+def _roots_beside(c, rows, first, last, roots):
+    Y = tangent_product(c, rows, first, last)
+    # The ball acts on nothing, and keeps what it is given in position and velocity.
+    own = new_matrix(4, 4)
+    for i in range(4):
+        for k in range(4):
+            own[i, k] = Y[i if i < 2 else i + 2, k if k < 2 else k + 2]
+    multipliers(own, roots[2:])
+    roots[0] = roots[1] = 1.0
+    return 2
+
+
+@by_type(TaylorConstants)
+@njit
+def _stays(c, rows, last, verdict):
+    """Say whether what flies freely, if anything does, comes to no wall within sight."""
+    rides = rows[last, col.MODE] != 0.0
+    return _stays_free(c.field, c.period, 0.0 if rides else abs(rows[last, col.A_V2]), verdict)
 
 
 @by_type(Field)
 @njit
-def drifts(f, period, speed, verdict):
-    """Say whether the mass will meet a wall one day though nothing is struck as yet, and note when."""
-    return False
-
-
-@drifts.register(DuffingField)
-@njit
-def _drifts(f, period, speed, verdict):
-    if note_drift(verdict, period, abs(speed)):
-        verdict[v.REASON], verdict[v.REMAINING] = v.NOTHING, math.nan
-        return False
-    verdict[v.REGIME] = v.UNSETTLED
+def _stays_free(f, period, speed, verdict):
     return True
 
 
-@by_type(Field)
+@_stays_free.register(DuffingField)
 @njit
-def neighbours(f, Y, roots):
-    """Fill the multipliers of a repetition, the largest first.
-
-    Returns
-    -------
-    (largest, gap)
-        Of those that tell how far a run is from it: the largest modulus, and the least distance from 1.
-    """
-    largest = multipliers(Y, roots)
-    gap = math.inf
-    for k in range(4):
-        gap = min(gap, abs(1.0 - roots[k]))
-    return largest, gap
+def _ball_stays_free(f, period, speed, verdict):
+    return note_drift(verdict, period, speed)
 
 
-@neighbours.register(DuffingField)
+@_stays.register(HybridConstants)
 @njit
-def _neighbours(f, Y, roots):
-    # A ball at rest may be anywhere, and stays where it is put: only the frame comes to something.
-    frame = new_matrix(2, 2)
-    for i in range(2):
-        for j in range(2):
-            frame[i, j] = Y[i, j]
-    largest = multipliers(frame, roots)
-    gap = min(abs(1.0 - roots[0]), abs(1.0 - roots[1]))
-    first = 2 if largest <= 1.0 else 0
-    roots[first], roots[first + 1] = roots[0], roots[1]
-    roots[2 - first] = roots[3 - first] = 1.0
-    return largest, gap
+def _ball_stays(c, rows, last, verdict):
+    rides = rows[last, col.MODE] != 0.0
+    return note_drift(verdict, c.period, 0.0 if rides else abs(rows[last, col.A_V2]))
 
 
 @without_impact.register(TaylorConstants)
@@ -90,16 +128,17 @@ def _neighbours(f, Y, roots):
 def _without_impact(c, rows, n, tolerance, verdict):
     """Judge a run without impacts by its states once a period, where its flights are started afresh."""
     verdict[v.REGIME], verdict[v.LYAPUNOV_ERROR] = v.NO_IMPACT, 0.0
-    verdict[v.REMAINING] = math.nan
-    if drifts(c.field, c.period, rows[n - 1, col.A_V2], verdict):
-        return
     last = n - 2
+    if not _stays(c, rows, n - 1, verdict):
+        verdict[v.REGIME] = v.UNSETTLED
+        return
+    verdict[v.REMAINING], verdict[v.REASON] = math.nan, v.NOTHING
     scale = 1e-3
     for i in range(last + 1):
         scale = max(scale, abs(rows[i, col.A_V1]), abs(rows[i, col.A_V2]))
     best, nearest = 0, math.inf
     for p in range(1, min(LONGEST, last // 2) + 1):
-        away = _apart(rows, last, last - p, scale)
+        away = _apart(c, rows, last, last - p) / scale
         if away < 0.5 * nearest:
             best, nearest = p, away
         if away <= 2.5 * tolerance:
@@ -109,7 +148,7 @@ def _without_impact(c, rows, n, tolerance, verdict):
     if nearest > 2.5 * tolerance:
         # Whether it comes nearer, and when it will be there.
         before = last // 2
-        earlier = _apart(rows, before, before - best, scale) if before >= best else math.inf
+        earlier = _apart(c, rows, before, before - best) / scale if before >= best else math.inf
         if nearest < 0.9 * earlier < math.inf:
             rate = (nearest / earlier) ** (1.0 / (last - before))
             verdict[v.REGIME] = v.UNSETTLED
@@ -117,12 +156,16 @@ def _without_impact(c, rows, n, tolerance, verdict):
                 math.log(nearest / tolerance) / -math.log(rate), v.COMES, rate,
             )  # fmt: skip
         return
-    roots = complex_vector(4)
-    largest, gap = neighbours(c.field, tangent_product(c, rows, last - best, last), roots)
-    for k in range(4):
+    d = len(directions(c))
+    roots = complex_vector(d)
+    given = _roots(c, rows, last - best, last, roots)
+    largest = abs(roots[given])
+    gap = math.inf
+    for k in range(d):
         size = abs(roots[k])
+        gap = min(gap, abs(1.0 - roots[k])) if k >= given else gap
         verdict[v.EXPONENTS + k] = math.log(size) / (best * c.period) if size > 0.0 else -math.inf
-        verdict[v.EXPONENTS + 4 + k], verdict[v.EXPONENTS + 8 + k] = roots[k].real, roots[k].imag
+        verdict[v.EXPONENTS + d + k], verdict[v.EXPONENTS + 2 * d + k] = roots[k].real, roots[k].imag
     if largest > 1.0 + UNSTABLE:
         verdict[v.REGIME], verdict[v.UNSTABLE] = v.UNSETTLED, 1.0
         verdict[v.REMAINING], verdict[v.REASON], verdict[v.VALUE] = math.inf, v.ON_UNSTABLE, largest
@@ -133,3 +176,6 @@ def _without_impact(c, rows, n, tolerance, verdict):
         verdict[v.REMAINING] = best * math.log(distance / tolerance) / -math.log(largest) if largest < 1.0 else math.inf
         return
     verdict[v.SETTLED], verdict[v.P], verdict[v.REMAINING] = 1.0, best, 0.0
+
+
+without_impact.register(HybridConstants)(_without_impact)

@@ -97,6 +97,7 @@ def describe(orbit: Orbit) -> str:
     """
     from vines.cli._layout import lines
     from vines.dynamics import ball_locked, no_ball
+    from vines.dynamics.kernels import room_of
 
     p, m = orbit.params, orbit.measures
     label = orbit.name if orbit.alias == orbit.name else f"{orbit.name}, in the paper {orbit.alias}"
@@ -121,7 +122,7 @@ def describe(orbit: Orbit) -> str:
             letters, orbit.t, orbit.phase, orbit.flight_times, states, orbit.w_dot, strict=True
         )
     ]
-    head = ["", "t", "phase", "to the next", *STATE_NAMES, "w'"]
+    head = ["", "t", "phase", "to the next", *STATE_NAMES, *room_of(p).beside, "w'"]
     text += ["", "impacts (just before each)", *lines(head, rows, wrap=None)]
     if len(orbit.spells):
         names = ("t_start", "t_release", "phase_start", "phase_release", "x1", "v1")

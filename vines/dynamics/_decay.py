@@ -24,7 +24,8 @@ class Decay:
         and the oscillator below its place without them.
     impact_share, damper_share, frame_share, ball_share : float
         Shares of it that were lost in impacts and in the damper, and that oscillator and ball have at the end; their
-        sum is 1 to rounding. A spring that holds the ball counts with it, a damper beside that spring with the other.
+        sum is 1 to rounding. A spring that holds the ball counts with it, a damper beside that spring with the other;
+        a mass on a spring beside the ball counts as a ball.
     travel_share : float
         Share lost on the ball's way through the cavity, to a coil or by friction; it belongs to that sum.
     times : tuple of float
@@ -103,15 +104,20 @@ def _above_rest(values: dict[str, float], state: dict[str, float]) -> tuple[floa
     down to that end: squares and heights, so that nothing large cancels when little is left.
     """
     pull = values.get("G", 0.0)
+    beside = values.get("mu_n")
     masses = {name.partition("mu")[2]: mass for name, mass in values.items() if name.partition("_")[0] == "mu"}
+    masses.pop("_n", None)
     frame = 0.5 * (state["v1"] ** 2 + (state["x1"] + pull * sum(masses.values())) ** 2)
     balls = 0.0
     for ball, mass in masses.items():
         way = values.get(f"beta{ball}", 1.0) + math.copysign(1.0, pull) * (state[f"x2{ball}"] - state["x1"])
         balls += mass * (0.5 * state[f"v2{ball}"] ** 2 + abs(pull) * way)
     if "k3" in values:
-        square = (state["x1"] - state["x2"]) ** 2
-        balls += values["mu"] * square * (0.5 * values["k1"] + 0.25 * values["k3"] * square)
+        mass, held = (values["mu"], "x2") if beside is None else (beside, "x3")
+        square = (state["x1"] - state[held]) ** 2
+        balls += mass * square * (0.5 * values["k1"] + 0.25 * values["k3"] * square)
+    if beside is not None:
+        balls += 0.5 * beside * state["v3"] ** 2
     return frame, balls
 
 

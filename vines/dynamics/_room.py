@@ -53,11 +53,14 @@ class Room:
         What makes a run of its rows, and measures of its totals, where one ball is not enough for that.
     unstruck : str or None
         Name of a settled motion without impacts, where such a one repeats of itself.
+    beside : tuple of str
+        What rows have at their ends, by the names of the system: coordinates of what no wall meets.
     """
 
     trajectory: Callable[..., Any] | None = None
     measures: Callable[..., Any] | None = None
     unstruck: str | None = None
+    beside: tuple[str, ...] = ()
 
     def constants(self, values: Sequence[float]) -> Any:
         """Return the constants of the kernels from the values of the parameters, in the order of the declaration."""
@@ -124,9 +127,13 @@ class Room:
         The oscillator is within twice its amplitude without a ball, .1 at least and 3 at most, and as fast; the ball is
         anywhere in the cavity and as fast.
         """
-        size = float(np.clip(2.0 * self.amplitude(p, 1.0), 0.1, 3.0))
+        size = self.size(p)
         x1, v1, v2 = rng.uniform(-size, size, 3).tolist()
         return {"x1": x1, "v1": v1, "x2": x1 - float(rng.uniform(-1.0, 1.0)), "v2": v2}
+
+    def size(self, p: Any) -> float:
+        """Return the largest displacement of the oscillator at a start that is drawn."""
+        return float(np.clip(2.0 * self.amplitude(p, 1.0), 0.1, 3.0))
 
     def amplitude(self, p: Any, mass: float) -> float:
         """Return the steady amplitude of x1 of an oscillator of this mass without a ball."""
@@ -160,6 +167,10 @@ class Room:
     def stored(self, p: Any, at: Any) -> tuple[Any, Any, Any]:
         """Return kinetic energies of frame and ball and the potential energy of samples."""
         return 0.5 * at["v1"] ** 2, 0.5 * p.mu * at["v2"] ** 2, 0.5 * (at["x1"] - at["base"]) ** 2
+
+    def spring(self, p: Any, at: Any) -> Any:
+        """Return what of that is in a spring beside the oscillator's."""
+        return 0.0
 
 
 _VI_NES = Room()

@@ -67,12 +67,21 @@ BALL_IMPACT = np.dtype([*IMPACT.descr, ("ball", "i8"), ("ties", "i8")])
 """Where there are several balls: the number of the ball, from 1 on, and how many others hit at the same instant."""
 
 
-def impacts_of(rows: npt.NDArray[np.float64], balls: bool = False) -> Table:
-    """Return the impacts among rows as a structured array of dtype IMPACT, BALL_IMPACT where balls have numbers."""
+def impacts_of(rows: npt.NDArray[np.float64], p: Any = None) -> Table:
+    """Return the impacts among rows of a system as a structured array of dtype IMPACT, with what it has beside that.
+
+    Where balls have numbers the dtype is BALL_IMPACT; other columns are those of `Room.beside`.
+    """
     hits = rows[rows[:, col.KIND] == col.IMPACT]
-    out = np.empty(len(hits), dtype=BALL_IMPACT if balls else IMPACT)
+    balls = getattr(p, "balls", 0) > 0
+    room = None if p is None else room_of(p)
+    beside, width = (room.beside, room.layout(p).width) if room else ((), 0)
+    plain = BALL_IMPACT if balls else IMPACT
+    out = np.empty(len(hits), dtype=[*plain.descr, *((name, "f8") for name in beside)] if beside else plain)
     if balls:
         out["ball"], out["ties"] = hits[:, col.ROW], hits[:, col.ROW + 1]
+    for k, name in enumerate(reversed(beside), start=1):
+        out[name] = hits[:, width - k]
     for name, column in _COLUMN.items():
         if name != "kind":
             out[name] = hits[:, column]
@@ -134,7 +143,7 @@ class Trajectory:
     @cached_property
     def impacts(self) -> Table:
         """The impacts: t, side (+1 L, -1 R), state and w_dot just before, velocities just after, phase, index."""
-        return impacts_of(self.rows, self.rows.shape[1] > col.ROW)
+        return impacts_of(self.rows, self.params)
 
     @cached_property
     def sticks(self) -> Table:

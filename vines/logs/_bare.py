@@ -20,7 +20,7 @@ from vines.logs._form import ROS_LATEST, Form, stamps
 from vines.model import VI_NES
 from vines.schema import WireFormat, foxglove_schema
 
-__all__ = ["BARE", "Profile", "bare_rows", "more_rows"]
+__all__ = ["BARE", "BESIDE", "Profile", "bare_rows", "more_rows"]
 
 _STRIDE = 3
 """Of the states in smooth motion, one in so many."""
@@ -200,6 +200,24 @@ _ONE = Profile(
         )
     ),
 )
+
+
+_MASS = """  <link name="nes"><visual><origin xyz="0 0 -0.52"/><geometry><box size="0.16 0.16 0.16"/></geometry>
+    <material name="nes"><color rgba="1 0.5 0.78 1"/></material></visual></link>
+  <joint name="x3" type="prismatic"><parent link="rig"/><child link="nes"/><axis xyz="1 0 0"/>
+    <limit lower="-10" upper="10" effort="0" velocity="0"/></joint>
+</robot>"""
+
+BESIDE = Profile(
+    _GEOMETRY.replace("</robot>", _MASS),
+    _ABOUT.replace("a shaken mass.", "a shaken mass, and a mass on a spring beside it.").replace(
+        "/state, /impact, /stick", "/state, /nes, /impact, /stick"
+    ),
+    {**_ONE.bodies, "nes": "x3"},
+    _ONE.mount,
+    {**_ONE.series, "mass on the spring": ("x3", "v3", "kinetic_3")},
+)
+"""That of a ball with a mass on a spring beside it, which is drawn under the cavity."""
 
 
 def _kept(t: np.ndarray) -> np.ndarray:

@@ -21,6 +21,7 @@ __all__ = [
     "DIGESTS",
     "FIRST_SENSOR",
     "KINDS",
+    "NES",
     "OF_BALLS",
     "ORBIT",
     "OURS",
@@ -163,7 +164,9 @@ BALL_TOPIC = "/ball/"
 """Topics of balls begin so."""
 BALLS = tuple(Channel(8 + ball, f"{BALL_TOPIC}{ball}", BALL, "t", str(ball)) for ball in range(1, 9))
 """Channels of the balls of a run with several."""
-KINDS = {channel.message: channel for channel in (*CHANNELS, ORBIT, BASE, *OF_BALLS)}
+NES = Channel(17, "/nes", "vines.v1.Nes", "t", "nes")
+"""Channel of a mass on a spring beside the ball."""
+KINDS = {channel.message: channel for channel in (*CHANNELS, ORBIT, BASE, NES, *OF_BALLS)}
 """Messages of which a log has one channel at most."""
 
 

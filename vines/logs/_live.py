@@ -15,7 +15,7 @@ import numpy as np
 from vines.errors import FileMissingError, LogError, SchemaError
 from vines.logs._balls import rows_of_ball
 from vines.logs._bare import BARE, more_rows
-from vines.logs._channels import BALLS, BASE, CHANNELS, OF_BALLS, Channel, Rows, as_rows
+from vines.logs._channels import BALLS, BASE, CHANNELS, NES, OF_BALLS, Channel, Rows, as_rows
 from vines.logs._chunk import packed
 from vines.logs._curves import curve_channel, curve_rows
 from vines.logs._file import LogFile
@@ -23,6 +23,7 @@ from vines.logs._pack import CHUNK_BYTES, cut
 from vines.logs._raw import block_of, raw_channels, raw_rows
 from vines.logs._rig import rate_of, sensor_channels
 from vines.logs._write import begin
+from vines.model import system_names, with_all_balls
 from vines.schema import numpy_dtype
 
 __all__ = ["LiveWriter"]
@@ -107,10 +108,10 @@ class LiveWriter:
         if balls:
             self._channels = {channel.key: channel for channel in (*OF_BALLS, *self._balls)}
         elif sensors is None:
-            self._channels = {channel.key: channel for channel in CHANNELS}
+            self._channels = {channel.key: channel for channel in (*CHANNELS, *_beside(system))}
         else:
             self._channels = {BASE.key: BASE, **sensor_channels(sensors)}
-        self._taken = [key for key in self._channels if self._channels[key] not in self._balls]
+        self._taken = [key for key in self._channels if self._channels[key] not in (*self._balls, NES)]
         self._raw = raw_channels(raw or {})
         self._rest = {key: (0, np.empty(0, each.metadata["dtype"])) for key, each in self._raw.items()}
         self._channels |= {each.key: each for each in self._raw.values()}
@@ -157,7 +158,7 @@ class LiveWriter:
         ----------
         key : str
             ``"states"``, ``"impacts"`` or ``"sticks"``; in the log of a rig ``"base"`` or the name of a sensor. States
-            of several balls hold all bodies.
+            of several balls, or of a ball with a mass beside it, hold all bodies.
         rows : numpy.ndarray, shape (n,), structured
             The fields of its message, not before the rows that were added earlier.
 
@@ -175,6 +176,8 @@ class LiveWriter:
         added = {key: as_rows(own, self._channels[key], self._counts[key])}
         if key == OF_BALLS[0].key:
             added |= {each.key: as_rows(rows_of_ball(own, each), each, self._counts[each.key]) for each in self._balls}
+        if key == "states" and NES.key in self._channels:
+            added |= {NES.key: as_rows(own, NES, self._counts[NES.key])}
         if not len(own):
             return
         if self._bare:
@@ -317,6 +320,12 @@ class LiveWriter:
             raise self._failed
         if kind is None:
             self._partial.replace(self._path)
+
+
+def _beside(system: str | None) -> tuple[Channel, ...]:
+    """Return the channel of a mass on a spring beside the ball, of a system that has one."""
+    bodies = with_all_balls(system).bodies if system in system_names() else ()
+    return (NES,) if any(body.position.name == "x3" for body in bodies) else ()
 
 
 def _alike(parts: list[Rows]) -> list[list[Rows]]:

@@ -68,8 +68,9 @@ class Log:
         (``vines.v1.Oscillator``), and impacts and sticks have the number of the ``ball``.
     balls : dict of int to pyarrow.Table
         Of several balls the states of each (``vines.v1.Ball``) by its number from 1, at the times of `states`.
-    orbits, base : pyarrow.Table
-        The same of ``vines.v1.Orbit`` and, in SI units, ``BaseMotion``; without rows in most logs.
+    nes, orbits, base : pyarrow.Table
+        The same of ``vines.v1.Nes``, a mass on a spring beside the ball at the times of `states`, ``Orbit`` and, in SI
+        units, ``BaseMotion``; without rows in most logs.
     sensors : dict of str to pyarrow.Table
         Samples of each sensor of a rig (``vines.v1.SensorSample``), SI; the table's metadata say what was measured.
     raw : dict of str to Raw
@@ -110,6 +111,7 @@ class Log:
     impacts: pa.Table
     sticks: pa.Table
     balls: dict[int, pa.Table]
+    nes: pa.Table
     orbits: pa.Table
     base: pa.Table
     sensors: dict[str, pa.Table]

@@ -14,9 +14,9 @@ import numpy as np
 
 from vines.errors import FileMissingError, SchemaError
 from vines.logs._balls import ball_rows, has_balls
-from vines.logs._bare import bare_rows
+from vines.logs._bare import BESIDE, bare_rows
 from vines.logs._bare_balls import profile_of_balls
-from vines.logs._channels import CHANNELS, ORBIT, PARAMETERS, PROVENANCE, RUN, Rows, as_rows
+from vines.logs._channels import CHANNELS, NES, ORBIT, PARAMETERS, PROVENANCE, RUN, Rows, as_rows
 from vines.logs._file import LogFile
 from vines.logs._pack import cut
 
@@ -49,7 +49,8 @@ def write_run(
         Rows with the fields of ``vines.v1.State``, ``Impact`` and ``Stick``, sorted by time (sticks by
         ``t_start``); dimensionless, further fields are left out. Of several balls states have the fields of
         ``vines.v1.Oscillator`` and those of ``vines.v1.Ball`` with the number of each ball (``x2_1``), impacts and
-        sticks those of ``vines.v1.BallImpact`` and ``BallStick``.
+        sticks those of ``vines.v1.BallImpact`` and ``BallStick``. With a mass on a spring beside the ball states have
+        those of ``vines.v1.Nes`` too.
     provenance : mapping
         Where the numbers come from; values that are not strings are stored as JSON. No wall clock, no host.
     parameters : mapping of str to float
@@ -81,12 +82,14 @@ def write_run(
     FileMissingError
         If the folder does not exist.
     """
-    several = has_balls(states)
+    several, beside = has_balls(states), "x3" in (states.dtype.names or ())
     if several:
         rows = ball_rows(states, impacts, sticks)
     else:
         every = zip((states, impacts, sticks), CHANNELS, strict=True)
         rows = [as_rows(array, channel) for array, channel in every]
+    if beside:
+        rows.append(as_rows(states, NES))
     about = {"name": name, "kind": "run"}
     if orbit is not None:
         rows.append(as_rows(orbit, ORBIT))
@@ -96,9 +99,9 @@ def write_run(
     if system is not None:
         about["system"] = system
     if bare:
-        # Those of one ball as they are packed, those of several as they were given: packed they are a table a ball.
-        shown = [states, impacts, sticks] if several else [each.values for each in rows[:3]]
-        profile = profile_of_balls(states, parameters) if several else None
+        # Those of one ball as they are packed, those of several bodies as given: packed they are a table each.
+        shown = [states, impacts, sticks] if several or beside else [each.values for each in rows[:3]]
+        profile = profile_of_balls(states, parameters) if several else BESIDE if beside else None
         rows += bare_rows(shown[0], shown[1], shown[2], name, parameters, profile)
     return write_rows(path, rows, about, provenance, parameters, declaration)
 

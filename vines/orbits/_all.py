@@ -21,7 +21,7 @@ from vines.orbits._joined import mirror_image
 from vines.orbits._orbit import Orbit
 from vines.orbits._own_word import sticking_word, whole_word
 from vines.orbits._seeds import base_word, doubled_times, harvested_times, random_times, simplex_times
-from vines.orbits._shooting import shoots
+from vines.orbits._shooting import refuse_no_walls, shoots
 from vines.orbits._shooting_search import gather_shots, of_the_vi_nes
 from vines.orbits._slid import slid_orbits, slides
 from vines.orbits._sticking_capsule import capsule_orbits, rides_capsule
@@ -178,8 +178,7 @@ def _searched(word: Word, p: Any) -> Orbits:
 
 def _shot(word: Word, p: Any) -> Orbits:
     """Return the orbits of a word that are shot for."""
-    if not getattr(p, "walls", True):
-        raise ParameterError("walls is 0: a word tells of impacts; vines.settle finds what there is without barriers")
+    refuse_no_walls(p)
     found, tried = gather_shots(word, p, all_orbits(word, of_the_vi_nes(p)))
     gathered = _Gathered(word, p)
     for orbit in found:

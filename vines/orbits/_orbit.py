@@ -58,7 +58,7 @@ class Orbit:
     t : (N,) float array
         Times of the impacts over one period pT.
     states : (N, 4) float array
-        x1, v1, x2, v2 just before each impact.
+        x1, v1, x2, v2 just before each impact; with a mass beside the ball x3, v3 too.
     jacobians : (N, d, d) float array
         Jacobian of the map from each impact to the next in (v1, v2, x2, t), d = 4; of another system the tangent map
         from just after it to just after the next, as `vines.dynamics.tangent_map` gives it.
@@ -177,9 +177,12 @@ class Orbit:
     @property
     def impacts(self) -> npt.NDArray[np.void]:
         """The impacts as a structured array with the fields of `Trajectory.impacts`, shape (N,)."""
-        out = np.empty(len(self.t), dtype=IMPACT)
+        beside = room_of(self.params).beside
+        out = np.empty(len(self.t), dtype=[*IMPACT.descr, *((name, "f8") for name in beside)] if beside else IMPACT)
+        for name, values in zip(beside, self.states.T[4:], strict=True):
+            out[name] = values
         out["t"], out["side"], out["w_dot"], out["phase"] = self.t, self.side, self.w_dot, self.phase
-        out["x1"], out["v1"], out["x2"], out["v2"] = self.states.T
+        out["x1"], out["v1"], out["x2"], out["v2"] = self.states[:, :4].T
         out["v1_after"], out["v2_after"] = self._after().T
         out["index"] = np.arange(len(self.t))
         return out
@@ -203,8 +206,8 @@ class Orbit:
             x1, v1, *balls = self.instant.tolist()
             (x2, v2), more = balls[:2], [1.0, 0.0, 0.0, *balls]
         else:
-            (x1, _, x2, _), (v1, v2) = self.states[0].tolist(), self._after()[0].tolist()
-            more = self._balls()
+            (x1, _, x2, _, *beside), (v1, v2) = self.states[0].tolist(), self._after()[0].tolist()
+            more = [*self._balls(), *beside]
         at = room_of(self.params).leave(self.params, (x1, v1, x2, v2), float(self.phase[0]), more)
         return {**at, "t": float(self.t[0])}
 

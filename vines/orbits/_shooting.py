@@ -13,31 +13,38 @@ import numpy as np
 import numpy.typing as npt
 
 from vines.bounds import shown
-from vines.dynamics.kernels import constants
-from vines.dynamics.taylor import TaylorConstants
+from vines.dynamics.kernels import constants, room_of
 from vines.errors import ParameterError
-from vines.model import X1, Word
+from vines.model import STATE_NAMES, X1, X2, Word
 from vines.orbits._closing import Closed, Closing
 from vines.orbits._moved import moved
 from vines.orbits._orbit import Orbit
-from vines.orbits._shots import shots_kernel
+from vines.orbits._shots import KINDS, shots_kernel
 from vines.orbits._values import frequency_of, marks_of
 
-__all__ = ["Shooting", "closing_of", "shoots", "shot", "shot_from"]
+__all__ = ["Shooting", "closing_of", "refuse_no_walls", "shoots", "shot", "shot_from"]
 
 Floats = npt.NDArray[np.float64]
 
 _ITERATIONS = 40
-_UNKNOWN = [0, 1, 3]
-"""Of x1, v1, x2, v2 before an impact x2 follows from x1 and the wall."""
-
 _LEAST_SHARE = 1.0 / 64.0
 """Smallest part of a Newton step that is tried."""
 
 
 def shoots(p: Any) -> bool:
     """Say whether the flights of a system have no closed form."""
-    return isinstance(constants(p), TaylorConstants)
+    return isinstance(constants(p), KINDS)
+
+
+def refuse_no_walls(p: Any) -> None:
+    """Raise `ParameterError` where there are no walls that a word could tell of."""
+    if not getattr(p, "walls", 1.0):
+        raise ParameterError("walls is 0: a word tells of impacts; vines.settle finds what there is without barriers")
+
+
+def _free(states: Floats) -> Floats:
+    """Return what is unknown before impacts: x2 follows from x1 and the wall."""
+    return np.delete(states, X2, axis=1)
 
 
 def closing_of(orbit: Orbit, names: Sequence[str], symmetric: bool) -> Closing | Shooting:
@@ -46,7 +53,7 @@ def closing_of(orbit: Orbit, names: Sequence[str], symmetric: bool) -> Closing |
 
 
 class Shooting:
-    """As `Closing`; its phases are followed by all x1, all v1 and all v2 just before the free impacts."""
+    """As `Closing`; its phases are followed by all x1, all v1, all v2, … just before the free impacts."""
 
     def __init__(self, orbit: Orbit, names: Sequence[str], symmetric: bool) -> None:
         self.word = orbit.word
@@ -61,7 +68,7 @@ class Shooting:
             t = (t + orbit.t[n:] - orbit.period / 2) / 2
             states = (states - orbit.states[n:]) / 2
         values = [orbit.params.as_dict()[name] for name in names]
-        self.start = np.concatenate([t * frequency_of(orbit.params), states[:, _UNKNOWN].T.ravel(), values])
+        self.start = np.concatenate([t * frequency_of(orbit.params), _free(states).T.ravel(), values])
 
     def params(self, values: Sequence[float] | Floats) -> Any:
         """Return the parameters with those that vary at some values, None where the system does not exist."""
@@ -74,9 +81,9 @@ class Shooting:
             return None
         n = len(self.side) // self._sets
         c, duration, Omega = constants(p), self.word.p * p.period, frequency_of(p)
-        t, free = phases[:n] / Omega, np.ascontiguousarray(phases[n:].reshape(3, n).T)
+        t, free = phases[:n] / Omega, np.ascontiguousarray(phases[n:].reshape(-1, n).T)
         sign = 1.0 if self._sets == 1 else -1.0
-        defect, slope = np.full(4 * n, np.nan), np.zeros((4 * n, 4 * n))
+        defect, slope = np.full(len(phases), np.nan), np.zeros((len(phases), len(phases)))
         span = duration / self._sets
         if np.all(np.diff(t, append=t[0] + span) > 0):
             shots_kernel(c, sign, span, self.side[:n], t, free, defect, slope)
@@ -98,20 +105,20 @@ def shot_from(word: Word, p: Any, guess: object) -> tuple[bool, Floats, float, F
     Raises
     ------
     ParameterError
-        If there are no barriers, or the guess is neither an orbit nor an (N, 5) array of t, x1, v1, x2, v2.
+        If there are no barriers, or the guess is neither an orbit nor an (N, 1 + d) array of times and states.
     """
-    if not getattr(p, "walls", True):
-        raise ParameterError("walls is 0: a word tells of impacts; vines.settle finds what there is without barriers")
+    refuse_no_walls(p)
     if isinstance(guess, Orbit):
         return shot(word, p, guess.t * frequency_of(guess.params) / frequency_of(p), guess.states)
     try:
         found = np.asarray(guess, dtype=np.float64)
     except (TypeError, ValueError):
         found = np.empty(0)
-    if found.shape != (len(word), 5) or not np.isfinite(found).all():
+    names = (*STATE_NAMES, *room_of(p).beside)
+    if found.shape != (len(word), 1 + len(names)) or not np.isfinite(found).all():
         raise ParameterError(
-            f"the guess is {shown(guess)}; of {p.system.name} give an orbit at nearby parameters, or rows of t, x1, "
-            f"v1, x2, v2 just before each of the {len(word)} impacts: times alone do not say how the mass flies"
+            f"the guess is {shown(guess)}; of {p.system.name} give an orbit at nearby parameters, or rows of t, "
+            f"{', '.join(names)} just before each of the {len(word)} impacts: times alone do not say how the mass flies"
         )
     return shot(word, p, found[:, 0], found[:, 1:])
 
@@ -121,8 +128,8 @@ def shot(word: Word, p: Any, t: Floats, states: Floats) -> tuple[bool, Floats, f
 
     Parameters
     ----------
-    t, states : (N,), (N, 4) float array
-        Times of the impacts, and x1, v1, x2, v2 just before them.
+    t, states : (N,), (N, d) float array
+        Times of the impacts, and x1, v1, x2, v2, … just before them.
 
     Returns
     -------
@@ -131,14 +138,14 @@ def shot(word: Word, p: Any, t: Floats, states: Floats) -> tuple[bool, Floats, f
     """
     N, side = len(t), marks_of(word)
     c, duration = constants(p), word.p * p.period
-    z = np.concatenate([t, states[:, _UNKNOWN].T.ravel()])
-    defect, slope = np.full(4 * N, np.nan), np.zeros((4 * N, 4 * N))
+    z = np.concatenate([t, _free(states).T.ravel()])
+    defect, slope = np.full(len(z), np.nan), np.zeros((len(z), len(z)))
 
     def size_at(z: Floats) -> float:
         flights = np.diff(z[:N], append=z[0] + duration)
         if not (np.all(flights > 0) and np.isfinite(z).all()):
             return math.inf
-        shots_kernel(c, 1.0, duration, side, z[:N], np.ascontiguousarray(z[N:].reshape(3, N).T), defect, slope)
+        shots_kernel(c, 1.0, duration, side, z[:N], np.ascontiguousarray(z[N:].reshape(-1, N).T), defect, slope)
         return float(np.abs(defect).max()) if np.isfinite(defect).all() else math.inf
 
     size = size_at(z)
@@ -161,5 +168,5 @@ def shot(word: Word, p: Any, t: Floats, states: Floats) -> tuple[bool, Floats, f
         z = z - share * step
         if np.abs(share * step).max() < 1e-14 * duration:
             break
-    free = z[N:].reshape(3, N).T
+    free = z[N:].reshape(-1, N).T
     return size < 1e-9, z[:N], size, np.insert(free, 2, free[:, X1] - side, axis=1)

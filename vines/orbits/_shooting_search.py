@@ -8,7 +8,8 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from vines.model import PARAMETER_NAMES, Params, Word
+from vines.dynamics.kernels import room_of
+from vines.model import PARAMETER_NAMES, STATE_NAMES, V1, X1, Params, Word
 from vines.orbits._assemble import assemble
 from vines.orbits._general import proper, same
 from vines.orbits._orbit import Orbit
@@ -42,7 +43,7 @@ def gather_shots(word: Word, p: Any, likes: list[Orbit]) -> tuple[list[Orbit], i
 
 def _starts(word: Word, p: Any, likes: list[Orbit]) -> Iterator[tuple[Floats, Floats]]:
     for times, hits in stretches(word, p):
-        yield times, np.stack([hits[name] for name in ("x1", "v1", "x2", "v2")], axis=1)
+        yield times, np.stack([hits[name] for name in (*STATE_NAMES, *room_of(p).beside)], axis=1)
     for orbit in likes:
         followed = _with_springs(word, p, orbit)
         if followed is not None:
@@ -59,9 +60,17 @@ def _with_springs(word: Word, p: Any, orbit: Orbit) -> tuple[Floats, Floats] | N
     """Return times and states of an orbit of the VI-NES followed as the springs grow to their own, None if lost."""
     values = p.as_dict()
     t, states, done, step = orbit.t, orbit.states, 0.0, 0.25
+    grows = [name for name in _SPRINGS if name in values]
+    if room_of(p).beside:
+        # A mass beside the ball moves as the oscillator drives it, and grows from nothing.
+        grows = ["mu_n"]
+        states = np.column_stack([states, states[:, [X1, V1]]])
+        converged, t, _, states = shot(word, p.replace(mu_n=0.0), t, states)
+        if not converged:
+            return None
     while done < 1.0:
         share = min(done + step, 1.0)
-        there = p.replace(**{name: share * values[name] for name in _SPRINGS if name in values})
+        there = p.replace(**{name: share * values[name] for name in grows})
         converged, near, _, other = shot(word, there, t, states)
         if converged and proper(word, word.p * p.period, near, other):
             t, states, done, step = near, other, share, 2 * step

@@ -4,31 +4,24 @@ from __future__ import annotations
 
 import math
 
-from vines.dynamics.kernels import after_impact_kernel, carry_basis, segment_state
+from vines.dynamics.hybrid import HybridConstants
+from vines.dynamics.kernels import after_impact_kernel, carry_basis, directions, segment_state
 from vines.dynamics.kernels import rows as col
 from vines.dynamics.taylor import TaylorConstants
-from vines.dynamics.taylor.kernels import W, X, at, bounds, coefficients, derivatives_at, expand, slopes
-from vines.kernels import entry_njit, identity, linked_njit, new_matrix, njit, zero_vector
+from vines.dynamics.taylor.kernels import W, at, bounds, coefficients, derivatives_at
+from vines.kernels import copy_values, entry_njit, identity, linked_njit, new_matrix, zero_vector
 from vines.orbits._budget import orbit_rows
+from vines.orbits._motions import begin_at, end_at, impact_row, motion, move_on, open_at
 from vines.orbits._survey import NO_TURNING, inspect_row, survey_kernel, survey_rows
 from vines.orbits._turnings_of_balls import gap_kernel, turnings_kernel
 
-__all__ = ["shots_kernel"]
+__all__ = ["KINDS", "shots_kernel"]
 
-orbit_rows.register(TaylorConstants)(orbit_rows.first)
+KINDS = (TaylorConstants, HybridConstants)
+"""Constants of systems whose flights have no closed form."""
 
 THIN = 2.0**-20
 """Part of a step below which w is called flat where neither its velocity nor its acceleration keeps a sign."""
-
-
-@njit
-def _row_after(c, row, side, t, x1, v1, v2):
-    """Fill a row with the state just after an impact."""
-    row[col.KIND], row[col.SIDE], row[col.TIME] = col.IMPACT, side, t
-    row[col.PHASE] = (c.Omega * t) % (2.0 * math.pi)
-    row[col.X1], row[col.X2] = x1, x1 - side
-    row[col.V1], row[col.V2] = v1, v2
-    row[col.A_V1], row[col.A_V2] = after_impact_kernel(c.law, v1, v2)
 
 
 @entry_njit
@@ -37,58 +30,58 @@ def shots_kernel(c, sign, span, side, t, states, defect, slope):
 
     Parameters
     ----------
-    c : TaylorConstants
+    c : TaylorConstants, HybridConstants
     sign : float
         -1 where the repetition is the mirror image, else 1.
     span : float
     side : (n,) int array
     t : (n,) float array
         Times of the impacts.
-    states : (n, 3) float array
-        x1, v1, v2 just before them.
-    defect : (4 n,) float array
-        Filled with x1, v1, x2, v2 at the ends of the flights less those of the next impacts.
-    slope : (4 n, 4 n) float array
-        Filled with its derivatives in the times, then in all x1, all v1, all v2.
+    states : (n, d - 1) float array
+        x1, v1, v2 just before them, and position and velocity of a mass beside the ball.
+    defect : (d n,) float array
+        Filled with x1, v1, x2, v2, … at the ends of the flights less those of the next impacts.
+    slope : (d n, d n) float array
+        Filled with its derivatives in the times, then in all x1, all v1, all v2, ….
     """
-    n = t.size
-    row = zero_vector(col.ROW)
+    n, d = t.size, len(directions(c))
+    begin, before, end, after, goal = zero_vector(d), zero_vector(d), zero_vector(d), zero_vector(d), zero_vector(d)
     # The law of impact is linear: what it makes of each velocity alone.
     first, second = after_impact_kernel(c.law, 1.0, 0.0), after_impact_kernel(c.law, 0.0, 1.0)
-    for i in range(4 * n):
-        for k in range(4 * n):
+    for i in range(d * n):
+        for k in range(d * n):
             slope[i, k] = 0.0
     for j in range(n):
         k = (j + 1) % n
         turned = sign if k == 0 else 1.0
-        x1, v1, v2 = states[j, 0], states[j, 1], states[j, 2]
-        _row_after(c, row, side[j], t[j], x1, v1, v2)
+        row = impact_row(c, side[j], t[j], states[j])
         tau = (t[0] + span if k == 0 else t[k]) - t[j]
-        Y = identity(4)
-        a1, a2 = slopes(c.field, x1, row[col.A_V1], 1.0 * side[j], row[col.A_V1] - row[col.A_V2], row[col.PHASE])
-        before = row[col.A_V1], a1, row[col.A_V2], a2
+        Y = identity(d)
+        motion(c, row, begin, before)
         carry_basis(c, row, tau, Y)
-        e1, e2, e3, e4, phase = segment_state(c, row, tau)
-        b1, b2 = slopes(c.field, e1, e2, e1 - e3, e2 - e4, phase)
-        end = e1, e2, e3, e4
-        after = e2, b1, e4, b2
-        x, v, w = turned * states[k, 0], turned * states[k, 1], turned * states[k, 2]
-        goal = x, v, x - turned * side[k], w
-        for i in range(4):
-            at_row = 4 * j + i
+        move_on(c, row, tau)
+        motion(c, row, end, after)
+        for i in range(d):
+            # Of what stands before an impact x2 follows from the wall.
+            goal[i] = turned * states[k, i if i < 2 else i - 1]
+        goal[2] = goal[0] - turned * side[k]
+        for i in range(d):
+            at_row = d * j + i
             defect[at_row] = end[i] - goal[i]
             moved = 0.0
-            for m in range(4):
+            for m in range(d):
                 moved += Y[i, m] * before[m]
             slope[at_row, j] -= moved
             slope[at_row, k] += after[i]
             slope[at_row, n + j] += Y[i, 0] + Y[i, 2]
             slope[at_row, 2 * n + j] += first[0] * Y[i, 1] + first[1] * Y[i, 3]
             slope[at_row, 3 * n + j] += second[0] * Y[i, 1] + second[1] * Y[i, 3]
-        slope[4 * j, n + k] -= turned
-        slope[4 * j + 2, n + k] -= turned
-        slope[4 * j + 1, 2 * n + k] -= turned
-        slope[4 * j + 3, 3 * n + k] -= turned
+            for m in range(4, d):
+                slope[at_row, m * n + j] += Y[i, m]
+        slope[d * j + 2, n + k] -= turned
+        for i in range(d):
+            if i != 2:
+                slope[d * j + i, (i + 1 if i < 2 else i) * n + k] -= turned
 
 
 @linked_njit
@@ -124,15 +117,13 @@ def _turning(a, order, low, high):
 @linked_njit
 def _turnings(c, row, tau):
     """Return the turning points of the gap in the flight after a row: time since then, w, w''."""
-    f = c.field
-    a = coefficients(f)
-    order = f.order
+    a = coefficients(c.field)
+    order = c.field.order
     found = []
-    x, v = row[col.X1], row[col.A_V1]
-    w, u = row[col.SIDE], v - row[col.A_V2]
+    here = begin_at(c, row)
     done = 0.0
     while done < tau:
-        h = min(expand(f, x, v, w, u, row[col.PHASE] + f.Omega * done), tau - done)
+        h = min(open_at(c, here, row[col.PHASE] + c.Omega * done), tau - done)
         _, third, _ = bounds(a, W, order, h)
         s, width = 0.0, h
         while s < h:
@@ -149,13 +140,11 @@ def _turnings(c, row, tau):
                     found.append((done + place, here, bend))
             s += width
             width *= 2.0
-        x, v = at(a, X, order, h)
-        w, u = at(a, W, order, h)
+        here = end_at(c, h)
         done += h
     return found
 
 
-@inspect_row.register(TaylorConstants)
 @linked_njit
 def _inspect_row(c, side, row, tau):
     clearance, violation, wall = NO_TURNING, math.nan, 0
@@ -179,15 +168,15 @@ def _rows(c, duration, side, t, states):
     return rows
 
 
-@gap_kernel.register(TaylorConstants)
 @entry_njit
 def _gap_kernel(c, duration, side, t, states, place, number, tau):
-    x1, v1, x2, v2, phase = segment_state(c, _rows(c, duration, side, t, states)[place], tau)
-    a1, a2 = slopes(c.field, x1, v1, x1 - x2, v1 - v2, phase)
-    return x1 - x2, v1 - v2, a1 - a2
+    row = _rows(c, duration, side, t, states)[place]
+    here, change = zero_vector(len(directions(c))), zero_vector(len(directions(c)))
+    move_on(c, row, tau)
+    motion(c, row, here, change)
+    return here[0] - here[2], here[1] - here[3], change[1] - change[3]
 
 
-@turnings_kernel.register(TaylorConstants)
 @entry_njit
 def _turnings_kernel(c, duration, side, t, states):
     rows = _rows(c, duration, side, t, states)
@@ -203,7 +192,22 @@ def _turnings_kernel(c, duration, side, t, states):
     return out
 
 
-@survey_kernel.register(TaylorConstants)
 @linked_njit
 def _survey(c, duration, side, t, states):
-    return survey_rows(c, _rows(c, duration, side, t, states), side)
+    rows = _rows(c, duration, side, t, states)
+    jacobians, residual, clearance, violation, wall = survey_rows(c, rows, side)
+    here = zero_vector(rows.shape[1])
+    # What a row has at its end is position and velocity of a mass beside the ball.
+    for j in range(side.size if len(directions(c)) > 4 else 0):
+        copy_values(here, rows[j])
+        move_on(c, here, rows[j + 1, col.TAU])
+        for k in range(rows.shape[1] - 2, rows.shape[1]):
+            residual = max(residual, abs(here[k] - rows[j + 1, k]))
+    return jacobians, residual, clearance, violation, wall
+
+
+for _kind in KINDS:
+    inspect_row.register(_kind)(_inspect_row)
+    gap_kernel.register(_kind)(_gap_kernel)
+    turnings_kernel.register(_kind)(_turnings_kernel)
+    survey_kernel.register(_kind)(_survey)

@@ -83,8 +83,8 @@ def file_descriptor_set() -> descriptor_pb2.FileDescriptorSet:
     --------
     >>> [file.name for file in file_descriptor_set().file]
     ['vines/v1/ball.proto', 'vines/v1/ball_impact.proto', 'vines/v1/ball_stick.proto', 'vines/v1/base_motion.proto',
-     'vines/v1/impact.proto', 'vines/v1/orbit.proto', 'vines/v1/oscillator.proto', 'vines/v1/sensor_sample.proto',
-     'vines/v1/state.proto', 'vines/v1/stick.proto']
+     'vines/v1/impact.proto', 'vines/v1/nes.proto', 'vines/v1/orbit.proto', 'vines/v1/oscillator.proto',
+     'vines/v1/sensor_sample.proto', 'vines/v1/state.proto', 'vines/v1/stick.proto']
     """
     return _compiled("vines.v1.binpb")
 
@@ -117,7 +117,8 @@ def message_names() -> tuple[str, ...]:
     --------
     >>> message_names()
     ('vines.v1.Ball', 'vines.v1.BallImpact', 'vines.v1.BallStick', 'vines.v1.BaseMotion', 'vines.v1.Impact',
-     'vines.v1.Orbit', 'vines.v1.Oscillator', 'vines.v1.SensorSample', 'vines.v1.State', 'vines.v1.Stick')
+     'vines.v1.Nes', 'vines.v1.Orbit', 'vines.v1.Oscillator', 'vines.v1.SensorSample', 'vines.v1.State',
+     'vines.v1.Stick')
     """
     return tuple(sorted(_descriptors()))
 

@@ -3,6 +3,7 @@ from ._drag import Drag as Drag
 from ._duffing import Duffing as Duffing
 from ._friction import Friction as Friction
 from ._harvest import Harvest as Harvest
+from ._hybrid import Hybrid as Hybrid
 from ._impact_pair import ImpactPair as ImpactPair
 from ._parallel import Parallel as Parallel
 from ._register import names as names

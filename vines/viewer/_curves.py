@@ -7,7 +7,7 @@ import rerun as rr
 
 from vines.model import VI_NES
 from vines.viewer._clock import Clock
-from vines.viewer._style import BALL, BASE, DAMPER, IMPACTS, LEFT, LINE, MASS, RIGHT, SPRING, STORED
+from vines.viewer._style import BALL, BASE, BESIDE, DAMPER, IMPACTS, LEFT, LINE, MASS, RIGHT, SPRING, STORED
 
 __all__ = ["balance", "balance_of", "curves", "lines", "running"]
 
@@ -39,7 +39,8 @@ def balance_of(states: dict[str, np.ndarray], stored: np.ndarray) -> dict[str, n
 
 
 def _stored(states: dict[str, np.ndarray]) -> np.ndarray:
-    return np.sum([states[name] for name in _ENERGIES.stored], axis=0)
+    beside = [name for name in ("kinetic_3",) if name in states]
+    return np.sum([states[name] for name in (*_ENERGIES.stored, *beside)], axis=0)
 
 
 def curves(
@@ -65,6 +66,8 @@ def curves(
         ("ball, x2", x2, BALL),
         ("left end, x1 − 1", x1 - 1.0, LEFT),
     ]
+    if "x3" in states:
+        ends.append(("mass on the spring, x3", states["x3"], BESIDE))
     lines(rec, f"{root}/ends", ends, indexes)
     lines(rec, f"{root}/w/gap", [("w", states["w"], LINE)], indexes)
     lines(rec, f"{root}/w_dot/rate", [("w'", states["w_dot"], LINE)], indexes)
@@ -74,6 +77,10 @@ def curves(
         (springs, states["potential"], SPRING),
         ("ball, µ v2²/2", states["kinetic_2"], BALL),
     ]
+    if "x3" in states:
+        of_frame = states["potential"] - states["spring"]
+        energies[2] = ("spring, (x1 − e)²/2", of_frame, SPRING)
+        energies.append(("mass on the spring, with it", states["kinetic_3"] + states["spring"], BESIDE))
     if not sprung:  # a capsule that is driven stores nothing
         weight = ("ball, G x2", states["potential"], SPRING)
         energies = [energies[0], weight, ("ball, v2²/2", states["kinetic_2"], BALL)]

@@ -53,12 +53,14 @@ def drawn(log: Log, *, at: float | None = None, full: bool = False) -> Drawn:
     parts: tuple[slice, ...] = (slice(0, log.states.num_rows),)
     changes: dict[str, object] = {}
     if log.states.num_rows > MOST_STATES:
-        tables = [log.states, *log.balls.values()]
+        tables = [log.states, *log.balls.values(), *([log.nes] if log.nes.num_rows else [])]
         curves = [_column(table, name) for table in tables for name in _CURVES if name in table.column_names]
         rows = chosen_rows(_column(log.states, "t"), curves, at, most=MOST_STATES)
         parts = tuple(rows.parts())
         balls = {number: table.take(rows.chosen) for number, table in log.balls.items()}
         changes |= {"states": log.states.take(rows.chosen), "balls": balls}
+        if log.nes.num_rows:
+            changes["nes"] = log.nes.take(rows.chosen)
     if _samples(log) > _MOST_SAMPLES:
         share = _MOST_SAMPLES / _samples(log)
         sensors = {name: _thinned(table, ("value", "valid"), share) for name, table in log.sensors.items()}

@@ -76,6 +76,10 @@ class Film:
                 continue
             coil = y + 0.12 * np.concatenate([[0.0, 0.0], (-1.0) ** np.arange(11), [0.0, 0.0]])
             self._springs.append((above.plot(np.zeros(15), coil, color=_SPRING, lw=1)[0], -inner - 0.08))
+        self._x3, self._beside = None, None
+        if run.nes.num_rows:
+            self._x3 = np.interp(times, t, run.nes["x3"].to_numpy())
+            (self._beside,) = above.plot([0.0, 0.0], [-0.46, -0.46], marker="s", markevery=[1], color=_BALLS[1], lw=1)
         (self._wall,) = above.plot([0.0, 0.0], [-len(tables) * _TRACK + 0.6, 0.4], color=_BASE, lw=5, visible=sprung)
         shown = (t >= times[0]) & (t <= times[-1])
         cycles = clock.cycles(t[shown])
@@ -99,6 +103,9 @@ class Film:
             line.set_xdata(x + x1)
         for (disc, y), x2 in zip(self._balls, self._x2, strict=True):
             disc.set_center((x2[k], y))
+        if self._beside is not None and self._x3 is not None:
+            # A mass on a spring beside the ball, under the middle of the cavity.
+            self._beside.set_xdata([x1, self._x3[k]])
         wall = self._mount + self._base[k]
         self._wall.set_xdata([wall, wall])
         for line, end in self._springs:

@@ -27,7 +27,7 @@ from vines.viewer._layout import Shown, blueprint
 from vines.viewer._overlay import check_overlay, overlaid, send_overlay
 from vines.viewer._remarks import is_foreign
 from vines.viewer._rig import is_rig, send_rig, shown_rig
-from vines.viewer._scene import CUBIC, DRIVEN, cavity, phase_plane
+from vines.viewer._scene import CUBIC, DRIVEN, cavity, mass_beside, phase_plane
 from vines.viewer._text import about, send_impact_log
 
 __all__ = ["APPLICATION", "send_run", "write_recording"]
@@ -160,6 +160,8 @@ def _send(rec: rr.RecordingStream, root: str, part: Drawn) -> None:
         send_rig(rec, root, log)
         return
     states, impacts = _columns(log.states), _columns(log.impacts)
+    if log.nes.num_rows:
+        states |= _columns(log.nes)
     start, end = float(states["t"][0]), float(states["t"][-1])
     clock = Clock(start, float(states["phase"][0]), log.parameters.get("Omega", 1.0), impacts["t"], end)
     if log.balls:
@@ -168,6 +170,8 @@ def _send(rec: rr.RecordingStream, root: str, part: Drawn) -> None:
         return
     sprung = log.system not in DRIVEN
     cavity(rec, f"{root}/cavity", states, clock, sprung=sprung)
+    if "x3" in states:
+        mass_beside(rec, f"{root}/cavity", states, clock)
     phase_plane(rec, f"{root}/phase", states, impacts, clock, part.parts)
     springs = "springs" if log.system in CUBIC else "spring, (x1 − e)²/2"
     curves(rec, root, states, impacts, clock, sprung=sprung, springs=springs)

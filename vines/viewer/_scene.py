@@ -11,7 +11,7 @@ import numpy as np
 import rerun as rr
 
 from vines.viewer._clock import Clock
-from vines.viewer._style import BALL, BASE, GRID, LEFT, LINE, MASS, RIGHT, SPRING, TRAIL
+from vines.viewer._style import BALL, BASE, BESIDE, GRID, LEFT, LINE, MASS, RIGHT, SPRING, TRAIL
 
 __all__ = [
     "CUBIC",
@@ -19,6 +19,7 @@ __all__ = [
     "PHASE_BOUNDS",
     "cavity",
     "cavity_bounds",
+    "mass_beside",
     "move",
     "phase_frame",
     "phase_plane",
@@ -38,6 +39,8 @@ _HEIGHT = 0.34
 _MOUNT = 1.9
 """Where the shaken base is drawn, in b left of where the mass turns; only its displacement is to scale."""
 _FLOOR = 0.62
+_BESIDE = 0.5
+"""Height of a mass beside the ball."""
 _CAVITY_HEIGHT = (-0.85, 1.05)
 """What the view of the cavity shows in y."""
 PHASE_BOUNDS = ((-1.4, 1.2), (-0.9, 1.13))
@@ -127,10 +130,7 @@ def cavity(
         rec.log(f"{root}/base", rr.LineStrips2D(wall, radii=0.05, colors=BASE), static=True)
         move(rec, f"{root}/base", indexes, mount + base)
 
-        turns = np.concatenate([[0.0, 0.12], np.linspace(0.16, 0.84, 13), [0.88, 1.0]])
-        sway = np.concatenate([[0.0, 0.0], 0.14 * (-1.0) ** np.arange(13), [0.0, 0.0]])
-        coil = np.column_stack([turns, sway])
-        rec.log(f"{root}/spring", rr.LineStrips2D([coil], radii=rr.Radius.ui_points(1.2), colors=SPRING), static=True)
+        _coil(rec, f"{root}/spring", 0.14)
         length = x1 - outer - (mount + base)
         move(rec, f"{root}/spring", indexes, mount + base, scale=length)
 
@@ -139,6 +139,28 @@ def cavity(
     strips = [[(-reach, _FLOOR), (reach, _FLOOR)], *([(x, _FLOOR), (x, _FLOOR + 0.06)] for x in ticks)]
     rec.log(f"{root}/ruler", rr.LineStrips2D(strips, radii=rr.Radius.ui_points(0.8), colors=GRID), static=True)
     write(rec, f"{root}/ruler/scale", [(x, _FLOOR + 0.2) for x in ticks], [f"{x:g}" for x in ticks])
+
+
+def _coil(rec: rr.RecordingStream, path: str, sway: float, colour: tuple[int, int, int] = SPRING) -> None:
+    """Draw a spring of length 1 that sways so far to either side."""
+    along = np.concatenate([[0.0, 0.12], np.linspace(0.16, 0.84, 13), [0.88, 1.0]])
+    across = np.concatenate([[0.0, 0.0], sway * (-1.0) ** np.arange(13), [0.0, 0.0]])
+    coil = np.column_stack([along, across])
+    rec.log(path, rr.LineStrips2D([coil], radii=rr.Radius.ui_points(1.2), colors=colour), static=True)
+
+
+def mass_beside(rec: rr.RecordingStream, root: str, states: dict[str, np.ndarray], clock: Clock) -> None:
+    """Draw the mass on a spring beside the ball, under the cavity: at x3, on a spring from the middle of the cavity.
+
+    Parameters are those of `cavity`; `states` have the columns of ``vines.v1.Nes`` too.
+    """
+    indexes = clock.columns(states["t"])
+    _coil(rec, f"{root}/spring_beside", 0.05, BESIDE)
+    move(rec, f"{root}/spring_beside", indexes, states["x1"], _BESIDE, scale=-states["u"])
+    side = 0.08
+    square = [[(-side, -side), (side, -side), (side, side), (-side, side), (-side, -side)]]
+    rec.log(f"{root}/mass_beside", rr.LineStrips2D(square, radii=0.03, colors=BESIDE, draw_order=40.0), static=True)
+    move(rec, f"{root}/mass_beside", indexes, states["x3"], _BESIDE)
 
 
 def phase_plane(

@@ -6,6 +6,7 @@ __all__ = [
     "BALL",
     "BALLS",
     "BASE",
+    "BESIDE",
     "CAVITY",
     "DAMPER",
     "GRID",
@@ -31,6 +32,8 @@ BALLS = (
     *((72, 226, 206), (255, 150, 80), (226, 230, 236), (196, 156, 112)),
 )
 """Of several balls, unlike the ends of their cavities; the side of an impact is then its shape."""
+BESIDE = BALLS[1]
+"""A mass on a spring beside the ball."""
 MASS = (214, 220, 228)
 SPRING = (150, 160, 172)
 BASE = (110, 200, 140)

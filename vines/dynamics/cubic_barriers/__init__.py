@@ -51,7 +51,10 @@ class _CubicBarriers(Room):
 
     def stored(self, p: Any, at: Any) -> tuple[Any, Any, Any]:
         frame, mass, potential = super().stored(p, at)
-        return frame, mass, potential + spring_energy(p, at["w"])
+        return frame, mass, potential + self.spring(p, at)
+
+    def spring(self, p: Any, at: Any) -> Any:
+        return spring_energy(p, p.mu, at["w"])
 
 
 ROOM = _CubicBarriers()

@@ -12,7 +12,7 @@ import numpy as np
 
 from vines.dynamics._flight import advance_phase
 from vines.dynamics.duffing._constants import duffing_constants
-from vines.dynamics.taylor.kernels import X, at, coefficients, expand, expand_disturbances, largest_of
+from vines.dynamics.taylor.kernels import X, at, coefficients, expand, expand_disturbances, peak
 from vines.kernels import entry_njit
 
 __all__ = ["harmonic_amplitudes", "largest_response"]
@@ -36,7 +36,7 @@ def half_period(f, x, v, phase, Y):
     while done < tau:
         h = min(expand(f, x, v, 0.0, 0.0, advance_phase(phase, f.Omega * done)), tau - done)
         expand_disturbances(f, h, Y)
-        largest, _ = largest_of(a, f.order, h, largest)
+        largest, _ = peak(a, f.order, h, largest)
         x, v = at(a, X, f.order, h)
         done += h
     return x, v, largest

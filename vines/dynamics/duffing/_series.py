@@ -8,52 +8,20 @@ from vines.dynamics.taylor.kernels import (
     DIRECTIONS,
     DISTURBED,
     LENGTH,
-    SQUARE,
     W,
     X,
     at,
     coefficients,
+    cube,
     expand,
     expand_disturbances,
     reach,
     slopes,
+    times_square,
 )
 from vines.kernels import fused_njit, loop_njit
 
 __all__: list[str] = []
-
-
-@fused_njit
-def _product(a, first, second, k):
-    """Return coefficient k of the product of two series."""
-    even = 0.0
-    odd = 0.0
-    for i in range(0, k, 2):
-        even += a[first + i] * a[second + k - i]
-        odd += a[first + i + 1] * a[second + k - i - 1]
-    if k % 2 == 0:
-        even += a[first + k] * a[second]
-    return even + odd
-
-
-@fused_njit
-def _square(a, k):
-    """Return coefficient k of the square of the series of x1, each pair of factors once."""
-    even = 0.0
-    odd = 0.0
-    i = 0
-    j = k
-    while i + 1 < j - 1:
-        even += a[X + i] * a[X + j]
-        odd += a[X + i + 1] * a[X + j - 1]
-        i += 2
-        j -= 2
-    while i < j:
-        even += a[X + i] * a[X + j]
-        i += 1
-        j -= 1
-    found = 2.0 * (even + odd)
-    return found + a[X + i] * a[X + i] if i == j else found
 
 
 @expand.register(DuffingField)
@@ -67,14 +35,12 @@ def _expand(f, x, v, w, u, phase):
     later = f.A * f.Omega * (cosine - lam * f.Omega * sine)
     turn = f.Omega * f.Omega
     for k in range(f.order - 1):
-        a[SQUARE + k] = _square(a, k)
         share = 1.0 / ((k + 1.0) * (k + 2.0))
-        cube = _product(a, SQUARE, X, k)
-        own = inverse * (force - lam * (k + 1) * a[X + k + 1] - a[X + k] - alpha * cube)
+        own = inverse * (force - lam * (k + 1) * a[X + k + 1] - a[X + k] - alpha * cube(a, X, k))
         a[X + k + 2] = share * own
         a[W + k + 2] = free * share * own
         force, later = later, -share * turn * force
-    return reach(a, f.order, max(abs(x), abs(v), abs(w), abs(u), f.A), f.longest)
+    return reach(a, f.order, W, max(abs(x), abs(v), abs(w), abs(u), f.A), f.longest)
 
 
 @slopes.register(DuffingField)
@@ -95,7 +61,7 @@ def _expand_disturbances(f, h, Y):
         a[dx], a[dx + 1], a[dw], a[dw + 1] = Y[0, j], Y[1, j], Y[2, j], Y[3, j]
         for k in range(order - 1):
             share = 1.0 / ((k + 1.0) * (k + 2.0))
-            push = f.lam * (k + 1) * a[dx + k + 1] + a[dx + k] + 3.0 * f.alpha * _product(a, SQUARE, dx, k)
+            push = f.lam * (k + 1) * a[dx + k + 1] + a[dx + k] + 3.0 * f.alpha * times_square(a, dx, k)
             own = -f.inverse * push
             a[dx + k + 2] = share * own
             a[dw + k + 2] = f.free * share * own

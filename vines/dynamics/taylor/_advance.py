@@ -45,7 +45,7 @@ from vines.dynamics.taylor._layout import SINCE, begin_step
 from vines.dynamics.taylor._series import W, X, at, coefficients
 from vines.kernels import entry_njit, linked_njit, loop_njit, njit
 
-__all__ = ["set_mass"]
+__all__ = ["set_mass", "settles"]
 
 begin.register(TaylorConstants)(begin.first)
 drift.register(TaylorConstants)(drift.first)
@@ -74,6 +74,12 @@ def set_mass(c, state, x1, v1, x2, v2, phase, t):
 def _merges(c, state, wall):
     """Say whether the mass sticks to the wall that it is on, from the series that begins there."""
     open_step(c, state)
+    return settles(c, state, wall)
+
+
+@linked_njit
+def settles(c, state, wall):
+    """Say the same where the room holds that series."""
     a = coefficients(c.field)
     speed = max(wall * (state[S_V2] - state[S_V1]), 0.0)
     size = 1.0 + abs(state[S_X1]) + abs(state[S_X2]) + c.A * (1.0 + c.Omega)

@@ -10,18 +10,21 @@ from vines.dynamics.taylor._layout import CLEAR, SINCE, STEP_U, STEP_V, STEP_W, 
 from vines.dynamics.taylor._series import W, X, at, bounds, coefficients, derivatives_at, expand
 from vines.kernels import fused_njit, loop_njit, njit
 
-__all__ = ["flown_from", "fly", "open_step"]
+__all__ = ["flown_from", "fly", "hit_within", "open_step", "root"]
 
 CLOSE = 1e-8
 """Step of Newton's method after which its square is rounding."""
 
 
 @njit
-def _root(a, order, side, low, high, s):
-    """Return the only root in [low, high] of the gap to a wall, which falls there; s is an estimate of it."""
+def root(a, first, order, level, side, low, high, s):
+    """Return the only root in [low, high] of what a polynomial lacks to a level; s is an estimate of it.
+
+    The polynomial, times `side`, rises there.
+    """
     for _ in range(80):
-        w, u = at(a, W, order, s)
-        gap, slope = 1.0 - side * w, side * u
+        value, rate = at(a, first, order, s)
+        gap, slope = level - side * value, side * rate
         if gap > 0.0:
             low = s
         else:
@@ -40,7 +43,7 @@ def _root(a, order, side, low, high, s):
 
 
 @loop_njit
-def _hit(f, h, clear, until, wall, released, since):
+def hit_within(f, h, clear, until, wall, released, since):
     """Search a step of length h for the first contact between `clear` and `until`, both from its begin.
 
     Parameters
@@ -76,7 +79,7 @@ def _hit(f, h, clear, until, wall, released, since):
         step, _ = taylor_root(gap, pace, d2, d3, d4, side * d5, side * d6)
         beyond = BEYOND * step
         if beyond <= left and only_root(gap, pace, d2, d3, d4, fifth, beyond):
-            found = _root(a, order, side, s, s + beyond, s + step)
+            found = root(a, W, order, 1.0, side, s, s + beyond, s + step)
             return (CONTACT, found, side) if found <= until else (NO_CONTACT, s, 0)
         forth, back = certain_ways(gap, behind, pace, d2, d3, d4, fifth, left)
         step = min(forth, back)
@@ -117,7 +120,7 @@ def fly(c, state, stop):
             break
         if c.walls != 0.0:
             wall = int(state[S_WALL]) if since == 0.0 else 0
-            code, s, side = _hit(
+            code, s, side = hit_within(
                 f, h, state[CLEAR], min(h, stop - since), wall, wall != 0 and state[S_RELEASED] != 0.0, since
             )
             if code == CONTACT:

@@ -34,7 +34,17 @@ from vines.dynamics.taylor._held import held, ride
 from vines.dynamics.taylor._series import W, X, at, bounds, coefficients, derivatives_at, expand
 from vines.kernels import by_type, fused_njit, linked_njit, loop_njit, njit, zero_vector
 
-__all__ = ["TAYLOR_TOTALS", "VISCOUS_LOSS", "by_series", "held_energy", "largest_of", "ride_integrals", "viscosity"]
+__all__ = [
+    "NODES",
+    "TAYLOR_TOTALS",
+    "VISCOUS_LOSS",
+    "WEIGHTS",
+    "by_series",
+    "held_energy",
+    "peak",
+    "ride_integrals",
+    "viscosity",
+]
 
 VISCOUS_LOSS = TOTALS
 """Entry of the totals of a window behind those of one ball: what of the damper loss the damper of the spring takes."""
@@ -87,7 +97,7 @@ def _segment_state(c, row, tau):
 
 
 @loop_njit
-def largest_of(a, order, h, best):
+def peak(a, order, h, best):
     """Return the largest |x1| over a step if it is above `best`, and when it is reached, else (best, -1)."""
     bend, third, _ = bounds(a, X, order, h)
     when = -1.0
@@ -166,7 +176,7 @@ def by_series(f, out, begins, x1, v1, w, u, phase, length):
             work += weight * (base - x + f.lam * (speed - v)) * speed
             loss += weight * (v - speed) * (v - speed)
             viscous += weight * rate * rate
-        best, when = largest_of(a, f.order, h, out[entry.MAX_ABS_X1])
+        best, when = peak(a, f.order, h, out[entry.MAX_ABS_X1])
         if when >= 0.0:
             out[entry.MAX_ABS_X1], out[entry.T_MAX_ABS_X1] = best, begins + done + when
         x1, v1 = at(a, X, f.order, h)

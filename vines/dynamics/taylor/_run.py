@@ -15,7 +15,7 @@ from vines.dynamics._measures import Measures, of_the_frame
 from vines.dynamics._room import constants, room_of
 from vines.dynamics._trajectory import SAMPLE, Table, Trajectory
 from vines.dynamics.taylor._energies import VISCOUS_LOSS
-from vines.dynamics.taylor._samples import sample_flights
+from vines.dynamics.taylor._samples import OF_ONE_BALL, sample_flights
 
 __all__ = ["SeriesRun", "TaylorMeasures", "TaylorRun", "spring_energy", "taylor_measures"]
 
@@ -48,16 +48,16 @@ def taylor_measures(p: Any, totals: npt.NDArray[np.float64]) -> TaylorMeasures:
 TAYLOR_SAMPLE = np.dtype([*SAMPLE.descr, ("spring", "f8"), ("viscous_loss", "f8")])
 
 
-def spring_energy(p: Any, w: Any) -> Any:
-    """Return the energy of the spring at a gap."""
-    return p.mu * w**2 * (0.5 * p.k1 + 0.25 * p.k3 * w**2)
+def spring_energy(p: Any, mass: float, w: Any) -> Any:
+    """Return the energy of the spring of a mass at a gap."""
+    return mass * w**2 * (0.5 * p.k1 + 0.25 * p.k3 * w**2)
 
 
 class SeriesRun(Trajectory):
     """One run by series; see `Trajectory`."""
 
     sample_dtype: ClassVar[np.dtype[np.void]] = SAMPLE
-    """What a sample has."""
+    """What a sample has, beside what rows have at their ends."""
 
     def _fill(
         self,
@@ -67,13 +67,14 @@ class SeriesRun(Trajectory):
         before: npt.NDArray[np.bool_],
     ) -> Table:
         p, room = self.params, room_of(self.params)
-        raw = np.empty((len(t), 10))
-        sample_flights(constants(p), self.rows, segment, tau, before, raw)
-        out = np.empty(len(t), dtype=self.sample_dtype)
+        raw = np.empty((len(t), OF_ONE_BALL + len(room.beside)))
+        sums = np.zeros(room.layout(p).totals)
+        sample_flights(constants(p), self.rows, segment, tau, before, sums, raw)
+        out = np.empty(len(t), dtype=[*self.sample_dtype.descr, *((name, "f8") for name in room.beside)])
         out["t"] = t
         names = ("x1", "v1", "x2", "v2", "phase", "stuck", "base_work", "damper_loss", "impact_loss", "viscous_loss")
-        for k, name in enumerate(names):
-            if name in (self.sample_dtype.names or ()):
+        for k, name in enumerate((*names, *room.beside)):
+            if name in (out.dtype.names or ()):
                 out[name] = raw[:, k]
         out["w"] = out["x1"] - out["x2"]
         out["w_dot"] = out["v1"] - out["v2"]
@@ -91,13 +92,18 @@ class TaylorRun(SeriesRun):
 
     sample_dtype = TAYLOR_SAMPLE
 
-    def _rest_of_chatter(self, begins: npt.NDArray[np.int64]) -> npt.NDArray[np.float64]:
+    def _push(self, rows: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+        """Return (1 + mu) times how a wall that the mass were to ride on would press, towards L."""
+        p = self.params
+        push = room_of(p).push(p, rows[:, col.X1], rows[:, col.V1], rows[:, col.PHASE])
         # The spring pushes too, which `Room.push` of one wall alone could not say.
+        return push - rows[:, col.SIDE] * (1 + p.mu) * (p.k1 + p.k3)
+
+    def _rest_of_chatter(self, begins: npt.NDArray[np.int64]) -> npt.NDArray[np.float64]:
         p, rows = self.params, self.rows[begins]
         side = rows[:, col.SIDE]
         speed = np.maximum(side * (rows[:, col.V2] - rows[:, col.V1]), 0.0)
-        push = side * room_of(p).push(p, rows[:, col.X1], rows[:, col.V1], rows[:, col.PHASE])
-        push = push - (1 + p.mu) * (p.k1 + p.k3)
+        push = side * self._push(rows)
         lasts = np.zeros(len(rows))
         good = (push > 0) & (p.r < 1)
         lasts[good] = 2 * speed[good] / (push[good] * (1 - p.r))
@@ -112,5 +118,5 @@ class TaylorRun(SeriesRun):
         before: npt.NDArray[np.bool_],
     ) -> Table:
         out = super()._fill(t, segment, tau, before)
-        out["spring"] = spring_energy(self.params, out["w"])
+        out["spring"] = room_of(self.params).spring(self.params, out)
         return out

@@ -22,12 +22,14 @@ __all__ = [
     "at",
     "bounds",
     "coefficients",
+    "cube",
     "derivatives_at",
     "expand",
     "expand_disturbances",
     "rate",
     "reach",
     "slopes",
+    "times_square",
 ]
 
 X, W, SQUARE, DISTURBED = 0, LENGTH, 2 * LENGTH, 3 * LENGTH
@@ -43,6 +45,36 @@ SHORTEST = 1e-8
 def coefficients(f):
     """Return the room for the series of a field."""
     return doubles_at(f.room, ROOM)
+
+
+@fused_njit
+def cube(a, first, k):
+    """Return coefficient k of the cube of a series, whose square is kept in SQUARE up to k."""
+    even = 0.0
+    odd = 0.0
+    i = 0
+    j = k
+    while i + 1 < j - 1:
+        even += a[first + i] * a[first + j]
+        odd += a[first + i + 1] * a[first + j - 1]
+        i += 2
+        j -= 2
+    while i < j:
+        even += a[first + i] * a[first + j]
+        i += 1
+        j -= 1
+    square = 2.0 * (even + odd)
+    if i == j:
+        square += a[first + i] * a[first + i]
+    a[SQUARE + k] = square
+    even = 0.0
+    odd = 0.0
+    for i in range(0, k, 2):
+        even += a[SQUARE + i] * a[first + k - i]
+        odd += a[SQUARE + i + 1] * a[first + k - i - 1]
+    if k % 2 == 0:
+        even += a[SQUARE + k] * a[first]
+    return even + odd
 
 
 @by_type(Field)
@@ -64,47 +96,24 @@ def expand(f, x, v, w, u, phase):
     later = f.A * f.Omega * (cosine - lam * f.Omega * sine)
     turn = f.Omega * f.Omega
     for k in range(f.order - 1):
-        even = 0.0
-        odd = 0.0
-        i = 0
-        j = k
-        while i + 1 < j - 1:
-            even += a[W + i] * a[W + j]
-            odd += a[W + i + 1] * a[W + j - 1]
-            i += 2
-            j -= 2
-        while i < j:
-            even += a[W + i] * a[W + j]
-            i += 1
-            j -= 1
-        square = 2.0 * (even + odd)
-        if i == j:
-            square += a[W + i] * a[W + i]
-        a[SQUARE + k] = square
-        even = 0.0
-        odd = 0.0
-        for i in range(0, k, 2):
-            even += a[SQUARE + i] * a[W + k - i]
-            odd += a[SQUARE + i + 1] * a[W + k - i - 1]
-        if k % 2 == 0:
-            even += a[SQUARE + k] * a[W]
-        spring = k1 * a[W + k] + k3 * (even + odd) + l2 * (k + 1) * a[W + k + 1]
+        spring = k1 * a[W + k] + k3 * cube(a, W, k) + l2 * (k + 1) * a[W + k + 1]
         own = force - lam * (k + 1) * a[X + k + 1] - a[X + k] - mu * spring
         share = 1.0 / ((k + 1.0) * (k + 2.0))
         a[X + k + 2] = share * own
         a[W + k + 2] = share * (own - spring)
         force, later = later, -share * turn * force
-    return reach(a, f.order, max(abs(x), abs(v), abs(w), abs(u), f.A), f.longest)
+    return reach(a, f.order, W, max(abs(x), abs(v), abs(w), abs(u), f.A), f.longest)
 
 
 @njit
-def reach(a, order, size, longest):
+def reach(a, order, other, size, longest):
     """Return how far a step may go: terms fall by e^-2, so that e^-40 of `size` is left out (Jorba and Zou, 2005).
 
-    Series of twice the order go as far, and leave out e^-80. Nan where there is no step that is worth it.
+    Series of twice the order go as far, and leave out e^-80. Nan where there is no step that is worth it. It looks at
+    the series of x1 and at the one that begins at `other`.
     """
-    last = max(abs(a[X + order]), abs(a[W + order]))
-    before = max(abs(a[X + order - 1]), abs(a[W + order - 1]))
+    last = max(abs(a[X + order]), abs(a[other + order]))
+    before = max(abs(a[X + order - 1]), abs(a[other + order - 1]))
     step = math.inf
     if last > 0.0:
         step = math.log(size / last) / order
@@ -171,6 +180,19 @@ def slopes(f, x, v, w, u, phase):
     return f.A * (sine + f.lam * f.Omega * cosine) - f.lam * v - x - f.mu * spring, spring
 
 
+@fused_njit
+def times_square(a, of, k):
+    """Return coefficient k of a series times what is kept in SQUARE."""
+    product = 0.0
+    other = 0.0
+    for i in range(0, k, 2):
+        product += a[SQUARE + i] * a[of + k - i]
+        other += a[SQUARE + i + 1] * a[of + k - i - 1]
+    if k % 2 == 0:
+        product += a[SQUARE + k] * a[of]
+    return product + other
+
+
 @by_type(Field)
 @loop_njit
 def expand_disturbances(f, h, Y):
@@ -185,6 +207,7 @@ def expand_disturbances(f, h, Y):
         dw = dx + LENGTH
         a[dx], a[dx + 1], a[dw], a[dw + 1] = Y[0, j], Y[1, j], Y[2, j], Y[3, j]
         for k in range(order - 1):
+            # As `times_square`, written out: the sum is rounded in the factor before it.
             product = 0.0
             other = 0.0
             for i in range(0, k, 2):

@@ -112,7 +112,7 @@ def _in_flight(orbit: Orbit) -> dict[str, float]:
         after = orbit.impacts[longest]
         t, phase = float(after["t"]), float(after["phase"])
         left = [float(after[name]) for name in ("x1", "v1_after", "x2", "v2_after")]
-        at = room_of(p).leave(p, left, phase)
+        at = room_of(p).leave(p, left, phase, [float(after[name]) for name in room_of(p).beside])
     return _run(orbit, at, t, phase, ahead).final
 
 

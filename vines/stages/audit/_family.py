@@ -144,8 +144,9 @@ def family_attractor_defects(table: str, rows: Rows) -> Iterator[Defect]:
     gap = np.zeros(len(rows))
     if rows.has("end_w"):
         gap = np.abs(rows["end_w"]) - 1
-    if rows.has("end_x1", "end_x2", "walls"):
-        gap = np.where(rows["walls"] > 0, np.abs(rows["end_x1"] - rows["end_x2"]) - 1, 0.0)
+    if rows.has("end_x1", "end_x2"):
+        walls = rows["walls"] if rows.has("walls") else np.ones(len(rows))
+        gap = np.where(walls > 0, np.abs(rows["end_x1"] - rows["end_x2"]) - 1, 0.0)
     for ball in range(1, most_balls(schema.table(table).system) + 1):
         off = np.abs(rows["end_x1"] - rows[f"end_x2_{ball}"]) / rows[f"beta_{ball}"] - 1
         gap = np.fmax(gap, off)
@@ -213,8 +214,9 @@ def _log_determinant(rows: Rows) -> Floats:
             found[mine] += 2 * np.log(np.maximum(r[mine], 1e-300))
         if rows.has("lam"):
             rate = rows["lam"]
-            for damper in ("delta", "l2"):
-                rate = rate + ((1 + rows["mu"]) * rows[damper] if rows.has(damper) else 0.0)
+            # A damper between two masses acts on both; that of a spring may be at a mass beside the ball.
+            for damper, mass in (("delta", "mu"), ("l2", "mu_n" if rows.has("mu_n") else "mu")):
+                rate = rate + ((1 + rows[mass]) * rows[damper] if rows.has(damper) else 0.0)
             found[mine] -= (rate * word.p * 2 * np.pi / rows["Omega"])[mine]
     return found
 

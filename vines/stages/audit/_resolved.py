@@ -10,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from vines.dynamics import simulate
+from vines.dynamics.kernels import room_of
 from vines.errors import OrbitNotFound
 from vines.model import STATE_NAMES, VI_NES, Params, Word
 from vines.orbits import Orbit, all_orbits, find_orbit, orbit_row, shoots
@@ -61,8 +62,8 @@ def resolve_again(result: Result, table: str, place: int, rng: np.random.Generat
     else:
         disturbance = rng.uniform(-1, 1, len(t)) * min(scale, 0.1 * shortest)
         if shoots(p):
-            t = np.column_stack([t, *(row[name] for name in STATE_NAMES)])
-            disturbance = np.pad(disturbance[:, None], ((0, 0), (0, 4)))
+            t = np.column_stack([t, *(row[name] for name in _coordinates(p))])
+            disturbance = np.pad(disturbance[:, None], ((0, 0), (0, t.shape[1] - 1)))
         orbit = _solve(word, p, t, disturbance)
     comparison = Comparison()
     m = np.array(row["multipliers_re"]) + 1j * np.array(row["multipliers_im"])
@@ -97,6 +98,11 @@ def _bifurcations_of(result: Result, table: str, orbit_id: str) -> list[int]:
     return [place for place, each in enumerate(ids) if each == orbit_id]
 
 
+def _coordinates(p: Any) -> tuple[str, ...]:
+    """Return what states at impacts are, in the order of `Orbit.states`."""
+    return (*STATE_NAMES, *room_of(p).beside)
+
+
 def _solve(word: Word, p: Any, t: npt.NDArray[np.float64], disturbance: npt.NDArray[np.float64]) -> Orbit:
     """Solve for the orbit; where Newton's method all but stalls, next to a bifurcation, from a smaller disturbance."""
     for part in (1.0, 1e-2, 1e-4):
@@ -124,6 +130,6 @@ def _fly(comparison: Comparison, orbit: Orbit) -> None:
     allowed = TOLERANCE * max(1.0, orbit.max_multiplier)
     stored = np.roll(orbit.states, -1, axis=0)
     times = np.append(orbit.t[1:], orbit.t[0] + orbit.period)
-    flown = np.column_stack([met[name] for name in STATE_NAMES])
+    flown = np.column_stack([met[name] for name in _coordinates(orbit.params)])
     comparison.number("an impact in the simulator", float(np.abs(flown - stored).max()), 0.0, allowed)
     comparison.number("a time in the simulator", float(np.abs(met["t"] - times).max()), 0.0, allowed)

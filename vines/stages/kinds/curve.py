@@ -104,7 +104,7 @@ _VI_NES = Kind(
 
 KIND = of_systems(
     _VI_NES,
-    ("cubic_barriers", "drag", "duffing", "impact_pair", "parallel"),
+    ("cubic_barriers", "drag", "duffing", "hybrid", "impact_pair", "parallel"),
     FamilyCurveOptions,
     "vines.stages.bodies._family_curve:compute",
     ("curves",),

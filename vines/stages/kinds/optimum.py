@@ -54,6 +54,8 @@ KIND = Kind(
         "the plot designs",
         "duffing": "what a ball is worth depends on the attractor that is reached; vary it in sweeps and draw the "
         "plot response",
+        "hybrid": "what a spring beside the ball is worth depends on the attractor that is reached; vary it in sweeps "
+        "and draw the plot designs",
     },
     scaled=("A",),  # with b, the length of the cavity
 )

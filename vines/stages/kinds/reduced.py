@@ -37,5 +37,6 @@ KIND = Kind(
         "parallel": "the reduction is that of one ball in a level cavity",
         "cubic_barriers": "the reduction is that of a ball that flies freely between its impacts",
         "duffing": "the reduction is that of a ball in a linear oscillator",
+        "hybrid": "the reduction has no mass on a spring beside the ball",
     },
 )

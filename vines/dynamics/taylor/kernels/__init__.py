@@ -8,12 +8,13 @@ from vines.dynamics.taylor._energies import (
     VISCOUS_LOSS,
     by_series,
     held_energy,
-    largest_of,
+    peak,
     ride_integrals,
     viscosity,
 )
 from vines.dynamics.taylor._held import release, ride
 from vines.dynamics.taylor._layout import TAYLOR_STATE
+from vines.dynamics.taylor._release import release_in_step
 from vines.dynamics.taylor._samples import sample_flights
 from vines.dynamics.taylor._series import (
     DIRECTIONS,
@@ -24,11 +25,13 @@ from vines.dynamics.taylor._series import (
     at,
     bounds,
     coefficients,
+    cube,
     derivatives_at,
     expand,
     expand_disturbances,
     reach,
     slopes,
+    times_square,
 )
 from vines.dynamics.taylor._tangent import carried, ride_basis
 
@@ -49,19 +52,22 @@ __all__ = [
     "by_series",
     "carried",
     "coefficients",
+    "cube",
     "derivatives_at",
     "expand",
     "expand_disturbances",
     "flown_from",
     "held_energy",
-    "largest_of",
+    "peak",
     "reach",
     "release",
+    "release_in_step",
     "ride",
     "ride_basis",
     "ride_integrals",
     "sample_flights",
     "set_mass",
     "slopes",
+    "times_square",
     "viscosity",
 ]
