@@ -73,7 +73,6 @@ TOOK = {
     "impact_pair": ("_impact_pair", "impact_pair", ("vines/orbits/*_capsule.py",), ()),
     "parallel": ("_parallel", "parallel", ("vines/orbits/*balls.py",), ("vines/[lv]*/_balls.py",)),
     "drag": ("_drag", "drag", ("vines/orbits/_dragged.py", "vines/orbits/_flown_closing.py"), ()),
-    "duffing": ("_duffing", "duffing", (), ()),
     "friction": ("_friction", "friction", ("vines/orbits/_slid.py",), ()),
     "cubic_barriers": (
         "_cubic_barriers",
@@ -82,6 +81,7 @@ TOOK = {
         (),
     ),
     "hybrid": ("_hybrid", "hybrid", ("vines/orbits/_motions.py",), ()),
+    "duffing": ("_duffing", "duffing", (), ()),
 }
 """Of each system: the files that serve it alone, by room."""
 
