@@ -22,10 +22,9 @@ A = 0.03
 Omega = 1.05
 [stages.points]
 kind = "sweep"
-settle = 300
+settle = 600
 record = 16
-random = 3
-vary.Omega = [1.05, 1.1]
+vary.Omega = [1.05]
 [stages.run]
 kind = "trajectory"
 settle = 100
@@ -39,11 +38,6 @@ vary.A = { from = 0.03, to = 0.031 }
 kind = "transient"
 periods = 10
 params.V = 2.0
-[stages.plane]
-kind = "basins"
-settle = 100
-x = { name = "x1", from = -0.9, to = 0.9, count = 2 }
-y = { name = "v1", from = -0.9, to = 0.9, count = 2 }
 """
 
 
@@ -60,9 +54,7 @@ def test_tables_tell_of_it_and_verify_agrees(project, monkeypatch):
         assert row["reduction"] == pytest.approx(row["max_abs_x1"] / free, rel=1e-12)
     (orbit,) = vines.query("select * from duffing_orbits where A = 0.03").to_pylist()
     # Two 1:1 attract here: the frame swings little, or much.
-    sizes = vines.query("select max_abs_x1 from duffing_attractors where Omega = 1.05 and word = 'LR'")
-    assert min(abs(orbit["max_abs_x1"] - size) for size in sizes.column(0).to_pylist()) < 1e-8
-    assert max(sizes.column(0).to_pylist()) > 4 * orbit["max_abs_x1"]
+    assert found[0]["max_abs_x1"] > 4 * orbit["max_abs_x1"]
     (decays,) = vines.table("duffing_transients").to_pylist()
     assert decays["impact_share"] + decays["damper_share"] + decays["left_share"] == pytest.approx(1, abs=1e-12)
     assert "viscous_power" not in vines.table("duffing_points").column_names
@@ -71,9 +63,9 @@ def test_tables_tell_of_it_and_verify_agrees(project, monkeypatch):
     assert (log.system, log.attractor) == ("duffing", "1:1")
     told = [json.loads(pq.read_schema(file).metadata[b"vines"])["provenance"] for file in results.rglob("*.parquet")]
     assert {(each["exact"], each["order"]) for each in told} == {(False, 20)}
-    checked = verify("duffing", recompute=20)
+    checked = verify("duffing", recompute=2)
     assert checked.good, [line.first for line in checked.lines if line.first]
-    assert sum(line.checked for line in checked.lines if line.group == "recomputed") > 5
+    assert sum(line.checked for line in checked.lines if line.group == "recomputed") == 2
 
 
 @pytest.mark.parametrize(("kind", "reason"), [("optimum", "what a ball is worth"), ("reduced", "a linear oscillator")])
