@@ -17,7 +17,7 @@ from vines.orbits._own_word import sticking_word, whole_word
 from vines.orbits._shooting import shoots
 from vines.orbits._slid import refine_slid, slides
 from vines.orbits._sticking_capsule import capsule_sticks, rides_capsule
-from vines.orbits._sticking_of_balls import rides_in_parallel
+from vines.orbits._sticking_of_balls import by_sections
 from vines.orbits._sticking_search import no_sticking_orbit, refine_sticking
 from vines.orbits._sticking_search_of_balls import refine_balls
 from vines.orbits._symmetric import no_symmetric_orbit
@@ -79,7 +79,7 @@ def find_orbit(word: str | Word, p: Any, guess: Orbit | npt.ArrayLike | None = N
             return refine_slid(word, p, guess)
         if word.sticking and rides_capsule(p):
             return capsule_sticks(word, p)
-        if word.sticking and rides_in_parallel(p):
+        if word.sticking and by_sections(p):
             return refine_balls(word, p, guess)
         return refine_sticking(sticking_word(word, p), p, guess) if word.sticking else refine(word, p, guess)
     found = all_orbits(word, p)

@@ -86,6 +86,9 @@ class _Friction(Room):
     def push(self, p: Any, x1: Any, v1: Any, phase: Any) -> Any:
         return super().push(p, x1, v1, phase) + p.G
 
+    def let_go(self, p: Any, side: int) -> float:
+        return -side * (1 + p.mu) * p.f
+
     def conserves(self, p: Any) -> bool:
         return p.f == 0.0 and super().conserves(p)
 
