@@ -167,7 +167,7 @@ class Trajectory:
         out["phase_release"][: len(ends)] = self.rows[ends, col.PHASE]
         return out
 
-    @property
+    @cached_property
     def rests(self) -> Table:
         """Spells in which the ball does not move against the cavity: those of `sticks`, and stops in it with side 0."""
         return self.sticks

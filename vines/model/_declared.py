@@ -70,7 +70,7 @@ def system_names() -> tuple[str, ...]:
     Examples
     --------
     >>> system_names()
-    ('cubic_barriers', 'drag', 'friction', 'hybrid', 'impact_pair', 'modes', 'parallel', 'vi_nes')
+    ('cubic_barriers', 'drag', 'duffing', 'friction', 'hybrid', 'impact_pair', 'modes', 'parallel', 'vi_nes')
     """
     return tuple(sorted(path.stem for path in (shipped("schemas") / "systems").glob("*.toml")))
 

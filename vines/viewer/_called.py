@@ -84,7 +84,7 @@ def called(log: Log) -> Called:
     system, given = read_system(log.system), log.parameters
     body = next(each.name for each in system.bodies if each.position.name in ("x2", "w"))
     also = [meant for name, meant in _ALSO_LOST.items() if given.get(name)]
-    springs = bool(given.get("k1") or given.get("k3"))
+    springs = any(given.get(name) for name in ("k1", "k3", "alpha"))
     stored = "springs" if springs else "spring and weight" if given.get("G") else Called.stored
     return Called(
         # No two bodies have one name.

@@ -29,6 +29,7 @@ __all__ = [
 
 DRIVEN = frozenset({"impact_pair"})
 """Systems whose capsule moves as it is driven: they have neither base nor spring."""
+
 _RADIUS = 0.09
 _WALL = 0.07
 _HEIGHT = 0.34

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from vines import schema
+from vines.dynamics import ball_locked, no_ball
 from vines.model import most_balls, with_all_balls
 from vines.stages.audit._bifurcations import critical_defect, curve_equations
 from vines.stages.audit._defect import Defect, forced_amplitude, relative
@@ -14,6 +15,7 @@ from vines.stages.audit._modal import damping_of_modes, mobility_of_modes, modal
 from vines.stages.audit._others import cell_defects
 from vines.stages.audit._points import share_defects
 from vines.stages.audit._rows import Floats, Rows
+from vines.systems import parameters
 
 __all__ = [
     "family_attractor_defects",
@@ -115,8 +117,19 @@ def _balance(rows: Rows, where: np.ndarray, *more: str) -> Iterator[Defect]:
         yield Defect("balls", "impact_power is the sum over the balls", 1e-9, np.where(where, off, np.nan))
 
 
-def _yardsticks(rows: Rows, where: np.ndarray) -> Iterator[Defect]:
-    if rows.has("x1_no_ball", "x1_locked"):
+def _yardsticks(table: str, rows: Rows, where: np.ndarray) -> Iterator[Defect]:
+    system = schema.table(table).system
+    if rows.has("x1_no_ball", "x1_locked", "alpha"):
+        # No closed form: found again from the parameters alone.
+        names = [each.name for each in with_all_balls(system).parameters]
+        points = [
+            parameters(system).of(dict(zip(names, values, strict=True)))
+            for values in np.stack([rows[name] for name in names], axis=1).tolist()
+        ]
+        free, locked = (np.array([of(p) for p in points]) for of in (no_ball, ball_locked))
+        off = np.maximum(relative(rows["x1_no_ball"], free), relative(rows["x1_locked"], locked))
+        yield Defect("yardsticks", "x1_no_ball, x1_locked of the frame alone", 1e-9, np.where(where, off, np.nan))
+    elif rows.has("x1_no_ball", "x1_locked"):
         free, locked = (
             modal_amplitude(rows, mass) if rows.has("phi_1") else forced_amplitude(rows, 1.0 + mass)
             for mass in (0.0, _mass(rows))
@@ -130,7 +143,7 @@ def family_point_defects(table: str, rows: Rows) -> Iterator[Defect]:
     yield _parameters(table, rows)
     done = rows.text("status") == "ok"
     yield from _balance(rows, done, "energy_change")
-    yield from _yardsticks(rows, done)
+    yield from _yardsticks(table, rows, done)
 
 
 def family_attractor_defects(table: str, rows: Rows) -> Iterator[Defect]:
@@ -160,7 +173,7 @@ def family_orbit_defects(table: str, rows: Rows) -> Iterator[Defect]:
     yield _parameters(table, rows)
     everywhere = np.ones(len(rows), dtype=bool)
     yield from _balance(rows, everywhere)
-    yield from _yardsticks(rows, everywhere)
+    yield from _yardsticks(table, rows, everywhere)
     size = np.abs(_multipliers(rows))
     yield _product(rows)
     flat = np.isclose(size.max(axis=1), rows["max_multiplier"], rtol=1e-9)
