@@ -16,6 +16,7 @@ ALL = [
         ("vi_nes", 0),
         ("cubic_barriers", 0),
         ("drag", 0),
+        ("duffing", 0),
         ("friction", 0),
         ("hybrid", 0),
         ("impact_pair", 0),

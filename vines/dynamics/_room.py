@@ -146,6 +146,10 @@ class Room:
         force = p.A * (np.sin(phase) + p.lam * p.Omega * np.cos(phase))
         return force - p.lam * v1 - x1
 
+    def let_go(self, p: Any, side: int) -> float:
+        """Return the `push` at which a ball that rides on a wall leaves it: 0 where the wall alone acts on it."""
+        return 0.0
+
     def law(self, p: Any, balls: Any) -> ImpactLaw:
         """Return the law of impact of balls with these numbers."""
         return impact_law(p.mu, p.r)

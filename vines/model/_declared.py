@@ -70,7 +70,7 @@ def system_names() -> tuple[str, ...]:
     Examples
     --------
     >>> system_names()
-    ('cubic_barriers', 'drag', 'friction', 'hybrid', 'impact_pair', 'modes', 'parallel', 'vi_nes')
+    ('cubic_barriers', 'drag', 'duffing', 'friction', 'hybrid', 'impact_pair', 'modes', 'parallel', 'vi_nes')
     """
     return tuple(sorted(path.stem for path in (shipped("schemas") / "systems").glob("*.toml")))
 
@@ -170,6 +170,7 @@ def _system(form: Mapping[str, Any], what: str, count: int) -> System:
         order=form.get("order", 0),
         stops=form.get("stops", False),
         starred=form.get("starred", True),
+        smooth=form.get("smooth", False),
         modes=count if what == "mode" else 0,
     )
 

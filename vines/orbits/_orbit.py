@@ -96,7 +96,7 @@ class Orbit:
     struck : (N, 2) float array or None
         Of balls in parallel that stick: v1, v2 just after each impact, whatever else is struck at that instant.
     release : object or None
-        Of balls in parallel that stick: the release from which the orbit was run.
+        Of orbits that stick, but those of the VI-NES and the impact pair: the release from which the orbit was run.
     """
 
     word: Word

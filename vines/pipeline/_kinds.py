@@ -63,8 +63,9 @@ class Kind:
         name, each with `options` that are a subclass of the `options` here. The key is the tag field of both.
     code : callable, optional
         ``code(options)`` returns what the body calls beside its imports, as `body`, so that its code counts too.
-    again : {"", "points", "starts"}
-        What of it ``vines verify --recompute`` can compute again in seconds from a row alone: a point, or a start.
+    again : {"", "points", "long_points", "starts"}
+        What of it ``vines verify --recompute`` can compute again from a row alone: a point in seconds, a point that
+        takes longer, of which one of each result is drawn, or a start.
     scaled : tuple of str
         Parameters that its rows may have other values of than a declaration fixes, because it scales them.
     kernels : tuple of str, or callable
@@ -99,7 +100,7 @@ class Kind:
     fits: Callable[[Any, Any], None] | None = None
     variants: Register[Any] | None = None
     code: Callable[[Any], tuple[str, ...]] | None = None
-    again: Literal["", "points", "starts"] = ""
+    again: Literal["", "points", "long_points", "starts"] = ""
     scaled: tuple[str, ...] = ()
     kernels: tuple[str, ...] | Callable[[Any, bool], tuple[str, ...]] = ()
     systems: Mapping[str, Callable[[int], Kind]] = field(default_factory=dict)

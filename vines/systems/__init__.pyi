@@ -1,5 +1,6 @@
 from ._cubic_barriers import CubicBarriers as CubicBarriers
 from ._drag import Drag as Drag
+from ._duffing import Duffing as Duffing
 from ._friction import Friction as Friction
 from ._harvest import Harvest as Harvest
 from ._hybrid import Hybrid as Hybrid

@@ -88,7 +88,7 @@ def orbit_log(orbit: Orbit, path: str | os.PathLike[str], *, per_period: int = 6
         path,
         states=run.sample(per_period=per_period, at_events=True),
         impacts=run.impacts,
-        sticks=run.sticks,
+        sticks=run.rests,
         provenance={"kind": "orbit", "orbit_id": orbit.orbit_id},
         parameters=p.as_dict(),
         name=orbit.name,

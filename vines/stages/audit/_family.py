@@ -7,17 +7,21 @@ from collections.abc import Iterator
 import numpy as np
 
 from vines import schema
+from vines.dynamics import ball_locked, no_ball
 from vines.model import most_balls, with_all_balls
-from vines.stages.audit._bifurcations import curve_equations
+from vines.stages.audit._bifurcations import critical_defect, curve_equations
 from vines.stages.audit._defect import Defect, forced_amplitude, relative
 from vines.stages.audit._modal import damping_of_modes, mobility_of_modes, modal_amplitude
 from vines.stages.audit._others import cell_defects
 from vines.stages.audit._points import share_defects
 from vines.stages.audit._rows import Floats, Rows
+from vines.systems import parameters
 
 __all__ = [
     "family_attractor_defects",
     "family_basin_defects",
+    "family_bifurcation_defects",
+    "family_branch_defects",
     "family_curve_defects",
     "family_impact_defects",
     "family_orbit_defects",
@@ -113,8 +117,19 @@ def _balance(rows: Rows, where: np.ndarray, *more: str) -> Iterator[Defect]:
         yield Defect("balls", "impact_power is the sum over the balls", 1e-9, np.where(where, off, np.nan))
 
 
-def _yardsticks(rows: Rows, where: np.ndarray) -> Iterator[Defect]:
-    if rows.has("x1_no_ball", "x1_locked"):
+def _yardsticks(table: str, rows: Rows, where: np.ndarray) -> Iterator[Defect]:
+    system = schema.table(table).system
+    if rows.has("x1_no_ball", "x1_locked", "alpha"):
+        # No closed form: found again from the parameters alone.
+        names = [each.name for each in with_all_balls(system).parameters]
+        points = [
+            parameters(system).of(dict(zip(names, values, strict=True)))
+            for values in np.stack([rows[name] for name in names], axis=1).tolist()
+        ]
+        free, locked = (np.array([of(p) for p in points]) for of in (no_ball, ball_locked))
+        off = np.maximum(relative(rows["x1_no_ball"], free), relative(rows["x1_locked"], locked))
+        yield Defect("yardsticks", "x1_no_ball, x1_locked of the frame alone", 1e-9, np.where(where, off, np.nan))
+    elif rows.has("x1_no_ball", "x1_locked"):
         free, locked = (
             modal_amplitude(rows, mass) if rows.has("phi_1") else forced_amplitude(rows, 1.0 + mass)
             for mass in (0.0, _mass(rows))
@@ -128,7 +143,7 @@ def family_point_defects(table: str, rows: Rows) -> Iterator[Defect]:
     yield _parameters(table, rows)
     done = rows.text("status") == "ok"
     yield from _balance(rows, done, "energy_change")
-    yield from _yardsticks(rows, done)
+    yield from _yardsticks(table, rows, done)
 
 
 def family_attractor_defects(table: str, rows: Rows) -> Iterator[Defect]:
@@ -158,12 +173,24 @@ def family_orbit_defects(table: str, rows: Rows) -> Iterator[Defect]:
     yield _parameters(table, rows)
     everywhere = np.ones(len(rows), dtype=bool)
     yield from _balance(rows, everywhere)
-    yield from _yardsticks(rows, everywhere)
+    yield from _yardsticks(table, rows, everywhere)
     size = np.abs(_multipliers(rows))
     yield _product(rows)
     flat = np.isclose(size.max(axis=1), rows["max_multiplier"], rtol=1e-9)
     right = flat & ((rows["stable"] == 1) == (rows["max_multiplier"] < 1))
     yield Defect("stability", "max_multiplier, and stable where it is below 1", 0.0, np.where(right, 0.0, np.inf))
+
+
+def family_bifurcation_defects(table: str, rows: Rows) -> Iterator[Defect]:
+    """Yield the checks of rows of a table of bifurcations."""
+    yield _parameters(table, rows)
+    yield critical_defect(rows)
+
+
+def family_branch_defects(table: str, rows: Rows) -> Iterator[Defect]:
+    """Yield the checks of rows of a table of branches."""
+    yield _parameters(table, rows)
+    yield Defect("orbits", "one at least", 0.0, np.where(rows["orbits"] >= 1, 0.0, np.inf))
 
 
 def family_curve_defects(table: str, rows: Rows) -> Iterator[Defect]:
@@ -203,7 +230,7 @@ def _log_determinant(rows: Rows) -> Floats:
     found = np.zeros(len(rows))
     for code, text in enumerate(known):
         word, mine = Word(text), codes == code
-        for ball in word.balls:
+        for ball in (ball for ball, side in zip(word.balls, word.sides, strict=True) if side):
             r = rows["r"] if rows.has("r") else rows[f"r_{max(ball, 1)}"]
             found[mine] += 2 * np.log(np.maximum(r[mine], 1e-300))
         if rows.has("lam") or rows.has("lam_1"):
