@@ -158,6 +158,10 @@ class Room:
         """Return the mass of the ball in the unit of energies."""
         return p.mu
 
+    def frame_energy(self, p: Any, at: Mapping[str, float], sag: float) -> float:
+        """Return the energy of the frame without forcing, above that at rest, where x1 is -sag."""
+        return 0.5 * (at["v1"] ** 2 + (at["x1"] + sag) ** 2)
+
     def conserves(self, p: Any) -> bool:
         """Say whether nothing is lost, by damping or in impacts: volumes of states are kept, and nothing attracts."""
         restitution = getattr(p, "r", 0.0)

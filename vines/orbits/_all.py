@@ -25,6 +25,7 @@ from vines.orbits._shooting import refuse_no_walls, shoots
 from vines.orbits._shooting_search import gather_shots, of_the_vi_nes
 from vines.orbits._slid import slid_orbits
 from vines.orbits._slid_round import slides
+from vines.orbits._smooth_search import smooth_orbits
 from vines.orbits._sticking_capsule import capsule_orbits, rides_capsule
 from vines.orbits._sticking_of_balls import by_sections
 from vines.orbits._sticking_search import search_sticking
@@ -113,6 +114,9 @@ def all_orbits(word: str | Word, p: Any, *, proof: bool = False) -> Orbits:
     (True, [(True, False), (False, True), (False, True)])
     """
     word = whole_word(word, p)
+    if word.unstruck:
+        found, how = smooth_orbits(word, p)
+        return Orbits(_in_order(found), complete=False, remark=how, nearest=np.inf)
     if word.sticking:
         word = sticking_word(word, p)
         if rides_capsule(p):
