@@ -9,10 +9,11 @@ from vines.attractors._approach import nearest_orbit
 from vines.attractors._judge import NEAR, ROUNDING, UNSTABLE, note_drift, without_impact
 from vines.attractors._multipliers import multipliers
 from vines.attractors._smooth_watch import LONGEST, apart, watch_smooth
+from vines.dynamics.duffing import DuffingField
 from vines.dynamics.hybrid import HybridConstants
 from vines.dynamics.kernels import directions, tangent_product
 from vines.dynamics.kernels import rows as col
-from vines.dynamics.taylor import TaylorConstants
+from vines.dynamics.taylor import Field, TaylorConstants
 from vines.kernels import by_type, cold_njit, complex_vector, new_matrix, njit
 
 __all__: list[str] = []
@@ -32,8 +33,27 @@ nearest_orbit.register(HybridConstants)(_nearest_orbit)
 @cold_njit
 def _roots(c, rows, first, last, roots):
     """Fill the multipliers from one row to another, those first that are 1 for any motion; return their number."""
-    multipliers(tangent_product(c, rows, first, last), roots)
+    return _roots_of(c.field, tangent_product(c, rows, first, last), roots)
+
+
+@by_type(Field)
+@cold_njit
+def _roots_of(f, Y, roots):
+    multipliers(Y, roots)
     return 0
+
+
+@_roots_of.register(DuffingField)
+@cold_njit
+def _roots_of_a_frame(f, Y, roots):
+    # The ball acts on nothing, and keeps what it is given.
+    frame = new_matrix(2, 2)
+    for i in range(2):
+        for k in range(2):
+            frame[i, k] = Y[i, k]
+    multipliers(frame, roots[2:])
+    roots[0] = roots[1] = 1.0
+    return 2
 
 
 @_roots.register(HybridConstants)
@@ -54,7 +74,20 @@ def _roots_beside(c, rows, first, last, roots):
 @njit
 def _stays(c, rows, last, verdict):
     """Say whether what flies freely, if anything does, comes to no wall within sight."""
+    rides = rows[last, col.MODE] != 0.0
+    return _stays_free(c.field, c.period, 0.0 if rides else abs(rows[last, col.A_V2]), verdict)
+
+
+@by_type(Field)
+@njit
+def _stays_free(f, period, speed, verdict):
     return True
+
+
+@_stays_free.register(DuffingField)
+@njit
+def _ball_stays_free(f, period, speed, verdict):
+    return note_drift(verdict, period, speed)
 
 
 @_stays.register(HybridConstants)

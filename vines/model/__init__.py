@@ -1,7 +1,7 @@
 """The model: its declaration, parameters and words of impacts. Pure Python, no numba."""
 
 from vines.model._conversion import dimensionless
-from vines.model._declared import most_balls, read_system, system_names, with_all_balls, with_one_ball
+from vines.model._declared import counted, most_balls, read_system, system_names, with_all_balls, with_one_ball
 from vines.model._expression import Expression
 from vines.model._letters import STOPS
 from vines.model._parameters import Parameters
@@ -52,6 +52,7 @@ __all__ = [
     "Range",
     "System",
     "Word",
+    "counted",
     "dimensionless",
     "most_balls",
     "not_alone",

@@ -207,6 +207,17 @@ class Word:
         return _word(self.letters.translate(_SWAP), self.p)
 
     @property
+    def doubled(self) -> Word:
+        """The word of an orbit of this word that is gone through twice.
+
+        Examples
+        --------
+        >>> Word("LR/3T").doubled
+        Word('LRLR/6T')
+        """
+        return _word(self.letters * 2, 2 * self.p)
+
+    @property
     def symmetric(self) -> bool:
         """Whether an orbit of this word can be its own mirror image.
 

@@ -35,7 +35,7 @@ from vines.orbits._sticking_curve import bound_beside
 from vines.orbits._sticking_ends import end_of
 from vines.orbits._sticking_family import StickingProblem
 from vines.orbits._sticking_family_of_balls import BallsProblem
-from vines.orbits._sticking_of_balls import rides_in_parallel
+from vines.orbits._sticking_of_balls import by_sections
 from vines.orbits._symmetric import SymmetricProblem
 
 __all__ = ["CLOSED", "continue_orbit"]
@@ -55,6 +55,8 @@ _FIRST = 4
 """Points before which a branch is not looked at for having closed."""
 _ALONG = 0.9
 """Least cosine of the angle between the directions in which it passes where it began."""
+_BESIDE = 1e-4
+"""Length of a step, next to an end of a family beyond which its map does not exist, that may be of rounding alone."""
 
 _TOLERANCE = 1e-14
 """Of the root of a defining equation, as a fraction of the step in which it lies."""
@@ -153,7 +155,7 @@ def continue_orbit(
 def _problem(orbit: Orbit, parameter: str) -> Problem:
     if orbit.word.sticking and rides_capsule(orbit.params):
         return CapsuleSticking(orbit, parameter)
-    if orbit.word.sticking and rides_in_parallel(orbit.params):
+    if orbit.word.sticking and by_sections(orbit.params):
         return BallsProblem(orbit, parameter)
     if slides(orbit.params):
         return SlidProblem(orbit, parameter)
@@ -203,7 +205,7 @@ class _Branch:
             only_inside=True,
             is_on=None if self.symmetric or origin(self.orbit, _ELSEWHERE) else self._is_on,
         ).follow(here, self._record, self.max_points)
-        if end == "lost" and self.orbit.word.sticking:
+        if end == "lost" and self._ends_by_itself:
             end = self._ended() or end
         return Branch(
             self.problem.word,
@@ -213,6 +215,11 @@ class _Branch:
             tuple(self.events),
             (CLOSED if end == CLOSED else "range", end),
         )
+
+    @property
+    def _ends_by_itself(self) -> bool:
+        """Whether the orbits are those of a map that does not exist beyond the end of the family."""
+        return bool(self.orbit.word.sticking) or slides(self.orbit.params)
 
     def _is_on(self, point: Point) -> bool:
         """Say whether a point is not on the family that this one comes out of, whose orbits solve its equations too."""
@@ -281,6 +288,16 @@ class _Branch:
         if not (math.isfinite(first) and math.isfinite(second)) or (first > 0) == (second > 0):
             return None
         chord = Chord(self.curve, here, there)
+        try:
+            return self._root(condition, chord, first)
+        except OrbitNotFound:
+            far = float(np.linalg.norm((there.y - here.y) / self.curve.scale))
+            if self._ends_by_itself and (condition.type in _MARGINS or far < _BESIDE):
+                # Next to the end, on one side of which no equations hold; steps get short there.
+                return None
+            raise
+
+    def _root(self, condition: Condition, chord: Chord, first: float) -> tuple[float, str, Point]:
         try:
             root = chord.root(condition.function, _TOLERANCE)
         except OrbitNotFound:

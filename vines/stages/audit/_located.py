@@ -24,9 +24,12 @@ __all__ = ["locate_again"]
 _BESIDE = (1e-3, 1e-4, 1e-5)
 """Distances of the orbit that is followed from the bifurcation, relative to the value of the parameter."""
 
-_STICKING_ENDS = ("incomplete_chatter", "release_tangency")
+_ENDS = ("incomplete_chatter", "release_tangency")
+_SLIDING = "_sliding"
+"""Types of ends of families that stick, and what ends those of families with friction."""
+
 _EXTRAPOLATED = 1e-7
-"""What is allowed of the ends of families that stick, which are extrapolated."""
+"""What is allowed of these, which are extrapolated."""
 
 
 def locate_again(result: Result, table: str, place: int) -> Comparison:
@@ -38,7 +41,8 @@ def locate_again(result: Result, table: str, place: int) -> Comparison:
     if nearest is None:
         comparison.same(f"{row['type']} at {row['parameter']} = {row['value']:.10g}", "there", "not met again")
         return comparison
-    allowed = _EXTRAPOLATED if row["type"] in _STICKING_ENDS else TOLERANCE
+    extrapolated = row["type"] in _ENDS or row["type"].endswith(_SLIDING)
+    allowed = _EXTRAPOLATED if extrapolated else TOLERANCE
     comparison.number("value", row["value"], nearest.value, allowed)
     return comparison
 
