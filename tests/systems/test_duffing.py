@@ -281,6 +281,13 @@ def test_bifurcations_are_those_of_dop853(kind, to, value, root):
         assert pair[0].states == pytest.approx(-np.roll(pair[1].states, 1, axis=0), abs=1e-10)
 
 
+def test_orbits_are_looked_for_on_the_large_response_too():
+    """The large motion of docs/systems.md has lost its symmetry where the small one attracts as well."""
+    found = vines.all_orbits("LR", P.replace(A=0.03, Omega=1.05, alpha=0.5))
+    large = [orbit for orbit in found if orbit.stable and orbit.admissible and not orbit.symmetric]
+    assert [orbit.measures.max_abs_x1 for orbit in large] == [pytest.approx(0.7445, abs=1e-3)] * 2
+
+
 @pytest.mark.full
 def test_a_fold_followed_in_two_parameters_is_one_of_dop853():
     branch = vines.continue_orbit(vines.find_orbit("LR", P), "A", 0.01, step=0.1)
