@@ -67,7 +67,6 @@ def test_tables_hold_stops_and_the_power_of_friction(slid):
             'kind = "curve"\ntype = "fold"',
             "the kind 'curve' cannot do the system 'friction'; it can do .*drag",
         ),
-        ('word = "LLsR"', 'word = "L*R"', "orbits that stick are not computed for 'friction'"),
         ('system = "friction"', 'system = "drag"', "'LLsR' is not a word of the system 'drag'"),
     ],
 )

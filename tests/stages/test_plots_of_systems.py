@@ -46,6 +46,10 @@ PARAMETERS = {
         *("cube", "mu = 0.02, alpha = 0.5", "A", "[0.028, 0.029, 0.03]", "Omega", "[0.999, 1.0]"),
         *("LR", "A = 0.03", "x2", "v2"),
     ),
+    "modes": (
+        *("beam", "mu = 0.05, omega = [1.0, 1.9], phi = [0.8, -0.7], gamma = [0.9, 0.5]", "A", "[0.028, 0.029, 0.03]"),
+        *("Omega", "[0.999, 1.0]", "LR", "A = 0.03", "x2", "v2"),
+    ),
     "cubic_barriers": (
         *("cubic", "mu = 0.02, k3 = 0.5, l2 = 0.1", "A", "[0.028, 0.029, 0.03]", "Omega", "[0.999, 1.0]"),
         *("LR", "A = 0.03", "x2", "v2"),
@@ -110,6 +114,7 @@ DRAWN = {
     "response": ("{short}_up", "{short}_down"),
     "sheet": ("{short}_run", "{short}_up", "{short}_branch"),
     "designs": ("{short}_map",),
+    "best": ("{short}_map",),
 }
 CELLS = {
     "measures": [{"show": "impact_power"}],
@@ -119,12 +124,21 @@ CELLS = {
         {"show": "w_dot", "of": "{short}_up"},
     ],
     "designs": [{"show": "over"}],
+    "best": [{"show": "map"}, {"show": "lead"}],
 }
 
 
 def _cells(plot, short, needs):
     for cell in CELLS.get(plot, ()):
-        shown = [f"set {short}"] if plot == "designs" else [cell["of"].format(short=short)] if "of" in cell else needs
+        shown = (
+            [f"set {short}"]
+            if plot == "designs"
+            else []
+            if plot == "best"
+            else [cell["of"].format(short=short)]
+            if "of" in cell
+            else needs
+        )
         yield f"[[stages.{plot}_{short}.cells]]\nshow = {cell['show']!r}\nof = {shown}\n"
 
 
@@ -138,6 +152,9 @@ def figure(plot, system):
         pair, two = ("B", "[0.6, 0.7]", "impact_power"), ("A", "[0.028, 0.03]", "reduction")
         axis, span, measure = pair if short == "pair" else two
         text += f"over = '{axis}'\nspan = {span}\nmeasure = '{measure}'\nsets = {{ 'set {short}' = {needs} }}\n"
+    if plot == "best":
+        measure = "impact_power" if short == "pair" else "reduction"
+        text += f"measure = '{measure}'\nsets = {{ one = {needs}, another = {needs} }}\n"
     return text + "".join(_cells(plot, short, needs))
 
 
@@ -186,7 +203,7 @@ def test_what_a_plot_cannot_do_is_refused_with_what_it_can_and_what_can_do_it(de
     short = PARAMETERS[system][0]
     can = ", ".join(name for name in system_names() if PLOTS.get(plot).draws(name))
     assert f"the plot {plot!r} cannot draw the system {system!r} of {short}_up; it can draw {can}" in said
-    assert f"plots that can draw {system!r}: basins, bifurcation, " in said
+    assert f"plots that can draw {system!r}: basins, best, bifurcation, " in said
     assert "\n" not in said
 
 

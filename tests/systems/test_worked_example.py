@@ -81,6 +81,7 @@ TOOK = {
         (),
     ),
     "hybrid": ("_hybrid", "hybrid", ("vines/orbits/_motions.py",), ()),
+    "modes": ("_modes", "modes", ("vines/orbits/_modal.py",), ()),
     "duffing": ("_duffing", "duffing", (), ()),
 }
 """Of each system: the files that serve it alone, by room."""

@@ -1,5 +1,6 @@
 """What a simulation settles to: n:m/pT, quasi-periodic, chaotic, without impact, or not settled yet."""
 
+from vines.attractors import _modal as _modal
 from vines.attractors import _stroboscope as _stroboscope
 from vines.attractors._alike import SAME, Motion, apart
 from vines.attractors._atlas import Atlas, Entry, atlas

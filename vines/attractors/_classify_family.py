@@ -110,9 +110,11 @@ def classify_family(
     points = (params,) if isinstance(params, Parameters) else tuple(params)
     if not points:
         raise ParameterError("params is empty; give at least one point")
-    kinds = {(p.system.name, getattr(p, "balls", 0)) for p in points}
+    kinds = {(p.system.name, p.system.balls, p.system.modes) for p in points}
     if len(kinds) > 1:
-        raise ParameterError(f"points of {len(kinds)} systems or numbers of balls; classify those of each alone")
+        raise ParameterError(
+            f"points of {len(kinds)} systems or numbers of balls or modes; classify those of each alone"
+        )
     n = _count(len(points), given)
     points = points * n if len(points) == 1 else points
     begins = []

@@ -217,6 +217,10 @@ class System(msgspec.Struct, frozen=True, dict=True):
         Whether a ball may stop in mid-cavity.
     starred : bool
         Whether orbits that stick are computed.
+    smooth : bool
+        Whether motions without impacts are isolated, so that they have orbits.
+    modes : int
+        How many modes have numbers after their parameters; 0 where there is one without a number.
     """
 
     name: str
@@ -236,6 +240,8 @@ class System(msgspec.Struct, frozen=True, dict=True):
     order: int = 0
     stops: bool = False
     starred: bool = True
+    smooth: bool = False
+    modes: int = 0
 
     @property
     def state(self) -> tuple[Coordinate, ...]:

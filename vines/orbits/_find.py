@@ -17,7 +17,7 @@ from vines.orbits._own_word import sticking_word, whole_word
 from vines.orbits._shooting import shoots
 from vines.orbits._slid import refine_slid, slides
 from vines.orbits._sticking_capsule import capsule_sticks, rides_capsule
-from vines.orbits._sticking_of_balls import rides_in_parallel
+from vines.orbits._sticking_of_balls import by_sections
 from vines.orbits._sticking_search import no_sticking_orbit, refine_sticking
 from vines.orbits._sticking_search_of_balls import refine_balls
 from vines.orbits._symmetric import no_symmetric_orbit
@@ -50,7 +50,8 @@ def find_orbit(word: str | Word, p: Any, guess: Orbit | npt.ArrayLike | None = N
         forcing of phase zero at t = 0; for a word with a star time and v1 of the release after the first one, two
         numbers; where flights have no closed form (`systems.CubicBarriers`, `systems.Duffing`, `systems.Hybrid`) an
         orbit, or rows of t, x1, v1, x2, v2 (x3, v3) just before each impact; where a ball slides with friction x1, v1,
-        v2 and t just before the first impact, four. The solution that Newton's method finds from there is returned.
+        v2 and t just before the first impact, four; without impacts an orbit, or the state at phase 0 of the forcing.
+        The solution that Newton's method finds from there is returned.
 
     Returns
     -------
@@ -78,7 +79,7 @@ def find_orbit(word: str | Word, p: Any, guess: Orbit | npt.ArrayLike | None = N
             return refine_slid(word, p, guess)
         if word.sticking and rides_capsule(p):
             return capsule_sticks(word, p)
-        if word.sticking and rides_in_parallel(p):
+        if word.sticking and by_sections(p):
             return refine_balls(word, p, guess)
         return refine_sticking(sticking_word(word, p), p, guess) if word.sticking else refine(word, p, guess)
     found = all_orbits(word, p)

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from vines.errors import OrbitNotFound, ParameterError
-from vines.model import Word
 from vines.orbits._find import find_orbit
 from vines.orbits._general import same
 from vines.orbits._orbit import Orbit
@@ -35,7 +34,7 @@ def partners(orbit: Orbit) -> Iterator[Orbit]:
     if largest.real < 0:
         if 2 * len(orbit.word) > _MOST:
             return
-        word = Word(f"{orbit.word.letters * 2}/{2 * orbit.word.p}T")
+        word = orbit.word.doubled
         guesses = doubled_times(orbit)
     elif orbit.symmetric:
         word, guesses = orbit.word, asymmetric_times(orbit)

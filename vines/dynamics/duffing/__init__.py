@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -53,6 +53,9 @@ class _Duffing(Room):
 
     def push(self, p: Any, x1: Any, v1: Any, phase: Any) -> Any:
         return super().push(p, x1, v1, phase) - p.alpha * x1**3
+
+    def frame_energy(self, p: Any, at: Mapping[str, float], sag: float) -> float:
+        return super().frame_energy(p, at, sag) + 0.25 * p.alpha * at["x1"] ** 4
 
     def stored(self, p: Any, at: Any) -> tuple[Any, Any, Any]:
         frame, ball, potential = super().stored(p, at)
