@@ -282,3 +282,20 @@ def test_stops_are_of_systems_with_friction():
         vines.find_orbit("LsR", vines.Params(mu=0.02, A=0.03))
     with pytest.raises(ParameterError, match="no impact"):
         vines.find_orbit("ss", systems.Friction(mu=0.02, A=0.03, f=0.3))
+
+
+def test_a_ball_that_slides_to_and_fro_is_named_and_the_rest_of_it_too():
+    p = systems.Friction(mu=0.3, A=0.03, f=0.02, lam=0.1)
+    attractor = vines.settle(p, v2=0.02)
+    assert (attractor.regime, attractor.name, attractor.settled) == ("no_impact", "0:0", True)
+    # Where in the cavity it slides makes no difference.
+    assert np.abs(attractor.multipliers - 1).min() < 1e-9
+    assert np.sort(np.abs(attractor.multipliers))[-2] < 0.8
+    final = attractor.final
+    turns = integrated(p, [final[name] for name in ("x1", "v1", "x2", "v2")], final["phase"], 2 * p.period)
+    assert [kind for kind, *_ in turns] == [SLIDE] * 4
+    for (_, t, x1, v1), (_, later, x, v) in zip(turns[:2], turns[2:], strict=True):
+        assert (later - t, x, v) == pytest.approx((p.period, x1, v1), abs=1e-8)
+    assert vines.settle(p.replace(f=5.0)).name == "0:0"
+    # With a tilt it sinks to the lower end, and hits.
+    assert vines.settle(p.replace(G=0.002), v2=0.02).regime != "no_impact"

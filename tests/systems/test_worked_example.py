@@ -73,7 +73,7 @@ TOOK = {
     "impact_pair": ("_impact_pair", "impact_pair", ("vines/orbits/*_capsule.py",), ()),
     "parallel": ("_parallel", "parallel", ("vines/orbits/*balls.py",), ("vines/[lv]*/_balls.py",)),
     "drag": ("_drag", "drag", ("vines/orbits/_dragged.py", "vines/orbits/_flown_closing.py"), ()),
-    "friction": ("_friction", "friction", ("vines/orbits/_slid.py",), ()),
+    "friction": ("_friction", "friction", ("vines/orbits/_slid*.py", "vines/orbits/_rests.py"), ()),
     "cubic_barriers": (
         "_cubic_barriers",
         "[ct][ua][by][il]*",

@@ -23,7 +23,8 @@ from vines.orbits._own_word import sticking_word, whole_word
 from vines.orbits._seeds import base_word, doubled_times, harvested_times, random_times, simplex_times
 from vines.orbits._shooting import refuse_no_walls, shoots
 from vines.orbits._shooting_search import gather_shots, of_the_vi_nes
-from vines.orbits._slid import slid_orbits, slides
+from vines.orbits._slid import slid_orbits
+from vines.orbits._slid_round import slides
 from vines.orbits._smooth_search import smooth_orbits
 from vines.orbits._sticking_capsule import capsule_orbits, rides_capsule
 from vines.orbits._sticking_of_balls import by_sections

@@ -29,7 +29,8 @@ from vines.orbits._family import GeneralProblem
 from vines.orbits._general import origin
 from vines.orbits._orbit import Orbit
 from vines.orbits._problem import Point, Problem, ZeroSet
-from vines.orbits._slid import SlidProblem, slides
+from vines.orbits._slid import SlidProblem
+from vines.orbits._slid_round import slides
 from vines.orbits._sticking_capsule import CapsuleSticking, rides_capsule
 from vines.orbits._sticking_curve import bound_beside
 from vines.orbits._sticking_ends import end_of

@@ -15,7 +15,8 @@ from vines.orbits._moved import moved
 from vines.orbits._orbit import Orbit
 from vines.orbits._release_of_balls import run_closed
 from vines.orbits._shooting import closing_of
-from vines.orbits._slid import SlidRound, first_impact, slides
+from vines.orbits._slid import first_impact
+from vines.orbits._slid_round import SlidRound, slides
 from vines.orbits._sticking_family import closing_of_round
 from vines.orbits._sticking_of_balls import by_sections
 from vines.orbits._sticking_orbit import Round, release_of

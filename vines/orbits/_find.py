@@ -15,7 +15,8 @@ from vines.orbits._general import refine, search
 from vines.orbits._orbit import Orbit
 from vines.orbits._own_word import sticking_word, whole_word
 from vines.orbits._shooting import shoots
-from vines.orbits._slid import refine_slid, slides
+from vines.orbits._slid import refine_slid
+from vines.orbits._slid_round import slides
 from vines.orbits._sticking_capsule import capsule_sticks, rides_capsule
 from vines.orbits._sticking_of_balls import by_sections
 from vines.orbits._sticking_search import no_sticking_orbit, refine_sticking

@@ -22,8 +22,8 @@ from vines.orbits._curve_problem import CurveProblem
 from vines.orbits._joined import is_joint, left_family
 from vines.orbits._own_word import sticking_word
 from vines.orbits._problem import Point, ZeroSet
-from vines.orbits._slid import slides
 from vines.orbits._slid_curve import SlidCurve
+from vines.orbits._slid_round import slides
 from vines.orbits._smooth_curve import SmoothCurve
 from vines.orbits._special import END, Special, special_functions
 from vines.orbits._sticking_curve import StickingCurve

@@ -17,7 +17,8 @@ from vines.orbits._general import origin, refine
 from vines.orbits._orbit import Orbit
 from vines.orbits._problem import ZeroSet
 from vines.orbits._shooting import shoots
-from vines.orbits._slid import SlidProblem, first_impact, refine_slid, slid_again, slid_image, slides
+from vines.orbits._slid import SlidProblem, first_impact, refine_slid, slid_again, slid_image
+from vines.orbits._slid_round import slides
 from vines.orbits._smooth_orbit import smooth_doubled, smooth_image
 from vines.orbits._sticking_capsule import capsule_sticks, rides_capsule
 from vines.orbits._sticking_of_balls import by_sections, mirrored_balls

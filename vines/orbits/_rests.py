@@ -17,9 +17,11 @@ import numpy.typing as npt
 
 from vines.dynamics.kernels import constants, room_of, segment_state
 from vines.dynamics.kernels import rows as col
+from vines.orbits._contacts import completes
 from vines.orbits._orbit import Orbit
 from vines.orbits._release_of_balls import force_slope, run_round
-from vines.orbits._slid import SlidRound, first_impact
+from vines.orbits._slid import first_impact
+from vines.orbits._slid_round import SlidRound
 
 __all__ = ["RESTS", "rest_margins"]
 
@@ -30,7 +32,7 @@ SWITCHING = "switching_sliding"
 ADDING = "adding_sliding"
 TOUCHING = "grazing_sliding"
 
-RESTS = (CROSSING, SWITCHING, ADDING, TOUCHING)
+RESTS: tuple[str, ...] = (CROSSING, SWITCHING, ADDING, TOUCHING)
 """Types of ends of families with friction: a turn becomes a stop, or a stop a turn; a ball stops that turned first, and
 stopped soon after; friction is only just enough inside a stop; the ball stops on its way, and goes on."""
 
@@ -71,7 +73,7 @@ def _margins(p: Any, rows: Floats) -> Iterator[tuple[str, float]]:
         _, v1, _, v2, _ = segment_state(c, row, tau)
         return v1 - v2
 
-    for row, following in pairwise(rows):
+    for i, (row, following) in enumerate(pairwise(rows)):
         lasts = float(following[col.TAU])
         if row[col.KIND] == col.STOP:
             kind, against = _met(p, row, row[col.SIDE], pull(row, 0.0))
@@ -79,12 +81,17 @@ def _margins(p: Any, rows: Floats) -> Iterator[tuple[str, float]]:
             yield TOUCHING, held + against
             for sign in (1.0, -1.0):
                 yield ADDING, held - _largest(lambda tau, row=row, sign=sign: sign * pull(row, tau), lasts)
-        elif row[col.KIND] == col.SLIDE and row[col.RUN] == 0.0:
+        elif row[col.KIND] == col.SLIDE and row[col.RUN] == 0.0 and not _of_chatter(rows, i):
             kind, against = _met(p, row, -row[col.SIDE], pull(row, 0.0))
             yield kind, against - held
         if row[col.MODE] == 0.0 and lasts > 0.0:
             sense = math.copysign(1.0, speed(row, 0.5 * lasts))
             yield TOUCHING, -_largest(lambda tau, row=row, sense=sense: -sense * speed(row, tau), lasts)
+
+
+def _of_chatter(rows: Floats, i: int) -> bool:
+    """Say whether a turn is that of a hop of a chatter which completes: that ends in its own way."""
+    return bool(rows[i - 1, col.KIND] == col.IMPACT and completes(rows, len(rows), i - 1))
 
 
 def _met(p: Any, row: Floats, came: float, pull: float) -> tuple[str, float]:

@@ -13,7 +13,8 @@ from vines.orbits._curve_equations import CurveEquations
 from vines.orbits._moved import moved
 from vines.orbits._orbit import Orbit
 from vines.orbits._problem import Point
-from vines.orbits._slid import SlidRound, first_impact, slid_again
+from vines.orbits._slid import first_impact, slid_again
+from vines.orbits._slid_round import SlidRound
 from vines.orbits._sticking_ends import what_vanishes
 
 __all__ = ["SlidCurve"]

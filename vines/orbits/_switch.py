@@ -16,7 +16,8 @@ from vines.orbits._general import origin, refine
 from vines.orbits._joined import BRANCHING, family_through, is_joint, left_family, mirror_image, unfolded
 from vines.orbits._orbit import Orbit
 from vines.orbits._problem import Problem
-from vines.orbits._slid import refine_slid, slides
+from vines.orbits._slid import refine_slid
+from vines.orbits._slid_round import slides
 from vines.orbits._sticking_family import StickingProblem
 from vines.orbits._sticking_family_of_balls import BallsProblem
 from vines.orbits._sticking_of_balls import by_sections

@@ -70,6 +70,7 @@ class FrictionRun(Trajectory):
 
 class _Friction(Room):
     trajectory = FrictionRun
+    unstruck = "0:0"
 
     def constants(self, values: Sequence[float]) -> FrictionConstants:
         return friction_constants(*values)
