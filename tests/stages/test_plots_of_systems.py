@@ -106,6 +106,7 @@ DRAWN = {
     "response": ("{short}_up", "{short}_down"),
     "sheet": ("{short}_run", "{short}_up", "{short}_branch"),
     "designs": ("{short}_map",),
+    "best": ("{short}_map",),
 }
 CELLS = {
     "measures": [{"show": "impact_power"}],
@@ -115,12 +116,21 @@ CELLS = {
         {"show": "w_dot", "of": "{short}_up"},
     ],
     "designs": [{"show": "over"}],
+    "best": [{"show": "map"}, {"show": "lead"}],
 }
 
 
 def _cells(plot, short, needs):
     for cell in CELLS.get(plot, ()):
-        shown = [f"set {short}"] if plot == "designs" else [cell["of"].format(short=short)] if "of" in cell else needs
+        shown = (
+            [f"set {short}"]
+            if plot == "designs"
+            else []
+            if plot == "best"
+            else [cell["of"].format(short=short)]
+            if "of" in cell
+            else needs
+        )
         yield f"[[stages.{plot}_{short}.cells]]\nshow = {cell['show']!r}\nof = {shown}\n"
 
 
@@ -134,6 +144,9 @@ def figure(plot, system):
         pair, two = ("B", "[0.6, 0.7]", "impact_power"), ("A", "[0.028, 0.03]", "reduction")
         axis, span, measure = pair if short == "pair" else two
         text += f"over = '{axis}'\nspan = {span}\nmeasure = '{measure}'\nsets = {{ 'set {short}' = {needs} }}\n"
+    if plot == "best":
+        measure = "impact_power" if short == "pair" else "reduction"
+        text += f"measure = '{measure}'\nsets = {{ one = {needs}, another = {needs} }}\n"
     return text + "".join(_cells(plot, short, needs))
 
 
@@ -182,7 +195,7 @@ def test_what_a_plot_cannot_do_is_refused_with_what_it_can_and_what_can_do_it(de
     short = PARAMETERS[system][0]
     can = ", ".join(name for name in system_names() if PLOTS.get(plot).draws(name))
     assert f"the plot {plot!r} cannot draw the system {system!r} of {short}_up; it can draw {can}" in said
-    assert f"plots that can draw {system!r}: basins, bifurcation, " in said
+    assert f"plots that can draw {system!r}: basins, best, bifurcation, " in said
     assert "\n" not in said
 
 

@@ -13,6 +13,7 @@ from vines.model import VI_NES, Parameter, System, most_balls, read_system
 __all__ = ["OfSystem"]
 
 _SYSTEM = "--system"
+_UNSTRUCK = re.compile(r"-(/\d*T)?")
 _OF_BALL = re.compile(r"--[a-zA-Z]+_([1-9])(=.*)?")
 
 
@@ -25,6 +26,8 @@ class OfSystem(click.Command):
     def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
         """Read the system first, since options are those of its parameters."""
         ctx.meta[_SYSTEM] = VI_NES if ctx.resilient_parsing else _declared(args)
+        # A word of no impacts looks like an option: its type is the same.
+        args = ["0:0" + each[1:] if _UNSTRUCK.fullmatch(each) else each for each in args]
         return super().parse_args(ctx, args)
 
     def get_params(self, ctx: click.Context) -> list[click.Parameter]:

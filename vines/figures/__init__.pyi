@@ -2,6 +2,10 @@ from ._axes import SHOWN as SHOWN
 from ._basins import BasinMap as BasinMap
 from ._basins import basins_figure as basins_figure
 from ._basins import start_symbol as start_symbol
+from ._best import BestMap as BestMap
+from ._best import LeadMap as LeadMap
+from ._best import SetCurve as SetCurve
+from ._best import SetPanel as SetPanel
 from ._bifurcation import bifurcation_figure as bifurcation_figure
 from ._chart import CurveLine as CurveLine
 from ._chart import Region as Region
@@ -11,6 +15,7 @@ from ._colours import COLOUR_NAMES as COLOUR_NAMES
 from ._colours import COLOURS as COLOURS
 from ._colours import PALETTE as PALETTE
 from ._colours import REGIME_CLASSES as REGIME_CLASSES
+from ._colours import SETS as SETS
 from ._designs import BandCurve as BandCurve
 from ._designs import BandPanel as BandPanel
 from ._designs import DesignMap as DesignMap

@@ -14,6 +14,7 @@ __all__ = [
     "HUES",
     "PALETTE",
     "REGIME_CLASSES",
+    "SETS",
 ]
 
 
@@ -101,6 +102,9 @@ REGIME_CLASSES = WornColours(
 HUES = WornList("attractor", ("#33658a", "#e07a1f", "#117733", "#aa4499", "#ddcc77", "#86bbd8"))
 """Colours of attractors in a map of starts; chaotic ones are grey."""
 
+SETS = WornList("set", ("#33658a", "#8fc1de", "#117733", "#d9b93b", "#aa4499", "#e07a1f", "#7a7a7a", "#7b2d2d"))
+"""Colours of what is compared in maps and lines: told apart by all kinds of colour vision, and in grey by steps."""
+
 CHAOS = WornList("chaos", ("#d2d2d2", "#a9a9a9", "#808080"))
 
 
@@ -108,7 +112,7 @@ COLOUR_NAMES = (
     *COLOURS,
     *PALETTE,
     *(f"{name} {side}" for name in FAMILIES for side in "LR"),
-    *(name for own in (BALLS, HUES, CHAOS) for name in own.names),
+    *(name for own in (BALLS, HUES, SETS, CHAOS) for name in own.names),
     *CURVES,
     *REGIME_CLASSES,
 )

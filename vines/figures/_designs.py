@@ -13,6 +13,7 @@ from vines.figures._axes import name_axis
 from vines.figures._colours import COLOURS, PALETTE
 from vines.figures._names import QUANTITIES, SYMBOLS
 from vines.figures._style import font
+from vines.figures._ticks import plain_ticks
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -73,7 +74,7 @@ class BandPanel:
             ax.axvline(end, color=COLOURS["mark"], linewidth=0.7, linestyle=(0, (1, 1.6)), zorder=0)
         ax.set_xscale("log")
         ax.set_xlim(low / margin, high * margin)
-        _plain_ticks(ax, low, high)
+        plain_ticks(ax, "x")
         name_axis(ax, "x", self.axis)
         name_axis(ax, "y", self.quantity)
         inside = [band.worst[(band.x >= low / margin) & (band.x <= high * margin)] for band in self.bands]
@@ -110,7 +111,7 @@ class FactorPanel:
         ax.set_xscale("log")
         ends = [float(x.max()) for _, x, _, _ in self.curves if len(x)]
         ax.set_xlim(1.0, max(ends, default=self.factor))
-        _plain_ticks(ax, 1.0, max(ends, default=self.factor))
+        plain_ticks(ax, "x")
         symbol = SYMBOLS.get(self.axis, self.axis)
         name_axis(ax, "x", "width", rf"width of the range  ${symbol}_{{\max}}/{symbol}_{{\min}}$")
         name_axis(ax, "y", "factor", f"least worst {_short(self.quantity)}")
@@ -206,17 +207,6 @@ def _edges(x: Floats) -> tuple[float, float]:
 def _short(quantity: str) -> str:
     """Return the name of a quantity without its formula."""
     return QUANTITIES.get(quantity, quantity).partition("  ")[0]
-
-
-def _plain_ticks(ax: Axes, low: float, high: float) -> None:
-    """Write numbers on a logarithmic axis that spans little as they are."""
-    from matplotlib.ticker import FixedLocator, FuncFormatter, NullFormatter
-
-    tens = 10.0 ** np.arange(np.floor(np.log10(low)) - 1, np.ceil(np.log10(high)) + 1)
-    marks = [m * ten for ten in tens for m in (1, 2, 3, 4, 6) if low / 1.5 <= m * ten <= high * 1.5]
-    ax.xaxis.set_major_locator(FixedLocator(marks))
-    ax.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
-    ax.xaxis.set_minor_formatter(NullFormatter())
 
 
 def _frame(ax: Axes, title: str) -> None:

@@ -12,6 +12,7 @@ from vines.figures._axes import name_axis
 from vines.figures._chart import CurveLine, curve_entries, draw_curves
 from vines.figures._colours import REGIME_CLASSES
 from vines.figures._fit import columns_in, place_legend
+from vines.figures._region_names import write_region_names
 from vines.figures._style import font, look, new_figure
 
 if TYPE_CHECKING:
@@ -22,17 +23,6 @@ __all__ = ["RegimeMap", "regimes_figure"]
 
 SHADE = 0.62
 """Factor on the colour where the ball sticks again and again."""
-
-LABELS = 9
-"""Most names written into the map."""
-
-LEAST = 0.004
-"""Smallest share of the map that a region must fill for its name to be written into it."""
-
-ROOM = 0.01
-"""Least distance of a name from the edge of its region, in parts of the map's longer side: else names run together."""
-_DEEP = 2.0
-"""Points of a map that it is from the edge of its region at least, whatever their number."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -130,7 +120,7 @@ def regimes_figure(data: RegimeMap, *, title: str = "", width: float = 7.0) -> F
             _scale(ax, data)
         for ax in (left, right):
             name_axis(ax, "y", data.axes[1], written=ax is left or not beside_each_other)
-        _write_names(left, data)
+        write_region_names(left, data.x, data.y, data.name)
         used = np.unique(data.regime)
         handles: list[Any] = [
             Patch(facecolor=colour, edgecolor="#777777", linewidth=0.5, label=label)
@@ -158,34 +148,3 @@ def _scale(ax: Axes, data: RegimeMap) -> None:
     ax.set_xlim(data.x[0], data.x[-1])
     ax.set_ylim(data.y[0], data.y[-1])
     name_axis(ax, "x", data.axes[0])
-
-
-def _write_names(ax: Axes, data: RegimeMap) -> None:
-    """Write the names of the largest regions where they are widest."""
-    from matplotlib.patheffects import withStroke
-    from scipy.ndimage import distance_transform_edt, label
-
-    regions = []
-    for name in sorted({name for name in data.name.ravel() if name}):
-        found: Any = label(np.equal(data.name, name))
-        parts, count = found
-        sizes = np.bincount(parts.ravel(), minlength=count + 1)
-        for k in np.flatnonzero(sizes >= LEAST * data.name.size):
-            if k:
-                regions.append((int(sizes[k]), name, parts == k))
-    for _, name, inside in sorted(regions, key=lambda region: -region[0])[:LABELS]:
-        # The frame counts as an edge, so that no name is cut by it.
-        depth = np.asarray(distance_transform_edt(np.pad(inside, 1)))[1:-1, 1:-1]
-        row, column = np.unravel_index(int(np.argmax(depth)), depth.shape)
-        if depth[row, column] < max(_DEEP, ROOM * max(depth.shape)):
-            continue
-        ax.text(
-            data.x[column],
-            data.y[row],
-            name,
-            ha="center",
-            va="center",
-            fontsize=font(7),
-            color="#000000",
-            path_effects=[withStroke(linewidth=1.6, foreground="#ffffff")],
-        )

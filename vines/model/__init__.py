@@ -24,7 +24,7 @@ from vines.model._vi_nes import (
     X1,
     X2,
 )
-from vines.model._words import Word, of_moderate_length, word_for
+from vines.model._words import Word, not_alone, of_moderate_length, word_for
 
 __all__ = [
     "AMPLITUDE",
@@ -54,6 +54,7 @@ __all__ = [
     "Word",
     "dimensionless",
     "most_balls",
+    "not_alone",
     "of_moderate_length",
     "read_system",
     "system_names",

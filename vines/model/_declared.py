@@ -145,6 +145,7 @@ def _system(form: Mapping[str, Any], balls: int) -> System:
         order=form.get("order", 0),
         stops=form.get("stops", False),
         starred=form.get("starred", True),
+        smooth=form.get("smooth", False),
     )
 
 

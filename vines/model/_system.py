@@ -217,6 +217,8 @@ class System(msgspec.Struct, frozen=True, dict=True):
         Whether a ball may stop in mid-cavity.
     starred : bool
         Whether orbits that stick are computed.
+    smooth : bool
+        Whether motions without impacts are isolated, so that they have orbits.
     """
 
     name: str
@@ -236,6 +238,7 @@ class System(msgspec.Struct, frozen=True, dict=True):
     order: int = 0
     stops: bool = False
     starred: bool = True
+    smooth: bool = False
 
     @property
     def state(self) -> tuple[Coordinate, ...]:

@@ -71,7 +71,8 @@ class Branch:
         What is worth a remark but changes no stability: pair_turns_real, where two multipliers meet on the real
         axis and a complex pair becomes two real ones, or the reverse.
     ends : tuple of str, str
-        Why the branch begins and ends where it does: ``range`` (of the parameter), ``grazing``, ``symmetry_breaking``
+        Why the branch begins and ends where it does: ``range`` (of the parameter), ``closed`` (both ends are one orbit:
+        the family is an isola), ``grazing``, ``symmetry_breaking``
         or ``period_doubling`` (where it comes out of another family), ``incomplete_chatter`` or ``release_tangency``
         (of orbits that stick), ``points`` (as many as were allowed), ``lost`` (the corrector failed at the smallest
         step).

@@ -38,7 +38,7 @@ from vines.orbits._sticking_family_of_balls import BallsProblem
 from vines.orbits._sticking_of_balls import rides_in_parallel
 from vines.orbits._symmetric import SymmetricProblem
 
-__all__ = ["continue_orbit"]
+__all__ = ["CLOSED", "continue_orbit"]
 
 _SMALLEST_STEP = 1e-8
 _TURN = 0.15
@@ -49,6 +49,12 @@ _ELSEWHERE = 1e-6
 """Distance of an orbit from its own repetition or mirror image below which it is one of the family that is left."""
 _EXTRAPOLATED = 1e-5
 """Most by which an extrapolated end may be wrong, in ranges of the parameter."""
+
+CLOSED = "closed"
+_FIRST = 4
+"""Points before which a branch is not looked at for having closed."""
+_ALONG = 0.9
+"""Least cosine of the angle between the directions in which it passes where it began."""
 
 _TOLERANCE = 1e-14
 """Of the root of a defining equation, as a fraction of the step in which it lies."""
@@ -78,8 +84,8 @@ def continue_orbit(
     """Follow an orbit in one parameter, through folds, and locate the bifurcations on the way.
 
     The branch ends where the parameter leaves its range on either side, or at the grazing that ends admissibility,
-    or where two balls hit together, beyond which their impacts have changed places. A family that sticks ends also
-    where a chatter no longer completes, or the contact force vanishes without falling.
+    or where two balls hit together, beyond which their impacts have changed places, or where it closes. A family that
+    sticks ends also where a chatter no longer completes, or the contact force vanishes without falling.
 
     Parameters
     ----------
@@ -205,7 +211,7 @@ class _Branch:
             tuple(self.orbits),
             tuple(self.bifurcations),
             tuple(self.events),
-            ("range", end),
+            (CLOSED if end == CLOSED else "range", end),
         )
 
     def _is_on(self, point: Point) -> bool:
@@ -230,6 +236,9 @@ class _Branch:
 
     def _record(self, here: Point, there: Point, last: bool) -> str | None:
         """Add what lies between two points, and the second one; return why the branch ends there, if it does."""
+        closed = len(self.points) > _FIRST and self._passes(here, there)
+        if closed:
+            there = self.points[0]
         self.points.append(there)
         met = sorted(
             (hit for condition in self.conditions if (hit := self._locate(condition, here, there)) is not None),
@@ -257,7 +266,15 @@ class _Branch:
                 return kind
         self._add_values(before, there)
         self.orbits.append(there.orbit)
+        if closed:
+            return CLOSED
         return "range" if last else None
+
+    def _passes(self, here: Point, there: Point) -> bool:
+        """Say whether the branch comes past the orbit at which it began, in the same direction."""
+        begin, scale = self.points[0], self.curve.scale
+        near = np.linalg.norm((there.y - begin.y) / scale) < np.linalg.norm((there.y - here.y) / scale)
+        return bool(near and begin.tangent @ there.tangent > _ALONG)
 
     def _locate(self, condition: Condition, here: Point, there: Point) -> tuple[float, str, Point] | None:
         first, second = condition.function(here), condition.function(there)

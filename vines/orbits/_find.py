@@ -50,7 +50,8 @@ def find_orbit(word: str | Word, p: Any, guess: Orbit | npt.ArrayLike | None = N
         forcing of phase zero at t = 0; for a word with a star time and v1 of the release after the first one, two
         numbers; where flights have no closed form (`systems.CubicBarriers`, `systems.Hybrid`) an orbit, or rows of t,
         x1, v1, x2, v2 (x3, v3) just before each impact; where a ball slides with friction x1, v1, v2 and t just before
-        the first impact, four. The solution that Newton's method finds from there is returned.
+        the first impact, four; without impacts an orbit, or the state at phase 0 of the forcing. The solution that
+        Newton's method finds from there is returned.
 
     Returns
     -------

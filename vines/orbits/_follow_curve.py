@@ -22,6 +22,7 @@ from vines.orbits._curve_problem import CurveProblem
 from vines.orbits._joined import is_joint, left_family
 from vines.orbits._own_word import sticking_word
 from vines.orbits._problem import Point, ZeroSet
+from vines.orbits._smooth_curve import SmoothCurve
 from vines.orbits._special import END, Special, special_functions
 from vines.orbits._sticking_curve import StickingCurve
 from vines.orbits._sticking_curve_of_balls import BallsCurve
@@ -194,6 +195,8 @@ def _problem(bifurcation: Bifurcation, parameters: tuple[str, str], spans: Float
             "have a cusp there; give two others, or follow a fold"
         )
     form = CurveProblem if isinstance(orbit.params, Params) else ChainCurve
+    if orbit.word.unstruck:
+        form = SmoothCurve
     if orbit.word.sticking:
         sticking_word(orbit.word, orbit.params)
         form = BallsCurve if rides_in_parallel(orbit.params) else StickingCurve

@@ -18,6 +18,7 @@ from vines.orbits._orbit import Orbit
 from vines.orbits._problem import ZeroSet
 from vines.orbits._shooting import shoots
 from vines.orbits._slid import SlidProblem, slid_image, slides
+from vines.orbits._smooth_orbit import smooth_doubled, smooth_image
 from vines.orbits._sticking_capsule import capsule_sticks, rides_capsule
 from vines.orbits._sticking_of_balls import mirrored_balls, rides_in_parallel
 from vines.orbits._sticking_orbit import mirrored_sticking
@@ -54,6 +55,8 @@ def mirror_image(orbit: Orbit) -> Orbit:
         return (mirrored_balls if rides_in_parallel(orbit.params) else mirrored_sticking)(orbit)
     if slides(orbit.params):
         return slid_image(orbit)
+    if orbit.word.unstruck:
+        return smooth_image(orbit)
     word, t, states = orbit.word.mirror, orbit.t + orbit.params.period / 2, -orbit.states
     if any(word.balls):
         word, names = word.relabelled(getattr(orbit.params, "alike", ()))
@@ -88,6 +91,8 @@ def unfolded(kind: str, orbit: Orbit) -> Orbit:
     """
     if kind == "symmetry_breaking":
         return orbit
+    if orbit.word.unstruck:
+        return smooth_doubled(orbit)
     word = Word(f"{orbit.word.letters * 2}/{2 * orbit.word.p}T")
     return assemble(
         word, orbit.params, np.concatenate([orbit.t, orbit.t + orbit.period]), np.tile(orbit.states, (2, 1))
@@ -122,6 +127,8 @@ def left_family(joint: Bifurcation) -> Orbit:
 def _left_by_shots(joint: Bifurcation) -> Orbit:
     """Return the same of an orbit whose states at the impacts are all unknown."""
     orbit, halves = joint.orbit, joint.type == "symmetry_breaking"
+    if orbit.word.unstruck and not halves:
+        return refine(Word(f"-/{orbit.word.p // 2}T"), orbit.params, orbit.states[0])
     word = orbit.word if halves else Word(f"{orbit.word.letters[: len(orbit.word) // 2]}/{orbit.word.p // 2}T")
     if not halves:
         n = len(word)

@@ -110,6 +110,8 @@ def curve_equations(rows: Rows) -> Iterator[Defect]:
     off = np.where(np.isin(types, _WITHOUT), np.nan, off) / slack
     yield Defect("critical multiplier", "+1, -1, or a pair of product 1, by the type", _CRITICAL, off)
     inside = rows["min_clearance"] >= -1e-9
+    if rows.has("walls"):
+        inside |= rows["walls"] == 0
     wrong = (rows["admissible"] == 1) & ~inside
     yield Defect("admissibility", "no turning point beyond a wall", 0.0, np.where(wrong, np.inf, 0.0))
 

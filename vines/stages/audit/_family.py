@@ -210,7 +210,7 @@ def _log_determinant(rows: Rows) -> Floats:
     found = np.zeros(len(rows))
     for code, text in enumerate(known):
         word, mine = Word(text), codes == code
-        for ball in word.balls:
+        for ball in (ball for ball, side in zip(word.balls, word.sides, strict=True) if side):
             r = rows["r"] if rows.has("r") else rows[f"r_{max(ball, 1)}"]
             found[mine] += 2 * np.log(np.maximum(r[mine], 1e-300))
         if rows.has("lam"):
