@@ -22,8 +22,11 @@ Floats = npt.NDArray[np.float64]
 _ITERATIONS = 20
 _LEAST_SHARE = 1.0 / 16.0
 _ROUNDING = 1e-12
-_CLOSES = 1e-9
-"""Defect at which Newton's method has come to an orbit; it is taken on to rounding."""
+_CLOSES = 1e-12
+"""Largest defect of an orbit, relative to its size: Newton's method is taken on to rounding, unless it creeps."""
+
+_EARLY, _FALLEN = 8, 0.1
+"""Newton steps after which the defect has to have fallen to this part: what has not is on no way to an orbit."""
 
 
 class SmoothClosing:
@@ -81,10 +84,12 @@ def smooth_solved(word: Word, p: Any, start: Floats, *, symmetric: bool) -> tupl
     c, duration = constants(p), word.p * p.period
     z = np.array(start, dtype=np.float64)
     defect, slope = _closed(c, duration, z, symmetric)
-    size = float(np.abs(defect).max())
-    for _ in range(_ITERATIONS):
+    size = first = float(np.abs(defect).max())
+    for done in range(_ITERATIONS):
         if not (np.isfinite(size) and np.isfinite(slope).all()):
             return False, z, np.inf
+        if done == _EARLY and size > _FALLEN * first:
+            break
         try:
             step = np.linalg.solve(slope, defect)
         except np.linalg.LinAlgError:
@@ -101,4 +106,4 @@ def smooth_solved(word: Word, p: Any, start: Floats, *, symmetric: bool) -> tupl
         if not better < size:
             break
         z, defect, slope, size = trial, there, slope_there, better
-    return size < _CLOSES, z, size
+    return size < _CLOSES * (1.0 + np.abs(z).max()), z, size

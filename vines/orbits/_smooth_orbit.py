@@ -13,6 +13,7 @@ from vines.model import Word
 from vines.orbits._floquet import FIXED_TIME, sorted_multipliers, squared
 from vines.orbits._orbit import Orbit
 from vines.orbits._smooth_flow import fly, measures_of, passages, seen
+from vines.orbits._survey import NO_TURNING
 
 __all__ = ["assemble_smooth", "same_smooth", "smooth_doubled", "smooth_image", "smooth_origin"]
 
@@ -42,7 +43,7 @@ def assemble_smooth(word: Word, p: Any, start: Floats, remark: str = "") -> Orbi
     symmetric = _mirror_defect(word, p, c, start) < _SAME
     if symmetric:
         half = sorted_multipliers(FIXED_TIME[:, None] * fly(c, start, word.p * T / 2).map)
-    clearance, violation, wall = seen(c, start, word.p * T) if p.walls else (math.nan, math.nan, 0)
+    clearance, violation, wall = _clearance(word, p, c, start) if p.walls else (math.nan, math.nan, 0)
     t, states, jacobians = np.zeros(1), start[None, :].copy(), flown.map[None, :, :]
     for array in (t, states, jacobians):
         array.setflags(write=False)
@@ -64,6 +65,15 @@ def assemble_smooth(word: Word, p: Any, start: Floats, remark: str = "") -> Orbi
         remark=remark,
         struck=states[:, [1, 3]],
     )
+
+
+def _clearance(word: Word, p: Any, c: Any, start: Floats) -> tuple[float, float, int]:
+    """Return least clearance of a turning point, time and wall of the first contact."""
+    if p.A > 0.0:
+        return seen(c, start, word.p * p.period)
+    # At rest nothing turns.
+    gap = float(start[0] - start[2])
+    return (NO_TURNING, math.nan, 0) if abs(gap) < 1.0 else (1.0 - abs(gap), 0.0, int(math.copysign(1.0, gap)))
 
 
 def _mirror_defect(word: Word, p: Any, c: Any, start: Floats) -> float:

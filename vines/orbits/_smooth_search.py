@@ -27,6 +27,9 @@ _RUNS, _SETTLED, _SEEN = 6, 200, 40
 _RANDOM = 40
 """Random states from which Newton's method sets out."""
 
+_LARGE = 10.0
+"""Size of a motion, in half gaps, from which on a quarter of these is enough."""
+
 _KICKS = (0.03, 0.3)
 """How far, relative to its size, an orbit is moved along its critical direction to come to one that branched off."""
 
@@ -107,11 +110,15 @@ def smooth_orbits(word: Word, p: Any) -> tuple[list[Orbit], str]:
     balanced = _balanced(p) if word.p == 1 else []
     for start in balanced:
         add(start, True)
+    for start in _in_wells(p) if word.p == 1 else []:
+        add(start, False)
     size = max((float(np.abs(start).max()) for start in balanced or _balanced(p)), default=0.1)
     rng = np.random.default_rng(word.p)
-    for start in _returning(word, p, rng):
+    # Without forcing all comes to rest; motions of a hundred half gaps take a hundred times as many steps.
+    share = 0.0 if p.A == 0.0 else 1.0 if size < _LARGE else 0.25
+    for start in _returning(word, p, rng, round(share * _RUNS)):
         add(start, False)
-    for start in _random(p, rng, size):
+    for start in _random(p, rng, size, round(share * _RANDOM)):
         add(start, word.symmetric and p.mirrored and tried % 2 == 0)
     for start in _halves(word, p, found):
         add(start, False)
@@ -131,7 +138,12 @@ def _refuse_loose(word: Word, p: Any) -> None:
 
 
 def _balanced(p: Any) -> list[Floats]:
-    """Return the states at phase 0 of the motions that balance one harmonic: of w with the spring k1 + 3/4 k3 |w|²."""
+    """Return the states at phase 0 of the motions that balance one harmonic, of the rest where there is no forcing.
+
+    For one harmonic of w the spring is as one of stiffness k1 + 3/4 k3 |w|².
+    """
+    if p.A == 0.0:
+        return [np.zeros(4)]
     turn = p.Omega * p.Omega
     own = 1.0 - turn + 1j * p.lam * p.Omega
     force = p.A * (1.0 + 1j * p.lam * p.Omega)
@@ -151,11 +163,24 @@ def _balanced(p: Any) -> list[Floats]:
     return found
 
 
-def _returning(word: Word, p: Any, rng: np.random.Generator) -> Iterator[Floats]:
+def _in_wells(p: Any) -> list[Floats]:
+    """Return the states at phase 0 of small motions about the two places where a spring with two wells is at rest."""
+    if not (p.k1 < 0 < p.k3):
+        return []
+    turn = p.Omega * p.Omega
+    own = 1.0 - turn + 1j * p.lam * p.Omega
+    kappa = -2.0 * p.k1 + 1j * p.l2 * p.Omega
+    W = p.A * (1.0 + 1j * p.lam * p.Omega) / (own + kappa * (p.mu - own / turn))
+    X, rate, place = W * (1.0 - kappa / turn), 1j * p.Omega, float(np.sqrt(-p.k1 / p.k3))
+    about = np.array([X.imag, (rate * X).imag, (X - W).imag, (rate * (X - W)).imag])
+    return [about + np.array([0.0, 0.0, side * place, 0.0]) for side in (-1.0, 1.0)]
+
+
+def _returning(word: Word, p: Any, rng: np.random.Generator, count: int) -> Iterator[Floats]:
     """Yield the states of runs that come back nearest after the period."""
     c, room = constants(p), room_of(p)
     names = [each.name for each in p.system.state]
-    for _ in range(_RUNS):
+    for _ in range(count):
         drawn = room.draw(p, rng)
         start = np.array([drawn[name] for name in names])
         points = passages(p, c, start, _SETTLED + _SEEN + word.p)[_SETTLED:]
@@ -164,9 +189,9 @@ def _returning(word: Word, p: Any, rng: np.random.Generator) -> Iterator[Floats]
             yield points[int(np.nanargmin(away))]
 
 
-def _random(p: Any, rng: np.random.Generator, size: float) -> Iterator[Floats]:
+def _random(p: Any, rng: np.random.Generator, size: float, count: int) -> Iterator[Floats]:
     """Yield random states, up to twice the size of the motions that are known."""
-    for _ in range(_RANDOM):
+    for _ in range(count):
         yield rng.uniform(-2.0, 2.0) * size * rng.uniform(-1.0, 1.0, len(p.system.state))
 
 

@@ -58,7 +58,8 @@ class Modes(Parameters):
     Notes
     -----
     One mode with omega = phi = gamma = 1 is the vibro-impact nonlinear energy sink. The order of arrays is that of the
-    declaration: mu, A, Omega, r, then omega, lam, phi and gamma of all modes.
+    declaration: mu, A, Omega, r, then omega, lam, phi and gamma of all modes. For `from_physical` omega is the angular
+    frequency of the base, as of other systems; frequencies of modes are omega_1, omega_2, … over omega0.
 
     Examples
     --------

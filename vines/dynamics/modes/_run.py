@@ -91,8 +91,10 @@ class ModesRun(Trajectory):
         p, rows = self.params, self.rows[begins]
         side = rows[:, col.SIDE]
         speed = np.maximum(side * (rows[:, col.V2] - rows[:, col.V1]), 0.0)
-        # Of the merged state x1'' is that before it, less what the kick took from the dampers: as of one oscillator.
-        push = side * push_of(p, rows)
+        # The push before the merge, whose blow the dampers feel already in the rows.
+        impulse = -p.mu * (rows[:, col.A_V2] - rows[:, col.V2])
+        damped = sum(lam * phi**2 for lam, phi in zip(p.lam, p.phi, strict=True))
+        push = side * (push_of(p, rows) + damped * impulse)
         lasts = np.zeros(len(rows))
         good = (push > 0) & (p.r < 1)
         lasts[good] = 2 * speed[good] / (push[good] * (1 - p.r))
