@@ -1,8 +1,8 @@
 """Attractors that stick, of the systems with one ball beside the VI-NES, at random, each found as an orbit by its word.
 
-Run as ``python -m benchmarks.sticking_of_systems [points] [seed] [system …]``. mu is drawn log-uniformly from .01 to .5, A from
-.06 to 4, lam from .01 to .25, Omega uniformly from .5 to 1.6, r from .05 to .6; what acts on the ball as `draw` says.
-Of ``L*R*`` one in twenty counts. K2/K1 and the polynomial of the multipliers are compared with those of `settle`.
+Run as ``python -m benchmarks.sticking_of_systems [points] [seed] [system …]``. mu is drawn log-uniformly from .01 to
+.5, A from .06 to 4, lam from .01 to .25, Omega uniformly from .5 to 1.6, r from .05 to .6; what else there is as `draw`
+says. Of ``L*R*`` one in twenty counts. K2/K1 and the polynomial of the multipliers are compared with those of `settle`.
 """
 
 from __future__ import annotations

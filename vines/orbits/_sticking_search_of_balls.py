@@ -35,6 +35,9 @@ _PERIODS = 200
 _DRAWN = 5
 """Simulations from starts that are drawn, beside those that begin in the middle."""
 
+_DRAWN_BESIDE = 25
+"""The same where more than ball and frame moves, and no grid of releases is tried."""
+
 _LATE = 12
 """Sections of each simulation that are tried, the last ones."""
 
@@ -59,7 +62,8 @@ _ALIKE = 1e-7
 
 def search_balls(word: Word, p: Any) -> tuple[list[Orbit], str]:
     """Return the different orbits of a word with a star that are found, each once, and how they were searched for."""
-    how = "Newton's method from simulations and from a grid of releases of all balls: there may be more"
+    also = " and from a grid of releases of all balls" if any(_all_ride(word, p, IN_TURN)) else ""
+    how = f"Newton's method from simulations{also}: there may be more"
     found = _searched(word, p, IN_TURN)
     if not found and len(set(getattr(p, "beta", (1.0,)))) < getattr(p, "balls", 1):
         # Equal cavities: what arrives together after a common release may also be struck at once.
@@ -78,6 +82,8 @@ def _searched(word: Word, p: Any, ties: str) -> list[Orbit]:
     for run in runs:
         for section, z in sections_of(run, ties, 2 * word.p):
             _add(found, tried, word, p, section, z)
+            if p.mirrored and own_word(word.mirror, p) != word:
+                _add(found, tried, word, p, section.mirrored, section.image(z))
     for section in _all_ride(word, p, ties):
         # Over half a period more releases lead to the contacts of a symmetric orbit.
         for mirrored in (True, False) if p.mirrored and word.symmetric else (False,):
@@ -95,7 +101,7 @@ def _starts(p: Any) -> Iterator[dict[str, Any]]:
     """Yield starts: balls in the middle at several speeds, and some that are drawn."""
     yield from starts_of(p)
     rng = np.random.default_rng(_DRAWN)
-    for _ in range(_DRAWN):
+    for _ in range(_DRAWN_BESIDE if _moves_beside(p) else _DRAWN):
         yield room_of(p).draw(p, rng)
 
 
@@ -115,7 +121,8 @@ def sections_of(run: Trajectory, ties: str, periods: float) -> Iterator[tuple[Se
     met = [(i, section) for i, section in _releases(p, rows, ties) if late[i]]
     for i, section in met[: -_LATE - 1 : -1]:
         yield section, section.read(rows[i])
-    if met or not (rows[late, col.KIND] == col.STICK).any():
+    # A ball alone that comes to ride is let go, or rides on for ever.
+    if met or rides_alone(p) or not (rows[late, col.KIND] == col.STICK).any():
         return
     lasts = np.append(rows[1:, col.TAU], 0.0) * late * (rows[:, col.MODE] == 0.0)
     row, half = rows[int(np.argmax(lasts))], 0.5 * float(lasts.max())
@@ -166,7 +173,7 @@ def _all_ride(word: Word, p: Any, ties: str) -> Iterator[Release]:
 
     None where more than ball and frame moves, for which a grid of releases would have too many numbers.
     """
-    if rides_alone(p) and room_of(p).layout(p).width > col.ROW:
+    if _moves_beside(p):
         return
     for side in (1, -1):
         marks = zip(word.sides, word.balls, word.sticks, strict=True)
@@ -175,6 +182,11 @@ def _all_ride(word: Word, p: Any, ties: str) -> Iterator[Release]:
             yield release_on(p, side)
         elif len(riders) == getattr(p, "balls", 1):
             yield Release(side, tuple(range(p.balls)), p.balls, ties)
+
+
+def _moves_beside(p: Any) -> bool:
+    """Say whether more moves than a frame with one coordinate, and what is between its walls."""
+    return rides_alone(p) and room_of(p).layout(p).width > col.ROW
 
 
 def _fastest(runs: list[Trajectory], p: Any) -> float:
