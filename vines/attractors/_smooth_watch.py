@@ -68,6 +68,25 @@ def _ends(c, rows, count, scale, tolerance, verdict):
 @by_type(TaylorConstants)
 @cold_njit
 def watch_smooth(c, end, tolerance, verdict):
+    """Watch a run on whose mass is held at a place, as `watch_held`; else leave the verdict as it is."""
+    _watched(c.field, c, end, tolerance, verdict)
+
+
+@by_type(Field)
+@cold_njit
+def _watched(f, c, end, tolerance, verdict):
+    watch_held(c, end, tolerance, verdict)
+
+
+@_watched.register(DuffingField)
+@cold_njit
+def _a_frame_watched(f, c, end, tolerance, verdict):
+    # A ball that hits nothing keeps any place and velocity: two exponents are 0 whatever the motion is.
+    pass
+
+
+@cold_njit
+def watch_held(c, end, tolerance, verdict):
     """Decide what a window without impacts left open, from the row of its end on; fill the verdict on.
 
     Where an impact comes after all the run is not settled, and REMAINING tells when to look again.
