@@ -14,7 +14,7 @@ from scipy.integrate import solve_ivp
 
 import vines
 from vines import systems
-from vines.dynamics import ball_locked, no_ball, tangent_map
+from vines.dynamics import ball_locked, decay, no_ball, tangent_map
 from vines.dynamics._advance import MODE
 from vines.dynamics._simulate import record
 from vines.dynamics.duffing import duffing_constants
@@ -208,6 +208,12 @@ def test_samples_keep_the_energy():
     assert spring == pytest.approx(HEAVY.alpha * at["x1"] ** 4 / 4, abs=1e-13)
 
 
+def test_a_transient_counts_what_the_cubic_spring_holds():
+    found = decay(vines.simulate(systems.Duffing(mu=0.05, A=0.0, alpha=3.0), v1=2.0, v2=0.0, periods=15))
+    assert 0.1 < found.impact_share < 1
+    assert found.impact_share + found.damper_share + found.frame_share + found.ball_share == pytest.approx(1, abs=1e-12)
+
+
 def test_disturbances_against_variational_dop853():
     p, begin = P.replace(A=0.4), [0.3, -0.2, 0.2, 0.05]
     run = vines.simulate(p, **dict(zip(STATE, begin, strict=True)), phi=0.7, periods=0.4)
@@ -279,6 +285,13 @@ def test_bifurcations_are_those_of_dop853(kind, to, value, root):
         pair = vines.switch_branch(found)
         assert [each.symmetric for each in pair] == [False, False]
         assert pair[0].states == pytest.approx(-np.roll(pair[1].states, 1, axis=0), abs=1e-10)
+
+
+def test_orbits_are_looked_for_on_the_large_response_too():
+    """None of the runs that start at rest comes near these two, mirror images of each other."""
+    found = vines.all_orbits("LR", P.replace(Omega=1.3))
+    large = [orbit for orbit in found if orbit.stable and orbit.admissible and not orbit.symmetric]
+    assert [orbit.measures.max_abs_x1 for orbit in large] == [pytest.approx(0.7445, abs=1e-3)] * 2
 
 
 @pytest.mark.full

@@ -8,9 +8,9 @@ import rerun as rr
 
 from vines import viewer
 from vines.dynamics import simulate
-from vines.logs import read, write_run
+from vines.logs import Tail, read, write_run
 from vines.systems import CubicBarriers, Friction
-from vines.viewer._called import Called, called, stops_of
+from vines.viewer._called import Called, called, called_in, stops_of
 from vines.viewer._film import Film
 
 SLIDES = Friction(mu=0.1, A=0.2, r=0.7, f=0.3)
@@ -85,6 +85,9 @@ def test_a_mass_on_a_spring_is_no_ball(sliding, settled, tmp_path):
         names = called(read(path))
         assert (names.body, names.drawing, names.ends) == ("mass", drawing, ends)
         assert names.lost == "lost in damper and dashpot"
+        tail = Tail(path)
+        tail.take()
+        assert called_in(tail.system, tail.parameters) == names
         assert "ball" not in f"{names.lanes} {names.gap} {names.stored} {names.frame}"
         found = [
             chunk.entity_path

@@ -7,15 +7,16 @@ import math
 from vines.attractors import _verdict as v
 from vines.attractors._follow import BLOCKS, FLAT, LONGER, SURE, spectrum
 from vines.attractors._judge import NEAR
+from vines.dynamics.duffing import DuffingField
 from vines.dynamics.hybrid import HybridConstants
 from vines.dynamics.hybrid.kernels import R_V3, R_X3
 from vines.dynamics.kernels import directions, lyapunov_blocks, open_window, run_window, shift_time
 from vines.dynamics.kernels import rows as col
-from vines.dynamics.taylor import TaylorConstants
+from vines.dynamics.taylor import Field, TaylorConstants
 from vines.dynamics.taylor.kernels import TAYLOR_STATE, set_mass
 from vines.kernels import by_type, cold_njit, identity, new_matrix, njit, zero_vector
 
-__all__ = ["LONGEST", "apart", "watch_smooth"]
+__all__ = ["LONGEST", "apart", "watch_smooth", "watches"]
 
 LONGEST = 32
 """Most forcing periods over which a repetition without impacts is looked for; a shorter window is not watched on."""
@@ -67,10 +68,69 @@ def _ends(c, rows, count, scale, tolerance, verdict):
 @by_type(TaylorConstants)
 @cold_njit
 def watch_smooth(c, end, tolerance, verdict):
+    """Watch a run on whose mass is held at a place, as `watch_held`; else leave the verdict as it is."""
+    _watched(c.field, c, end, tolerance, verdict)
+
+
+@by_type(Field)
+@cold_njit
+def _watched(f, c, end, tolerance, verdict):
+    watch_held(c, end, tolerance, verdict)
+
+
+@_watched.register(DuffingField)
+@cold_njit
+def _a_frame_watched(f, c, end, tolerance, verdict):
+    # A ball that hits nothing keeps any place and velocity: two exponents are 0 whatever the motion is.
+    pass
+
+
+@cold_njit
+def watch_held(c, end, tolerance, verdict):
     """Decide what a window without impacts left open, from the row of its end on; fill the verdict on.
 
     Where an impact comes after all the run is not settled, and REMAINING tells when to look again.
     """
+    _watch(c.field, c, end, tolerance, verdict)
+
+
+@watch_smooth.register(HybridConstants)
+@cold_njit
+def _beside_a_ball(c, end, tolerance, verdict):
+    pass
+
+
+@by_type(TaylorConstants)
+@njit
+def watches(c):
+    """Say whether exponents tell what a motion without impacts is.
+
+    A ball that hits nothing keeps any place and velocity: two of them are 0 then whatever the motion is.
+    """
+    return _tells(c.field)
+
+
+@watches.register(HybridConstants)
+@njit
+def _watches_beside(c):
+    return False
+
+
+@by_type(Field)
+@njit
+def _tells(f):
+    return True
+
+
+@_tells.register(DuffingField)
+@njit
+def _tells_of_a_ball(f):
+    return False
+
+
+@by_type(Field)
+@cold_njit
+def _watch(f, c, end, tolerance, verdict):
     period = c.period
     own = zero_vector(TAYLOR_STATE)
     set_mass(c, own, end[col.X1], end[col.A_V1], end[col.X2], end[col.A_V2], end[col.PHASE], 0.0)
@@ -120,8 +180,7 @@ def watch_smooth(c, end, tolerance, verdict):
         verdict[v.REASON], verdict[v.VALUE], verdict[v.OTHER] = v.UNDECIDED, rate, error
 
 
-@watch_smooth.register(HybridConstants)
+@_watch.register(DuffingField)
 @cold_njit
-def _beside_a_ball(c, end, tolerance, verdict):
-    # A ball that hits nothing keeps any place and velocity: two exponents are 0 whatever the motion is.
+def _watch_of_a_ball(f, c, end, tolerance, verdict):
     pass

@@ -141,6 +141,10 @@ class Room:
         detuning = math.hypot(1.0 - mass * p.Omega**2, damping)
         return p.A * math.hypot(1.0, damping) / detuning if detuning > 0.0 else math.inf
 
+    def swings(self, p: Any) -> list[dict[str, float]]:
+        """Return further starts of the oscillator from which orbits are looked for, beside rest."""
+        return []
+
     def push(self, p: Any, x1: Any, v1: Any, phase: Any) -> Any:
         """Return w'' of a free ball."""
         force = p.A * (np.sin(phase) + p.lam * p.Omega * np.cos(phase))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,7 +11,7 @@ from vines.logs import Log
 from vines.model import read_system, system_names
 from vines.viewer._style import CAVITY
 
-__all__ = ["NO_STOPS", "Called", "called", "stops_of"]
+__all__ = ["NO_STOPS", "Called", "called", "called_in", "stops_of"]
 
 NO_STOPS = np.empty((0, 2))
 
@@ -79,9 +80,14 @@ class Called:
 
 def called(log: Log) -> Called:
     """Return what the bodies of a run are called, as its system declares them; a ball where that is not known."""
-    if log.balls or log.system not in system_names():
+    return Called() if log.balls else called_in(log.system, log.parameters)
+
+
+def called_in(name: str, given: Mapping[str, float]) -> Called:
+    """Return the same of a run of a system, given the numbers of its parameters."""
+    if name not in system_names():
         return Called()
-    system, given = read_system(log.system), log.parameters
+    system = read_system(name)
     body = next(each.name for each in system.bodies if each.position.name in ("x2", "w"))
     also = [meant for name, meant in _ALSO_LOST.items() if given.get(name)]
     springs = any(given.get(name) for name in ("k1", "k3", "alpha"))

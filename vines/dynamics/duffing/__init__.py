@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -42,10 +42,20 @@ class _Duffing(Room):
         """Return the largest |x1| of the largest stable response of the frame alone, in closed form at alpha = 0."""
         if p.alpha == 0.0:
             return super().amplitude(p, mass)
-        return largest_response(p.A, p.Omega, p.lam, p.alpha, mass, _ORDER)
+        return largest_response(p.A, p.Omega, p.lam, p.alpha, mass, _ORDER)[0]
+
+    def swings(self, p: Any) -> list[dict[str, float]]:
+        """Return where the largest stable response of the frame alone begins, the ball in the middle."""
+        if p.alpha == 0.0:
+            return []
+        _, x1, v1 = largest_response(p.A, p.Omega, p.lam, p.alpha, 1.0, _ORDER)
+        return [{"x1": x1, "v1": v1, "x2": x1}]
 
     def push(self, p: Any, x1: Any, v1: Any, phase: Any) -> Any:
         return super().push(p, x1, v1, phase) - p.alpha * x1**3
+
+    def frame_energy(self, p: Any, at: Mapping[str, float], sag: float) -> float:
+        return super().frame_energy(p, at, sag) + 0.25 * p.alpha * at["x1"] ** 4
 
     def stored(self, p: Any, at: Any) -> tuple[Any, Any, Any]:
         frame, ball, potential = super().stored(p, at)

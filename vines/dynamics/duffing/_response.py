@@ -80,23 +80,25 @@ def _root(of: Callable[[float], float], low: float, high: float) -> float:
 
 
 @functools.lru_cache(maxsize=4096)
-def largest_response(A: float, Omega: float, lam: float, alpha: float, mass: float, order: int) -> float:
-    """Return max|x1| of the largest stable response, of the period of the forcing and symmetric.
+def largest_response(
+    A: float, Omega: float, lam: float, alpha: float, mass: float, order: int
+) -> tuple[float, float, float]:
+    """Return max|x1| of the largest stable response, of the forcing's period and symmetric, and x1, x1' at phase 0.
 
     Responses are those that Newton's method finds from the amplitudes of `harmonic_amplitudes`. Where none of these is
     stable it is the largest |x1| in 64 periods of what a run from the largest amplitude has come to after 256.
     """
     if A == 0.0:
-        return 0.0
+        return 0.0, 0.0, 0.0
     c = duffing_constants(mass - 1.0, A, Omega, 0.0, lam, alpha, order)
     frame = c.stuck
-    stable: list[float] = []
+    stable: list[tuple[float, float, float]] = []
     begin = 0.0, 0.0
     for amplitude in harmonic_amplitudes(A, Omega, lam, alpha, mass):
         begin = _started(A, Omega, lam, alpha, mass, amplitude)
         found = _response(frame, *begin)
-        if found is not None and found[1] <= 1.0 + _NEUTRAL:
-            stable.append(found[0])
+        if found is not None and found[3] <= 1.0 + _NEUTRAL:
+            stable.append(found[:3])
     return max(stable) if stable else _run(frame, *begin)
 
 
@@ -107,8 +109,8 @@ def _started(A: float, Omega: float, lam: float, alpha: float, mass: float, ampl
     return answer.imag, Omega * answer.real
 
 
-def _response(frame: Any, x: float, v: float) -> tuple[float, float] | None:
-    """Return max|x1| and the largest modulus of the multipliers of the symmetric response near a state, if found."""
+def _response(frame: Any, x: float, v: float) -> tuple[float, float, float, float] | None:
+    """Return max|x1|, x1, x1' and the largest modulus of the multipliers of the symmetric response near a state."""
     for _ in range(_TURNS):
         Y = np.eye(4)
         x_end, v_end, largest = half_period(frame, x, v, 0.0, Y)
@@ -122,15 +124,15 @@ def _response(frame: Any, x: float, v: float) -> tuple[float, float] | None:
         if not math.isfinite(size):
             return None
         if size <= 1e-13 * (1.0 + largest):
-            return largest, float(np.abs(np.linalg.eigvals(M)).max()) ** 2
+            return largest, float(x), float(v), float(np.abs(np.linalg.eigvals(M)).max()) ** 2
         x, v = x - step[0], v - step[1]
     return None
 
 
-def _run(frame: Any, x: float, v: float) -> float:
+def _run(frame: Any, x: float, v: float) -> tuple[float, float, float]:
     best = 0.0
     for half in range(2 * (_TRANSIENT + _WATCHED)):
         x, v, largest = half_period(frame, x, v, 0.0 if half % 2 == 0 else math.pi, np.eye(4))
         if half >= 2 * _TRANSIENT:
             best = max(best, largest)
-    return best
+    return best, x, v
