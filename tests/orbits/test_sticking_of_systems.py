@@ -229,7 +229,7 @@ def test_the_doubled_family_and_a_curve_of_it(triple):
     ("p", "within"),
     [
         pytest.param(Drag(**VI_NES.as_dict(), delta=0.1), 1e-7, id="drag", marks=pytest.mark.full),
-        pytest.param(Friction(**VI_NES.as_dict(), f=0.02, G=0.01), 1e-6, id="friction"),
+        pytest.param(Friction(**VI_NES.as_dict(), f=0.02, G=0.01), 1e-6, id="friction", marks=pytest.mark.full),
     ],
 )
 def test_a_family_ends_where_its_chatter_does(p, within, model):
@@ -255,3 +255,28 @@ def test_a_word_of_one_wall_with_friction_and_what_is_refused():
         mirror_image(orbit)
     with pytest.raises(OrbitNotFound, match="other contacts come; give a nearer guess"):
         find_orbit(Word("L*R*"), p, guess=of_the_vi_nes(orbit))
+
+
+@pytest.mark.parametrize(
+    ("p", "word"),
+    [
+        pytest.param(
+            CubicBarriers(
+                mu=0.0832541678091031, A=0.09955997164301418, Omega=1.3924837101637264, r=0.38406076174665843,
+                lam=0.023995884946685083, k1=-0.13276926315450427, k3=0.0620557040089588, l2=0.1,
+            ),
+            "R*/6T",
+            id="a flight that is begun afresh",
+        ),
+        pytest.param(
+            Friction(
+                mu=0.03648242708900988, A=0.209799500962498, Omega=1.5402907046571659, r=0.19686264432487993,
+                lam=0.06212793996152215, f=0.09677358668436523, G=0.05,
+            ),
+            "L*/4T",
+            id="a ball that turns more than once",
+        ),
+    ],
+)  # fmt: skip
+def test_a_chatter_is_one_contact_whatever_lies_between_its_impacts(p, word):
+    assert vines.settle(p, lyapunov=False, errors=False).word == word

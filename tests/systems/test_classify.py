@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 import vines
-from vines.errors import ParameterError, StateError
 from vines.attractors import coexisting
+from vines.errors import ParameterError, StateError
 from vines.systems import CubicBarriers, Drag, Duffing, Friction, Hybrid, ImpactPair, Modes, Parallel
 
 TWO = Parallel(mu=(0.01, 0.01), beta=(1.0, 1.4), A=0.03)

@@ -253,6 +253,11 @@ class System(msgspec.Struct, frozen=True, dict=True):
         """The coordinates of a start: the state and the phase of the forcing."""
         return (*self.state, self.phase)
 
+    @property
+    def between_walls(self) -> str:
+        """Name of the body that flies between the walls, where there is one alone."""
+        return next(body.name for body in self.bodies if body.position.name in ("x2", "w"))
+
     def parameter(self, name: str) -> Parameter:
         """Return the dimensionless parameter of a name.
 

@@ -104,24 +104,29 @@ def _without_chatter(rows, keep, count, i):
 
 @njit
 def _begins(rows, i, run):
-    """Return the row at which the chatter of so many events before row i begins; flights may be begun afresh in it."""
+    """Return the row at which the chatter of so many events before row i begins.
+
+    Flights may be begun afresh in it, and a ball with friction may turn more than once between two impacts, which
+    count once.
+    """
+    turned = False
     while run > 0 and i > 0:
         i -= 1
-        if rows[i, col.KIND] != col.START:
-            run -= 1
+        kind = rows[i, col.KIND]
+        if kind == col.START or (kind == col.SLIDE and turned):
+            continue
+        turned = kind == col.SLIDE
+        run -= 1
     return i
 
 
 @njit
 def _same_run(rows, i, j):
-    """Say whether rows i and j are neighbouring impacts on the same wall, with no other event than a turn between."""
-    turns = 0
+    """Say whether rows i and j are neighbouring impacts on the same wall, with no other event than turns between."""
     for k in range(i + 1, j):
-        if rows[k, col.KIND] == col.SLIDE:
-            turns += 1
-        elif rows[k, col.KIND] != col.START:
+        if rows[k, col.KIND] != col.SLIDE and rows[k, col.KIND] != col.START:
             return False
-    return turns <= 1 and mark(rows, i) == mark(rows, j) != 0
+    return mark(rows, i) == mark(rows, j) != 0
 
 
 @njit

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from vines.logs import Log
-from vines.model import read_system, system_names
+from vines.model import system_names, with_one_ball
 from vines.viewer._style import CAVITY
 
 __all__ = ["NO_STOPS", "Called", "called", "called_in", "stops_of"]
@@ -87,8 +87,8 @@ def called_in(name: str, given: Mapping[str, float]) -> Called:
     """Return the same of a run of a system, given the numbers of its parameters."""
     if name not in system_names():
         return Called()
-    system = read_system(name)
-    body = next(each.name for each in system.bodies if each.position.name in ("x2", "w"))
+    system = with_one_ball(name)
+    body = system.between_walls
     also = [meant for name, meant in _ALSO_LOST.items() if given.get(name)]
     springs = any(given.get(name) for name in ("k1", "k3", "alpha"))
     stored = "springs" if springs else "spring and weight" if given.get("G") else Called.stored

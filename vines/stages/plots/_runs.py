@@ -10,7 +10,7 @@ import pyarrow as pa
 
 from vines.figures import RunCurves
 from vines.logs import Log, read
-from vines.model import read_system
+from vines.model import with_one_ball
 from vines.pipeline import Input
 from vines.stages.plots._caption import listed
 
@@ -59,7 +59,7 @@ def run_curves(stages: Iterable[Input]) -> list[RunCurves]:
 
 def _body(log: Log) -> str:
     """Return what the body between the walls is called."""
-    return next(each.name for each in read_system(log.system).bodies if each.position.name in ("x2", "w"))
+    return with_one_ball(log.system).between_walls
 
 
 def _stops(log: Log, begin: float) -> np.ndarray:
