@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from vines.attractors import exits, settle_from
+from vines.attractors._exit_splitting import doubt
 from vines.attractors._regime import Regime, begun
 from vines.dynamics import Scatter
 from vines.dynamics._simulate import record
@@ -124,6 +125,41 @@ def test_what_cannot_be_is_refused_before_any_work(p, scatter, options, error, m
     with pytest.raises(error, match=message) as caught:
         exits(p, scatter, **options)
     assert "\n" not in str(caught.value)
+
+
+def test_a_splitting_whose_repetitions_disagree_tells_no_mean():
+    # The 1:1 is held for some 10^16 periods: few runs do not find how it is left.
+    p = Params(mu=0.05, A=0.125, Omega=1.17)
+    found = exits(p, Scatter(noise=0.05, seed=1), runs=2, periods=500, splitting=24, random=2, words=["LR"])
+    (rare,) = found.split
+    assert rare.remark == "no levels were found that lead to an exit"
+    assert all(math.isnan(value) for value in (rare.mean, rare.low, rare.high, rare.relative_error))
+    assert f"no mean ({rare.remark})" in str(found)
+    assert np.isfinite(found.law).all()
+
+
+@pytest.mark.parametrize(
+    ("rates", "fewest", "told"),
+    [
+        (np.full(8, 1e-9) * np.geomspace(0.2, 5.0, 8), 9, ""),
+        (np.full(8, 1e-9) * np.geomspace(0.02, 50.0, 8), 9, "the repetitions lie between 2e+07 and 5e+10 periods"),
+        ([*([1e-9] * 7), 0.0], 0, "1 of 8 repetitions came to no exit"),
+        (np.full(8, 1e-9), 3, "only 3 of 64 runs came to one of the levels"),
+    ],
+)
+def test_a_mean_is_told_of_repetitions_that_agree(rates, fewest, told):
+    assert doubt(list(rates), fewest, 64) == told
+
+
+@pytest.mark.full
+@pytest.mark.parametrize("seed", [1, 2])
+@pytest.mark.parametrize(("A", "told"), [(0.115, True), (0.125, False)])
+def test_which_amplitudes_a_splitting_can_tell_of(A, told, seed):
+    noise = Scatter(noise=0.05, seed=seed)
+    found = exits(Params(mu=0.05, A=A, Omega=1.17), noise, runs=4, periods=4000, splitting=64, **FEW)
+    (rare,) = found.split
+    assert (not rare.remark) == told
+    assert told == math.isfinite(rare.mean)
 
 
 @pytest.mark.full

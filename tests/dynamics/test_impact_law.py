@@ -24,7 +24,13 @@ from vines.dynamics._impact_law import (
 ROOMS = ("dynamics", "orbits", "attractors")
 READERS = {"_lane_state.py", "_flights.py", "_equations.py", "_values.py", "_shortest.py", "_tails.py"}
 """Lanes and closing equations, which take what is exchanged, pass1 and pass2, as a number."""
-CHAINS = {"_chains.py": "c.law", "_balls.py": "law", "_capsule.py": "c.law", "_dragged.py": "c.law"}
+CHAINS = {
+    "_chains.py": "c.law",
+    "_balls.py": "law",
+    "_capsule.py": "c.law",
+    "_dragged.py": "c.law",
+    "_modal.py": "c.law",
+}
 """Closing equations of any system, linear in the velocities at an impact: they take three coefficients of the law."""
 
 SPEED = st.floats(-10.0, 10.0)

@@ -59,6 +59,15 @@ def test_families_have_the_colours_of_the_paper():
     assert {line.get_color() for line in drawn[1].lines[:2]} == {COLOURS["ink"]}
 
 
+def test_stops_are_no_impacts():
+    x = np.linspace(0.02, 0.03, 5)
+    values = {"w_dot": 0.0 * x, "dt": x}
+    lines = [BranchLine(x=x, side=0, stable=x > 0, values=values, label="1:1", family="unequal", stop=True)]
+    figure = bifurcation_figure("A", [], lines, [], panels=("w_dot", "dt"))
+    assert {line.get_color() for ax in figure.axes for line in ax.lines} == {COLOURS["stop"]}
+    assert "stop in mid-cavity" in [text.get_text() for text in figure.legends[0].get_texts()]
+
+
 def test_a_mirror_image_adds_nothing_to_flight_times():
     x = np.linspace(0.02, 0.03, 5)
     line = BranchLine(x=x, side=1, stable=x > 0, values={"w_dot": x, "dt": x}, label="", family="asymmetric")

@@ -1,5 +1,7 @@
 """Panels of runs and sheets of panels: colours, walls, letters, legends, and bytes that repeat."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -45,6 +47,20 @@ def test_a_single_run_marks_its_impacts_by_side():
     assert (left.get_color(), right.get_color()) == (COLOURS["L"], COLOURS["R"])
     assert set(left.get_xdata()) == {1}
     assert np.array_equal(right.get_ydata(), one.hit_w_dot[one.hit_side < 0])
+
+
+def test_stops_are_grey_and_bodies_have_their_names():
+    one = replace(run(), stops=np.array([[0.5, 0.75], [2.5, 2.75]]), body="mass", ends="barriers")
+    figure = sheet_figure([EndsPanel(one, 4), GapPanel(one, 4), PhasePlanePanel([one])], columns=3)
+    for ax, values in zip(figure.axes, (one.x2, one.w), strict=False):
+        first, _ = (line for line in ax.lines if line.get_color() == COLOURS["stop"])
+        there = (one.t >= 0.5) & (one.t <= 0.75)
+        assert np.array_equal(first.get_xdata(), one.t[there])
+        assert np.array_equal(first.get_ydata(), values[there])
+    (mark,) = (line for line in figure.axes[2].lines if line.get_marker() == "s")
+    assert mark.get_xdata() == pytest.approx(np.sin(2 * np.pi * one.stops[:, 0]))
+    labels = [text.get_text() for text in figure.legends[0].get_texts()]
+    assert labels[:4] == [r"barriers $x_1 \pm 1$", "mass $x_2$", "impact", "stop in mid-cavity"]
 
 
 def test_runs_that_share_a_plane_are_told_apart_in_it():

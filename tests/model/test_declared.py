@@ -16,9 +16,12 @@ ALL = [
         ("vi_nes", 0),
         ("cubic_barriers", 0),
         ("drag", 0),
+        ("duffing", 0),
         ("friction", 0),
         ("hybrid", 0),
         ("impact_pair", 0),
+        ("modes", 1),
+        ("modes", 6),
         ("parallel", 1),
         ("parallel", 8),
     )
@@ -29,7 +32,7 @@ def test_the_files_are_the_systems():
     assert {each.name for each in ALL} == set(system_names()) == set(systems.names())
 
 
-@pytest.mark.parametrize("system", ALL, ids=lambda each: f"{each.name}{each.balls or ''}")
+@pytest.mark.parametrize("system", ALL, ids=lambda each: f"{each.name}{each.balls or each.modes or ''}")
 def test_every_system_has_what_a_system_has(system):
     names = [each.name for each in (*system.parameters, *system.start)]
     assert len(set(names)) == len(names)
@@ -64,6 +67,7 @@ def test_formulas_say_what_the_class_of_the_rig_computes():
         (lambda: read_system("impact_pear"), UnknownNameError, "did you mean 'impact_pair'"),
         (lambda: read_system("impact_pair", 2), SchemaError, "one ball, which has no number, not 2"),
         (lambda: read_system("parallel", 9), SchemaError, "1 to 8 balls, not 9"),
+        (lambda: read_system("modes", 7), SchemaError, "1 to 6 modes, not 7"),
         (lambda: read_system("parallel", 2, digest="0"), SchemaError, "write the new one into the code"),
         (lambda: dimensionless(VI_NES, {"mass": 1}), ParameterError, "unknown quantity 'mass' in SI units"),
         (lambda: dimensionless(VI_NES, {"E": -1}), ParameterError, "E is -1 m, allowed is E >= 0"),

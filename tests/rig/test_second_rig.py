@@ -18,7 +18,7 @@ def test_flight_is_that_of_another_integrator(physics):
     values = np.array([p[name] for name in NAMES])
     start = np.array([0.004, 0.2, 0.001, 0.4, 0.1, 1e-4, 0.0, 0.0, 0.0])
     out, rows, y = np.empty((401, N)), np.empty((1, 11)), start.copy()
-    assert run(y, 0.0, values, 5e-4, 400, np.array([[0.65, 0.0]]), 1e-9, out, rows, 0) == 0
+    assert run(y, 0.0, values, 5e-4, 400, np.array([[0.65, 0.0]]), 1e-10, out, rows, 0) == 0
 
     def slope(t, state):
         into = np.empty(N)

@@ -1,11 +1,16 @@
 """The kind `exits` from declaration to tables and figure, and in shards."""
 
+from types import SimpleNamespace
+from typing import Any
+
 import numpy as np
 import pytest
 
 import vines
 from vines.errors import DeclarationError, ParameterError
+from vines.model import system_names
 from vines.stages import run
+from vines.stages.plots.exits import ExitsCell, _panel
 
 EXITS = """
 title = "exits"
@@ -79,6 +84,40 @@ def test_tables_tell_of_runs_and_regimes_and_shards_agree_bit_for_bit(exits, mon
         run("held", stages=["held"], jobs=1, shard=f"{k}/2")
     run("held", stages=["held"], merge=True)
     assert {name: _rows(name) for name in whole} == whole
+
+
+def test_a_splitting_without_a_mean_is_not_drawn():
+    told = {"name": "1:1", "regime": "periodic", "attractor": 0, "mean_low": 90.0, "mean_high": 120.0}
+    rows = [
+        {**told, "A": 0.1, "point_id": "a", "method": "runs", "mean": 100.0, "remark": None},
+        {**told, "A": 0.1, "point_id": "a", "method": "splitting", "mean": 101.0, "remark": None},
+        {**told, "A": 0.2, "point_id": "b", "method": "runs", "mean": None, "mean_high": None, "remark": None},
+        {
+            **told,
+            "A": 0.2,
+            "point_id": "b",
+            "method": "splitting",
+            "mean": None,
+            "mean_low": None,
+            "mean_high": None,
+            "remark": "no",
+        },
+    ]
+    stage: Any = SimpleNamespace(
+        tables=("exit_regimes",), axes={"A": None}, table=lambda _name: SimpleNamespace(to_pylist=lambda: rows)
+    )
+    drawn: Any = _panel(ExitsCell(show="mean", of="one"), stage)
+    runs, rare = drawn.curves
+    assert runs.x.tolist() == [0.1, 0.2]
+    assert (rare.label, rare.x.tolist()) == ("1:1, by splitting", [0.1])
+
+
+@pytest.mark.parametrize("system", [name for name in system_names() if name not in ("vi_nes", "impact_pair")])
+def test_systems_without_scatter_are_refused_before_any_work(exits, system):
+    exits(EXITS.replace('kind = "exits"', f'kind = "exits"\nsystem = "{system}"'))
+    with pytest.raises(DeclarationError, match=f"{system}.*scatter; it can do impact_pair, vi_nes") as caught:
+        run("held")
+    assert "\n" not in str(caught.value)
 
 
 @pytest.mark.parametrize(

@@ -63,11 +63,11 @@ def test_tables_hold_stops_and_the_power_of_friction(slid):
     ("old", "new", "text"),
     [
         (
-            'kind = "branch"',
-            'kind = "curve"\ntype = "fold"',
-            "the kind 'curve' cannot do the system 'friction'; it can do .*drag",
+            'kind = "branch"\nword = "LLsR"\npoints = 2\nvary.A = { from = 0.2, to = 0.201 }',
+            'kind = "curve"\ntype = "incomplete_chatter"\nword = "L*sR"\nvary.A = { from = 0.2, to = 0.201 }\n'
+            "vary.f = { from = 0.2, to = 0.3 }",
+            "where orbits that stick end is followed for the system 'vi_nes' only",
         ),
-        ('word = "LLsR"', 'word = "L*R"', "orbits that stick are not computed for 'friction'"),
         ('system = "friction"', 'system = "drag"', "'LLsR' is not a word of the system 'drag'"),
     ],
 )

@@ -24,8 +24,8 @@ A = 0.03
 [stages.points]
 kind = "sweep"
 settle = 300
-record = 16
-random = 2
+record = 8
+random = 1
 vary.A = [0.028, 0.03]
 [stages.run]
 kind = "trajectory"
@@ -34,7 +34,7 @@ record = 2
 [stages.branch]
 kind = "branch"
 word = "LR"
-points = 3
+points = 2
 vary.A = { from = 0.03, to = 0.031 }
 [stages.decay]
 kind = "transient"
@@ -74,7 +74,7 @@ def test_tables_hold_what_each_of_the_two_takes_and_verify_agrees(project, monke
     assert (project.root / "run.rrd").stat().st_size > 10_000
     told = [json.loads(pq.read_schema(file).metadata[b"vines"])["provenance"] for file in results.rglob("*.parquet")]
     assert {(each["exact"], each["order"]) for each in told} == {(False, 20)}
-    checked = verify("hybrid", recompute=20)
+    checked = verify("hybrid", recompute=8)
     assert checked.good, [line.first for line in checked.lines if line.first]
     assert sum(line.checked for line in checked.lines if line.group == "recomputed") > 5
 

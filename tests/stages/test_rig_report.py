@@ -55,7 +55,7 @@ def test_a_campaign_is_told_and_asked_what_is_next(project):
     )  # fmt: skip
     make_run(project.root / "runs" / "free", free, 1)
     good = RigSettings(run_id="good", duration=12.0, settle=30.0, rate=12800.0, ringdown=("free",))
-    make_run(project.root / "runs" / "good", good, 7)
+    make_run(project.root / "runs" / "good", good, 8)
     (project.root / "runs" / "bad").mkdir()
     (project.root / "runs" / "bad" / "run.json").write_text("{")
     project.vines("rig", "report", "runs", "--out", "page.md")

@@ -138,6 +138,22 @@ def test_the_response_of_the_family_on_a_small_grid(root):
 
 
 @pytest.mark.full
+def test_the_response_of_a_duffing_oscillator_jumps_down_later_on_the_way_up(root):
+    fewer: dict[str, object] = {"stages.hard_up.random": 0}
+    for name in ("linear_up", "linear_down"):
+        fewer[f"stages.{name}.vary.Omega.count"] = 3
+    for name in ("hard_up", "hard_down"):
+        fewer[f"stages.{name}.vary.Omega"] = {"from": 1.04, "to": 1.092, "count": 14}
+    run("duffing_response", overrides=fewer)
+    assert len(list((root / "data" / "results").rglob("picture.svg"))) == 1
+    query = "select Omega, max_abs_x1 from duffing_points where stage = 'hard_{}' and max_abs_x1 > 0.5"
+    up, down = ([row["Omega"] for row in vines.query(query.format(way)).to_pylist()] for way in ("up", "down"))
+    # docs/systems.md; where chaos is left on the way down is chance
+    assert max(up) == pytest.approx(1.076)
+    assert max(down) < 1.064
+
+
+@pytest.mark.full
 def test_what_coexists_on_a_small_grid(root):
     fewer = {"stages.harvester.vary.B.count": 3, "stages.harvester.random": 2}
     for name, count in (("harvester_plane", 8), ("cavities", 5)):

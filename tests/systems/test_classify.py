@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 
 import vines
+from vines.attractors import coexisting
 from vines.errors import ParameterError, StateError
-from vines.systems import ImpactPair, Parallel
+from vines.systems import CubicBarriers, Drag, Duffing, Friction, Hybrid, ImpactPair, Modes, Parallel
 
 TWO = Parallel(mu=(0.01, 0.01), beta=(1.0, 1.4), A=0.03)
 
@@ -39,6 +40,30 @@ def test_points_of_the_pair():
     assert many.measures["impact_loss_left"][0] == pytest.approx(many.attractor(0).measures.impact_loss_left)
     assert len(many.attractor(0).impacts) == 0
     assert vines.classify_many(points[0], {"w_dot": [0.1, 0.5]}).name.tolist() == ["1:1", "1:1"]
+
+
+@pytest.mark.parametrize(
+    "p",
+    [
+        TWO,
+        ImpactPair(B=0.6, G=0.05, r=0.5),
+        Drag(mu=0.02, A=0.03, delta=0.01),
+        Friction(mu=0.02, A=0.03, f=0.001),
+        CubicBarriers(mu=0.02, A=0.03, k3=0.5, l2=0.1),
+        Duffing(mu=0.02, A=0.03, alpha=0.5),
+        Hybrid(mu=0.02, A=0.03, mu_n=0.01, k3=0.5, l2=0.1),
+        Modes(mu=0.05, A=0.03, omega=(1.0, 1.9), phi=(0.8, -0.7), gamma=(0.9, 0.5)),
+    ],
+    ids=lambda p: p.system.name,
+)
+def test_many_measure_as_one_and_random_starts_come_to_what_is_known(p):
+    many = vines.classify_many(p)
+    alone = many.attractor(0)
+    for name in ("kinetic_1", "kinetic_2", "kinetic_ratio", "max_abs_x1", "rms_x1", "base_work", "damper_loss"):
+        assert many.measures[name][0] == pytest.approx(getattr(alone.measures, name), rel=1e-14, nan_ok=True)
+    [listed] = coexisting([alone], random=2, seed=1, settle=1000, record=64, watch=300, largest_p=None, impacts=False)
+    known = [(found.name, round(found.measures.kinetic_ratio, 6)) for found, _ in listed if found.settled]
+    assert len(set(known)) == len(known)
 
 
 def test_equal_balls_start_apart():

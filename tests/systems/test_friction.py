@@ -13,7 +13,6 @@ from vines import systems
 from vines.dynamics import decay, tangent_map
 from vines.errors import ParameterError
 from vines.model import Word
-from vines.orbits import follow_curve
 
 IMPACT, STICK, RELEASE, STOP, SLIDE = 1, 2, 3, 5, 6
 
@@ -276,8 +275,6 @@ def test_a_branch_through_its_symmetry_breaking_by_differences():
     assert later(z) == pytest.approx(z, abs=1e-10)
     slope = np.column_stack([(later(z + e) - later(z - e)) / 2e-6 for e in 1e-6 * np.eye(4)])
     assert np.linalg.eigvals(slope).real.min() == pytest.approx(-1, abs=1e-5)
-    with pytest.raises(ParameterError, match="bifurcation is of Friction; turns and stops of a ball have no closing"):
-        follow_curve(broken, box={"A": (0.01, 0.03), "mu": (0.005, 0.02)})
 
 
 def test_stops_are_of_systems_with_friction():
@@ -285,3 +282,20 @@ def test_stops_are_of_systems_with_friction():
         vines.find_orbit("LsR", vines.Params(mu=0.02, A=0.03))
     with pytest.raises(ParameterError, match="no impact"):
         vines.find_orbit("ss", systems.Friction(mu=0.02, A=0.03, f=0.3))
+
+
+def test_a_ball_that_slides_to_and_fro_is_named_and_the_rest_of_it_too():
+    p = systems.Friction(mu=0.3, A=0.03, f=0.02, lam=0.1)
+    attractor = vines.settle(p, v2=0.02)
+    assert (attractor.regime, attractor.name, attractor.settled) == ("no_impact", "0:0", True)
+    # Where in the cavity it slides makes no difference.
+    assert np.abs(attractor.multipliers - 1).min() < 1e-9
+    assert np.sort(np.abs(attractor.multipliers))[-2] < 0.8
+    final = attractor.final
+    turns = integrated(p, [final[name] for name in ("x1", "v1", "x2", "v2")], final["phase"], 2 * p.period)
+    assert [kind for kind, *_ in turns] == [SLIDE] * 4
+    for (_, t, x1, v1), (_, later, x, v) in zip(turns[:2], turns[2:], strict=True):
+        assert (later - t, x, v) == pytest.approx((p.period, x1, v1), abs=1e-8)
+    assert vines.settle(p.replace(f=5.0)).name == "0:0"
+    # With a tilt it sinks to the lower end, and hits.
+    assert vines.settle(p.replace(G=0.002), v2=0.02).regime != "no_impact"

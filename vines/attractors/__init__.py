@@ -1,6 +1,8 @@
 """What a simulation settles to: n:m/pT, quasi-periodic, chaotic, without impact, or not settled yet."""
 
+from vines.attractors import _modal as _modal
 from vines.attractors import _stroboscope as _stroboscope
+from vines.attractors import _to_and_fro as _to_and_fro
 from vines.attractors._alike import SAME, Motion, apart
 from vines.attractors._atlas import Atlas, Entry, atlas
 from vines.attractors._attractor import Attractor

@@ -70,7 +70,9 @@ def carried(
 
     def work(block: slice) -> None:
         rows = np.empty((layout.rows, layout.width))
-        _carry_block(c, begun[block], stop, EVENTS_PER_PERIOD, rows, finals[block], sums[block])
+        # Constants of its own: those of some systems hold the room that a kernel works in.
+        own = constants(p)
+        _carry_block(own, begun[block], stop, EVENTS_PER_PERIOD, rows, finals[block], sums[block])
 
     cores = threads_allowed()
     size = min(BLOCK, max(16, -(-n // (4 * cores))))

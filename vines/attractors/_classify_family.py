@@ -18,7 +18,7 @@ from vines.attractors._settle import Settled, parted, settled
 from vines.dynamics.kernels import room_of
 from vines.dynamics.kernels import rows as col
 from vines.dynamics.kernels import totals as entry
-from vines.dynamics.runs import each_thread, impacts_of, measures_of, start_of, threads_allowed
+from vines.dynamics.runs import each_thread, impacts_of, measures_from, measures_of, start_of, threads_allowed
 from vines.errors import ParameterError, StateError
 from vines.model import Parameters
 
@@ -49,8 +49,12 @@ class FamilyClassified(Classified):
     @property
     def measures(self) -> npt.NDArray[np.void]:  # pyright: ignore[reportIncompatibleVariableOverride]
         """Energy measures as of `Classified`, of all balls together; those of each are in ``attractor(k).measures``."""
-        # Totals of several balls have their masses in them, and the unit of energies of the pair is its ball's mass.
-        return measures_of(np.ones(len(self)), self.totals[:, : entry.TOTALS])
+        out = measures_of(np.ones(len(self)), self.totals[:, : entry.TOTALS])
+        # Which masses the totals have in them already is for each system to say.
+        each = [measures_from(p, totals) for p, totals in zip(self.params, self.totals, strict=True)]
+        out["kinetic_2"] = [one.kinetic_2 for one in each]
+        out["kinetic_ratio"] = [one.kinetic_ratio for one in each]
+        return out
 
     @property
     def sticks(self) -> Floats:
@@ -110,9 +114,11 @@ def classify_family(
     points = (params,) if isinstance(params, Parameters) else tuple(params)
     if not points:
         raise ParameterError("params is empty; give at least one point")
-    kinds = {(p.system.name, getattr(p, "balls", 0)) for p in points}
+    kinds = {(p.system.name, p.system.balls, p.system.modes) for p in points}
     if len(kinds) > 1:
-        raise ParameterError(f"points of {len(kinds)} systems or numbers of balls; classify those of each alone")
+        raise ParameterError(
+            f"points of {len(kinds)} systems or numbers of balls or modes; classify those of each alone"
+        )
     n = _count(len(points), given)
     points = points * n if len(points) == 1 else points
     begins = []

@@ -31,12 +31,21 @@ NEAR, FIRST, NEXT = 0.5, 0.9, 0.7
 
 MOST_LEVELS, TRIMS = 60, 4
 
+MOST_SPREAD, FEWEST = 1.5, 4
+"""Standard deviation of the logarithms of the repetitions' rates up to which their mean is told, and the fewest runs
+that have to come to each level.
+
+A rate is a product over the levels, so its law is about log-normal. Above this spread the mean lies where eight
+repetitions seldom are, and two sets of them differ by powers of ten."""
+
 MEMORIES = 4.0
 """Relaxation times after which the noise has filled the neighbourhood of the orbit, from which distances are taken."""
 
 
 def split(work: Work, k: int, walkers: int) -> Holding | None:
     """Return how long a periodic regime holds from its orbit on, by splitting; None where most runs leave it at once.
+
+    Where the repetitions disagree, or few runs came to a level, it has a remark instead of a mean.
 
     Parameters
     ----------
@@ -56,22 +65,42 @@ def split(work: Work, k: int, walkers: int) -> Holding | None:
     if not stages.prepared():
         return None
     levels = stages.levels()
-    if levels is None:
-        return None
-    rates, to = [], Counter[int]()
-    for _ in range(REPEATS):
-        rate, left = stages.rate(levels)
+    rates, fewest, to = [], walkers, Counter[int]()
+    for _ in range(REPEATS if levels else 0):
+        rate, least, left = stages.rate(levels)
         rates.append(rate)
+        fewest = min(fewest, least)
         to.update(left)
+    watched, exits = float(stages.watched), sum(to.values())
+    if why := doubt(rates, fewest, walkers):
+        none = math.nan
+        return Holding(k, "splitting", len(rates), exits, watched, none, none, none, dict(to), 0, none, why)
     mean = float(np.mean(rates))
-    if mean == 0.0:
-        return None
     error = float(np.std(rates, ddof=1)) / math.sqrt(REPEATS) / mean
     wide = math.exp(float(student.ppf(0.5 * (1 + LEVEL), REPEATS - 1)) * error)
-    watched = float(stages.watched)
-    return Holding(
-        k, "splitting", REPEATS, sum(to.values()), watched, 1 / mean, 1 / mean / wide, wide / mean, dict(to), 0, error
-    )
+    return Holding(k, "splitting", REPEATS, exits, watched, 1 / mean, 1 / mean / wide, wide / mean, dict(to), 0, error)
+
+
+def doubt(rates: Sequence[float], fewest: int, walkers: int) -> str:
+    """Return why no mean is told of repetitions with these rates, of which so few runs came to a level; else nothing.
+
+    Examples
+    --------
+    >>> doubt([1e-7, 2e-7, 3e-7], 9, 64)
+    ''
+    >>> doubt([1e-14, 1e-16, 1e-19], 9, 64)
+    'the repetitions lie between 1e+14 and 1e+19 periods'
+    >>> doubt([1e-9, 0.0, 0.0], 0, 64)
+    '2 of 3 repetitions came to no exit'
+    """
+    if not rates:
+        return "no levels were found that lead to an exit"
+    lost = sum(rate == 0.0 for rate in rates)
+    if lost:
+        return f"{lost} of {len(rates)} repetitions came to no exit"
+    if float(np.std(np.log(rates), ddof=1)) > MOST_SPREAD:
+        return f"the repetitions lie between {1 / max(rates):.0e} and {1 / min(rates):.0e} periods"
+    return f"only {fewest} of {walkers} runs came to one of the levels" if fewest < FEWEST else ""
 
 
 @dataclass
@@ -127,8 +156,8 @@ class _Stages:
         self.near, self.first = np.quantile(distance, [NEAR, FIRST]).tolist()
         return True
 
-    def levels(self) -> list[float] | None:
-        """Return the levels, chosen so that three runs in ten come from each to the next, or to an exit."""
+    def levels(self) -> list[float]:
+        """Return the levels, chosen so that three runs in ten come from each to the next, or to an exit; or none."""
         levels = [self.first]
         entries, _ = self.flux(levels[0])
         while len(entries) and len(levels) < MOST_LEVELS:
@@ -139,17 +168,19 @@ class _Stages:
             level = max(level, 1.02 * levels[-1])
             _, entries = self.trial(entries, level)
             levels.append(level)
-        return levels if len(entries) else None
+        return levels if len(entries) else []
 
-    def rate(self, levels: Sequence[float]) -> tuple[float, Counter[int]]:
-        """Return the rate of exits a forcing period, and the regimes that runs left to."""
+    def rate(self, levels: Sequence[float]) -> tuple[float, int, Counter[int]]:
+        """Return the rate of exits a forcing period, the fewest runs at a level, and the regimes that runs left to."""
         entries, rate = self.flux(levels[0])
+        fewest = len(entries)
         for level in (*levels[1:], math.inf):
             if not len(entries):
-                return 0.0, Counter()
+                return 0.0, 0, Counter()
             _, entries = self.trial(entries, level)
+            fewest = min(fewest, len(entries))
             rate *= len(entries) / self.walkers
-        return rate, Counter(entries.gone.tolist())
+        return rate, fewest, Counter(entries.gone.tolist())
 
     def flux(self, level: float) -> tuple[_Entries, float]:
         """Return the runs that come to the first level from near the orbit, and how many do so a forcing period."""

@@ -69,7 +69,8 @@ class Exits:
     holdings : list of Holding
         Of each regime, by its runs.
     split : list of Holding
-        Of periodic regimes, by splitting, where it was asked for and could be done.
+        Of periodic regimes, by splitting, where it was asked for and could be done; with a remark and without a mean
+        where its repetitions disagree.
     """
 
     params: Any
@@ -88,9 +89,9 @@ class Exits:
     def law(self) -> tuple[Floats, Floats, Floats]:
         """Share of the time in each regime in the long run, and the ends of its interval; see `stationary_law`.
 
-        Where runs saw fewer than `FEW` exits from a regime, and a splitting saw some, its rate is taken.
+        Where runs saw fewer than `FEW` exits from a regime, and a splitting tells a mean, its rate is taken.
         """
-        rare = {each.regime: each for each in self.split}
+        rare = {each.regime: each for each in self.split if not each.remark}
         used = [rare.get(each.regime, each) if each.exits < FEW else each for each in self.holdings]
         return stationary_law(used, self.scatter.seed)
 
@@ -108,9 +109,12 @@ class Exits:
             k = each.regime
             basin, error = self.basin(k)
             to = ", ".join(f"{n} to {self._name(j)}" for j, n in sorted(each.to.items())) or "none seen"
+            mean = f"mean {each.mean:.4g} periods ({each.low:.4g} to {each.high:.4g})"
+            if each.remark:
+                mean = f"no mean ({each.remark})"
             lines.append(
-                f"  {self._name(k)} by {each.runs} {'runs' if each.method == 'runs' else 'splittings'}: mean "
-                f"{each.mean:.4g} periods ({each.low:.4g} to {each.high:.4g}), exits {to}; {share[k]:.3f} "
+                f"  {self._name(k)} by {each.runs} {'runs' if each.method == 'runs' else 'splittings'}: "
+                f"{mean}, exits {to}; {share[k]:.3f} "
                 f"({low[k]:.3f} to {high[k]:.3f}) of the time, {basin:.3f} ± {error:.3f} of the starts"
             )
         return "\n".join(lines)

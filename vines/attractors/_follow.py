@@ -23,7 +23,7 @@ from vines.dynamics.kernels import rows as col
 from vines.kernels import cold_njit, identity, new_matrix, new_vector, njit
 from vines.orbits.kernels import contacts
 
-__all__ = ["follow"]
+__all__ = ["BLOCKS", "FLAT", "LONGER", "SURE", "follow", "spectrum"]
 
 LONGER = (1, 3, 12)
 """How long to run on where nothing repeats, in units of `watch`: each stage only if those before left it open."""
@@ -112,7 +112,7 @@ def follow(c, state, elapsed, watch, cap, tolerance, longest, rows, verdict):
                 for j in range(d + 1):
                     grown[filled, j] = part[b, j]
                 filled += 1
-        rate, error = _spectrum(grown, filled, verdict)
+        rate, error = spectrum(grown, filled, verdict)
         chaotic = rate > SURE * error
         if _beside_orbit(c, rows, count + 1, length, chaotic, stage == len(LONGER) - 1, tolerance, longest, verdict):
             # Counted from the end of the window, not from here.
@@ -144,7 +144,7 @@ def follow(c, state, elapsed, watch, cap, tolerance, longest, rows, verdict):
 
 
 @cold_njit
-def _spectrum(grown, n, verdict):
+def spectrum(grown, n, verdict):
     """Write the exponents of growth by n blocks; return the largest and its error, that of a finite run included."""
     d = grown.shape[1] - 1
     time = 0.0

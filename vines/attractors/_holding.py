@@ -40,13 +40,15 @@ class Holding:
         Forcing periods that all of them were in it, censored ones included.
     mean, low, high : float
         Mean time until it is left, in forcing periods, with the ends of its interval of 95 %; infinite where no exit
-        was seen.
+        was seen, nan where `remark` says why none can be told.
     to : mapping of int to int
         Exits to each regime.
     early : int
         Runs that left it before they were counted.
     relative_error : float
         Of a rate by splitting its relative standard error, else nan.
+    remark : str
+        Why a splitting tells no mean, else empty.
     """
 
     regime: int
@@ -60,6 +62,7 @@ class Holding:
     to: Mapping[int, int]
     early: int = 0
     relative_error: float = math.nan
+    remark: str = ""
 
 
 @stated(exits=Whole(least=0, most=10**9), watched=Number(above=0, most=1e15), level=Number(least=1e-6, most=1 - 1e-6))

@@ -171,4 +171,6 @@ def is_regular_block(table, states, periods, cap, tolerance, longest, regular):
             c, states[k], periods * 2.0 * math.pi / c.Omega, cap, rows, open_window(c, states[k], rows)
         )
         judge_window(c, rows, count + 1, periods, tolerance, longest, verdict)
-        regular[k] = code == col.COMPLETE and verdict[v.REGIME] != v.OPEN
+        regime = verdict[v.REGIME]
+        # A motion without impacts is watched on at once, and may never repeat.
+        regular[k] = code == col.COMPLETE and regime not in (v.OPEN, v.QUASIPERIODIC, v.CHAOTIC)

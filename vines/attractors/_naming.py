@@ -120,4 +120,5 @@ def _unstruck(name: str | None, verdict: list[float]) -> str | None:
     if name is None or verdict[v.REGIME] != v.NO_IMPACT or not verdict[v.SETTLED]:
         return None
     periods = int(verdict[v.P])
-    return name if periods == 1 else f"{name}/{periods}T"
+    # What is at rest repeats after any time.
+    return name if periods <= 1 else f"{name}/{periods}T"

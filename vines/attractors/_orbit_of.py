@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Mapping
 from typing import Any
 
@@ -30,7 +31,7 @@ def orbit_of(attractor: Attractor) -> Orbit:
     Parameters
     ----------
     attractor : Attractor
-        A periodic one of the VI-NES.
+        A periodic one of the VI-NES, or a settled motion without impacts of the type 0:0.
 
     Raises
     ------
@@ -47,6 +48,8 @@ def orbit_of(attractor: Attractor) -> Orbit:
     >>> orbit.word.name, orbit.stable, orbit.admissible
     ('2:1', True, True)
     """
+    if attractor.params.system.smooth and attractor.regime == "no_impact" and attractor.name is not None:
+        return _unstruck(Word(attractor.name), attractor.params, attractor.final)
     if not isinstance(attractor.params, Params):
         raise ParameterError(
             f"attractor is of {type(attractor.params).__name__}, this is there for vines.Params alone; "
@@ -55,6 +58,14 @@ def orbit_of(attractor: Attractor) -> Orbit:
     if attractor.word is None:
         raise OrbitNotFound(f"the attractor is {attractor.regime}, only a periodic one is an orbit; settle elsewhere")
     return orbit_through(Word(str(attractor.word)), attractor.params, attractor.final)
+
+
+def _unstruck(word: Word, p: Any, final: Mapping[str, float]) -> Orbit:
+    """Return the orbit without impacts that a run is on, from where it comes through phase 0 next."""
+    at: dict[str, Any] = {each.name: final[each.name] for each in p.system.state}
+    ahead = (2 * math.pi - final["phase"] % (2 * math.pi)) / (2 * math.pi)
+    end = simulate(p, **at, phi=final["phase"], periods=ahead).final
+    return find_orbit(word, p, guess=[end[name] for name in at])
 
 
 def orbit_through(word: Word, p: Any, final: Mapping[str, float]) -> Orbit:

@@ -6,19 +6,17 @@ import math
 
 from vines.attractors import _verdict as v
 from vines.attractors._approach import nearest_orbit
-from vines.attractors._judge import ROUNDING, UNSTABLE, note_drift, without_impact
+from vines.attractors._judge import NEAR, ROUNDING, UNSTABLE, note_drift, without_impact
 from vines.attractors._multipliers import multipliers
+from vines.attractors._smooth_watch import LONGEST, apart, watch_smooth, watches
+from vines.dynamics.duffing import DuffingField
 from vines.dynamics.hybrid import HybridConstants
-from vines.dynamics.hybrid.kernels import R_V3, R_X3
 from vines.dynamics.kernels import directions, tangent_product
 from vines.dynamics.kernels import rows as col
-from vines.dynamics.taylor import TaylorConstants
+from vines.dynamics.taylor import Field, TaylorConstants
 from vines.kernels import by_type, cold_njit, complex_vector, new_matrix, njit
 
 __all__: list[str] = []
-
-LONGEST = 32
-"""Most forcing periods over which a repetition without impacts is looked for."""
 
 
 @nearest_orbit.register(TaylorConstants)
@@ -31,35 +29,31 @@ def _nearest_orbit(c, rows, kept, p, lag, scale, tolerance):
 nearest_orbit.register(HybridConstants)(_nearest_orbit)
 
 
-@njit
-def _differs(rows, i, j, columns):
-    """Return the largest difference of two rows in some columns."""
-    away = 0.0
-    for k in columns:
-        away = max(away, abs(rows[i, k] - rows[j, k]))
-    return away
-
-
-@by_type(TaylorConstants)
-@njit
-def _apart(c, rows, i, j):
-    """Return how far the states just after two rows are from each other."""
-    return _differs(rows, i, j, (col.X1, col.A_V1, col.X2, col.A_V2))
-
-
-@_apart.register(HybridConstants)
-@njit
-def _apart_beside(c, rows, i, j):
-    # The ball stays where it is.
-    return _differs(rows, i, j, (col.X1, col.A_V1, R_X3, R_V3))
-
-
 @by_type(TaylorConstants)
 @cold_njit
 def _roots(c, rows, first, last, roots):
     """Fill the multipliers from one row to another, those first that are 1 for any motion; return their number."""
-    multipliers(tangent_product(c, rows, first, last), roots)
+    return _roots_of(c.field, tangent_product(c, rows, first, last), roots)
+
+
+@by_type(Field)
+@cold_njit
+def _roots_of(f, Y, roots):
+    multipliers(Y, roots)
     return 0
+
+
+@_roots_of.register(DuffingField)
+@cold_njit
+def _roots_of_a_frame(f, Y, roots):
+    # The ball acts on nothing, and keeps what it is given.
+    frame = new_matrix(2, 2)
+    for i in range(2):
+        for k in range(2):
+            frame[i, k] = Y[i, k]
+    multipliers(frame, roots[2:])
+    roots[0] = roots[1] = 1.0
+    return 2
 
 
 @_roots.register(HybridConstants)
@@ -80,7 +74,20 @@ def _roots_beside(c, rows, first, last, roots):
 @njit
 def _stays(c, rows, last, verdict):
     """Say whether what flies freely, if anything does, comes to no wall within sight."""
+    rides = rows[last, col.MODE] != 0.0
+    return _stays_free(c.field, c.period, 0.0 if rides else abs(rows[last, col.A_V2]), verdict)
+
+
+@by_type(Field)
+@njit
+def _stays_free(f, period, speed, verdict):
     return True
+
+
+@_stays_free.register(DuffingField)
+@njit
+def _ball_stays_free(f, period, speed, verdict):
+    return note_drift(verdict, period, speed)
 
 
 @_stays.register(HybridConstants)
@@ -96,6 +103,7 @@ def _without_impact(c, rows, n, tolerance, verdict):
     """Judge a run without impacts by its states once a period, where its flights are started afresh."""
     verdict[v.REGIME], verdict[v.LYAPUNOV_ERROR] = v.NO_IMPACT, 0.0
     last = n - 2
+    told = last >= LONGEST and watches(c)
     if not _stays(c, rows, n - 1, verdict):
         verdict[v.REGIME] = v.UNSETTLED
         return
@@ -105,7 +113,7 @@ def _without_impact(c, rows, n, tolerance, verdict):
         scale = max(scale, abs(rows[i, col.A_V1]), abs(rows[i, col.A_V2]))
     best, nearest = 0, math.inf
     for p in range(1, min(LONGEST, last // 2) + 1):
-        away = _apart(c, rows, last, last - p) / scale
+        away = apart(c, rows, last, last - p) / scale
         if away < 0.5 * nearest:
             best, nearest = p, away
         if away <= 2.5 * tolerance:
@@ -115,13 +123,19 @@ def _without_impact(c, rows, n, tolerance, verdict):
     if nearest > 2.5 * tolerance:
         # Whether it comes nearer, and when it will be there.
         before = last // 2
-        earlier = _apart(c, rows, before, before - best) / scale if before >= best else math.inf
-        if nearest < 0.9 * earlier < math.inf:
+        earlier = apart(c, rows, before, before - best) / scale if before >= best else math.inf
+        first = max(best, last // 4)
+        # A torus may come nearer by chance, but neither steadily nor near.
+        steady = not told or (nearest < NEAR and earlier < apart(c, rows, first, first - best) / scale)
+        if nearest < 0.9 * earlier < math.inf and steady:
             rate = (nearest / earlier) ** (1.0 / (last - before))
             verdict[v.REGIME] = v.UNSETTLED
             verdict[v.REMAINING], verdict[v.REASON], verdict[v.VALUE] = (
                 math.log(nearest / tolerance) / -math.log(rate), v.COMES, rate,
             )  # fmt: skip
+        elif told:
+            verdict[v.SCALE] = scale
+            watch_smooth(c, rows[n - 1], tolerance, verdict)
         return
     d = len(directions(c))
     roots = complex_vector(d)

@@ -8,23 +8,27 @@ from typing import Any
 import click
 
 from vines.cli._finite import finite
-from vines.model import VI_NES, Parameter, System, most_balls, read_system
+from vines.model import VI_NES, Parameter, System, counted, read_system
 
 __all__ = ["OfSystem"]
 
 _SYSTEM = "--system"
-_OF_BALL = re.compile(r"--[a-zA-Z]+_([1-9])(=.*)?")
+_UNSTRUCK = re.compile(r"-(/\d*T)?")
+_NUMBERED = re.compile(r"--[a-zA-Z]+_([1-9])(=.*)?")
 
 
 class OfSystem(click.Command):
     """A command with an option for each parameter of the system that ``--system`` names, called as the parameter is.
 
-    Parameters without default are required. Balls are counted by the options given: ``--mu_2`` is of a second one.
+    Parameters without default are required. Balls and modes are counted by the options given: ``--mu_2``
+    is of a second one.
     """
 
     def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
         """Read the system first, since options are those of its parameters."""
         ctx.meta[_SYSTEM] = VI_NES if ctx.resilient_parsing else _declared(args)
+        # A word of no impacts looks like an option: its type is the same.
+        args = ["0:0" + each[1:] if _UNSTRUCK.fullmatch(each) else each for each in args]
         return super().parse_args(ctx, args)
 
     def get_params(self, ctx: click.Context) -> list[click.Parameter]:
@@ -47,8 +51,8 @@ def _declared(args: list[str]) -> System:
             name = after if word == _SYSTEM else word.partition("=")[2]
     if name == VI_NES.name:
         return VI_NES
-    balls = max((int(found[1]) for word in args if (found := _OF_BALL.fullmatch(word))), default=1)
-    return read_system(name, min(balls, most_balls(name)))
+    count = max((int(found[1]) for word in args if (found := _NUMBERED.fullmatch(word))), default=1)
+    return read_system(name, min(count, counted(name)[1]))
 
 
 def _option(each: Parameter) -> click.Option:

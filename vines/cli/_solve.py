@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -42,8 +43,9 @@ def command(
 ) -> None:
     """Print the periodic orbit of a WORD of impacts, such as LR, LLR or LRLR/2T.
 
-    A star stands behind a chatter that ends in sticking, such as L*R*, which a shell wants in quotes; a word without
-    a star is that of orbits that never stick. Of several the symmetric admissible one is shown, else a stable one,
+    Without impacts a WORD is - or 0:0, for two forcing periods -/2T or 0:0/2T. A star stands behind a chatter that
+    ends in sticking, such as L*R*, which a shell wants in quotes; a word without a star is that of orbits that never
+    stick. Of several the symmetric admissible one is shown, else a stable one,
     else the one with the smallest largest multiplier. Exit 1 if there is none.
 
     \b
@@ -52,6 +54,7 @@ def command(
     vines solve 'L*R*' --mu 0.01 --A 0.5
     vines solve LR --mu 0.01 --A 0.02 --log orbit.mcap && vines view orbit.mcap
     vines solve LLR --system impact_pair --B 0.95 --G 0.15 --r 0.5
+    vines solve - --system cubic_barriers --mu 0.05 --A 0.05 --k3 3 --l2 0.2 --walls 0
     vines solve L1L2R1R2 --system parallel --A 0.03 --mu_1 0.01 --mu_2 0.01 --beta_2 1.4
     """  # noqa: D301
     if every and log is not None:
@@ -114,7 +117,11 @@ def describe(orbit: Orbit) -> str:
         )
     if orbit.remark:
         text.append(orbit.remark)
-    letters = [p.system.letters([side], [ball]) for side, ball in zip(orbit.side, orbit.word.balls, strict=True)]
+    strikes = not orbit.word.unstruck
+    letters = [
+        p.system.letters([side], [ball]) if strikes else ""
+        for side, ball in zip(orbit.side, orbit.word.balls, strict=True)
+    ]
     states = orbit.states.tolist()
     rows = [
         [letter, *(f"{value:.10f}" for value in (t, phase, wait, *state, w_dot))]
@@ -123,7 +130,8 @@ def describe(orbit: Orbit) -> str:
         )
     ]
     head = ["", "t", "phase", "to the next", *STATE_NAMES, *room_of(p).beside, "w'"]
-    text += ["", "impacts (just before each)", *lines(head, rows, wrap=None)]
+    what = "impacts (just before each)" if strikes else "at phase 0 of the forcing (nothing is hit)"
+    text += ["", what, *lines(head, rows, wrap=None)]
     if len(orbit.spells):
         names = ("t_start", "t_release", "phase_start", "phase_release", "x1", "v1")
         spells = [
@@ -135,7 +143,13 @@ def describe(orbit: Orbit) -> str:
         text += lines(head, spells, wrap=None)
     text += ["", "Floquet multipliers over the period"]
     text += lines(["", "modulus"], [[_complex(z), f"{abs(z):.10f}"] for z in orbit.multipliers.tolist()], wrap=None)
-    clearance = "no flight turns back" if orbit.min_clearance == 2 else f"{orbit.min_clearance:.6g}"
+    clearance = (
+        "no barriers"
+        if math.isnan(orbit.min_clearance)
+        else "no flight turns back"
+        if orbit.min_clearance == 2
+        else f"{orbit.min_clearance:.6g}"
+    )
     measures: list[list[object]] = []
     if "max_abs_x1" not in p.system.without:
         free, locked = no_ball(p), ball_locked(p)

@@ -5,8 +5,10 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 from vines.domains import Number, Numbers, Of, stated
+from vines.dynamics._room import room_of
 from vines.dynamics._trajectory import Trajectory
 from vines.errors import StateError
 
@@ -77,7 +79,7 @@ def decay(run: Trajectory, shares: Sequence[float] = (0.1, 0.01)) -> Decay:
     if run.params.A != 0:
         raise StateError(f"A is {run.params.A:g}; energy decays where nothing drives: give A = 0")
     whole = run.measures()
-    frame, ball = _above_rest(run.params.as_dict(), run.final)
+    frame, ball = _above_rest(run.params, run.final)
     start = frame + ball - whole.energy_change
     if not start > 0:
         raise StateError("nothing moves at the start; give a velocity that is not 0")
@@ -96,18 +98,19 @@ def decay(run: Trajectory, shares: Sequence[float] = (0.1, 0.01)) -> Decay:
     )
 
 
-def _above_rest(values: dict[str, float], state: dict[str, float]) -> tuple[float, float]:
+def _above_rest(p: Any, state: dict[str, float]) -> tuple[float, float]:
     """Return the energies of the oscillator and of the balls above those at rest.
 
     With x2'' = -G a ball has the potential mu G x2. Less its least value, which is reached at x1 = -G sum(mu) with
     every ball on its lower end, the sum of all potentials is (x1 + G sum(mu))²/2 and mu |G| for each ball times its way
     down to that end: squares and heights, so that nothing large cancels when little is left.
     """
+    values = p.as_dict()
     pull = values.get("G", 0.0)
     beside = values.get("mu_n")
     masses = {name.partition("mu")[2]: mass for name, mass in values.items() if name.partition("_")[0] == "mu"}
     masses.pop("_n", None)
-    frame = 0.5 * (state["v1"] ** 2 + (state["x1"] + pull * sum(masses.values())) ** 2)
+    frame = room_of(p).frame_energy(p, state, pull * sum(masses.values()))
     balls = 0.0
     for ball, mass in masses.items():
         way = values.get(f"beta{ball}", 1.0) + math.copysign(1.0, pull) * (state[f"x2{ball}"] - state["x1"])

@@ -141,10 +141,18 @@ class Room:
         detuning = math.hypot(1.0 - mass * p.Omega**2, damping)
         return p.A * math.hypot(1.0, damping) / detuning if detuning > 0.0 else math.inf
 
+    def swings(self, p: Any) -> list[dict[str, float]]:
+        """Return further starts of the oscillator from which orbits are looked for, beside rest."""
+        return []
+
     def push(self, p: Any, x1: Any, v1: Any, phase: Any) -> Any:
         """Return w'' of a free ball."""
         force = p.A * (np.sin(phase) + p.lam * p.Omega * np.cos(phase))
         return force - p.lam * v1 - x1
+
+    def let_go(self, p: Any, side: int) -> float:
+        """Return the `push` at which a ball that rides on a wall leaves it: 0 where the wall alone acts on it."""
+        return 0.0
 
     def law(self, p: Any, balls: Any) -> ImpactLaw:
         """Return the law of impact of balls with these numbers."""
@@ -153,6 +161,10 @@ class Room:
     def mass(self, p: Any) -> float:
         """Return the mass of the ball in the unit of energies."""
         return p.mu
+
+    def frame_energy(self, p: Any, at: Mapping[str, float], sag: float) -> float:
+        """Return the energy of the frame without forcing, above that at rest, where x1 is -sag."""
+        return 0.5 * (at["v1"] ** 2 + (at["x1"] + sag) ** 2)
 
     def conserves(self, p: Any) -> bool:
         """Say whether nothing is lost, by damping or in impacts: volumes of states are kept, and nothing attracts."""

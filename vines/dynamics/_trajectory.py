@@ -167,6 +167,11 @@ class Trajectory:
         out["phase_release"][: len(ends)] = self.rows[ends, col.PHASE]
         return out
 
+    @cached_property
+    def rests(self) -> Table:
+        """Spells in which the ball does not move against the cavity: those of `sticks`, and stops in it with side 0."""
+        return self.sticks
+
     def _rest_of_chatter(self, begins: npt.NDArray[np.int64]) -> npt.NDArray[np.float64]:
         """Return how long the hops left out at each merge last together, 2 u/(a (1 - r)); 0 where r = 1."""
         p, rows = self.params, self.rows[begins]

@@ -1,4 +1,4 @@
-"""The two closed forms that give a measure its meaning: the oscillator with no ball, and with the ball locked in."""
+"""The two responses that give a measure its meaning: the oscillator with no ball, and with the ball locked in."""
 
 from __future__ import annotations
 
@@ -15,7 +15,8 @@ def no_ball(p: Any) -> float:
     """Return the steady amplitude of x1 when there is no ball.
 
     The oscillator x1'' + lam x1' + x1 = A sin + lam Omega A cos (paper, eq. (8)) answers with
-    A sqrt(1 + lam² Omega²)/sqrt((1 - Omega²)² + lam² Omega²).
+    A sqrt(1 + lam² Omega²)/sqrt((1 - Omega²)² + lam² Omega²). A Duffing frame (`systems.Duffing`) answers in several
+    ways at some frequencies: the largest |x1| of the largest stable response is returned.
 
     Examples
     --------

@@ -37,10 +37,12 @@ COLOURS = WornColours(
         "R light": "#85b0e6",
         "ink": "#222222",
         "mark": "#555555",
+        "stop": "#8f949c",
     },
     follow={"L light": ("L", _lighter), "R light": ("R", _lighter)},
 )
-"""As in the paper: impacts on the left end red, on the right end blue; light for simulated dots, full for branches."""
+"""As in the paper: impacts on the left end red, on the right end blue; light for simulated dots, full for branches;
+grey where a ball stops in mid-cavity."""
 
 FAMILIES = WornPairs(
     {

@@ -65,6 +65,8 @@ class BranchLine:
         Whether it is the mirror image of another line, whose flight times it shares.
     ball : int
         Number of the ball, which then gives the colour; 0 where balls have no numbers.
+    stop : bool
+        Whether it is of a stop in mid-cavity, and no impact.
     """
 
     x: Floats
@@ -75,6 +77,7 @@ class BranchLine:
     family: str = "symmetric"
     image: bool = False
     ball: int = 0
+    stop: bool = False
 
 
 @dataclass(frozen=True)

@@ -166,7 +166,9 @@ class DiagramPanel:
             left, right = FAMILIES[line.family]
             plain = twin or (line.side == 0 and line.family == "symmetric")
             colour = COLOURS["ink"] if plain else right if line.side < 0 else left
-            if line.ball:
+            if line.stop:
+                colour = COLOURS["stop"]
+            elif line.ball:
                 colour = BALLS[(line.ball - 1) % len(BALLS)]
             for start, stop, stable in runs(line.stable):
                 # One point is shared with the next run, so that the line has no gap where stability changes.

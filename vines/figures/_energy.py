@@ -61,7 +61,10 @@ class EnergyCurve:
 
 @dataclass(frozen=True)
 class EnergyPanel:
-    """Curves over one axis. With `ratio` K2/K1 is shown too; `y` is the part of the vertical axis shown."""
+    """Curves over one axis. With `ratio` K2/K1 is shown too; `y` is the part of the vertical axis shown.
+
+    `body` is what the body in the oscillator is called.
+    """
 
     axis: str
     curves: Sequence[EnergyCurve]
@@ -69,6 +72,7 @@ class EnergyPanel:
     ratio: bool = True
     window: tuple[float, float] | None = None
     y: tuple[float, float] | None = None
+    body: str = "ball"
 
 
 def draw_energy(ax: Axes, panel: EnergyPanel) -> None:

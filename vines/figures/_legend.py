@@ -61,6 +61,8 @@ def legend_entries(
         entries.append((label, (Line2D([], [], color=COLOURS["ink"], linewidth=1.6),)))
     for label, family in dict.fromkeys((line.label, line.family) for line in lines if not line.ball):
         entries.append((label, tuple(Line2D([], [], color=colour, linewidth=1.6) for colour in FAMILIES[family])))
+    if any(line.stop for line in lines):
+        entries.append(("stop in mid-cavity", (Line2D([], [], color=COLOURS["stop"], linewidth=1.6),)))
     styles: tuple[tuple[str, Any, bool], ...] = (
         ("stable", "-", any(line.stable.any() for line in lines)),
         ("unstable", DOTTED, any((~line.stable).any() for line in lines)),

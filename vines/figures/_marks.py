@@ -19,6 +19,10 @@ MARKS = {
     "grazing": ("v", "grazing"),
     "incomplete_chatter": ("X", "chatter no longer completes"),
     "release_tangency": ("P", "release without a fall of the contact force"),
+    "crossing_sliding": ("8", "a turn becomes a stop"),
+    "switching_sliding": ("d", "a ball stops that turned first"),
+    "adding_sliding": ("p", "a stop is broken"),
+    "grazing_sliding": ("h", "the ball stops on its way"),
     "tie": ("*", "two balls hit together"),
     "pair_turns_real": ("|", "a pair of multipliers turns real"),
 }

@@ -1,6 +1,6 @@
 """What the figures call quantities and parameters. Declarations are checked against these names: no heavy import."""
 
-from vines.model import VI_NES, system_names, with_all_balls
+from vines.model import VI_NES, counted, system_names, with_all_balls
 
 __all__ = ["ERRORS", "MEASURES", "NAMES", "PANELS", "QUANTITIES", "RIG_PANELS", "RUN_PANELS", "SYMBOLS"]
 
@@ -24,6 +24,8 @@ QUANTITIES = {
     "impact_power": "power lost in impacts",
     "electric_power": "power of the coil",
     "electric_share": "share that goes to the coil",
+    **{f"modal_energy_{k}": f"mean energy of mode {k}" for k in range(1, counted("modes")[1] + 1)},
+    **{f"modal_loss_{k}": f"power of the damper of mode {k}" for k in range(1, counted("modes")[1] + 1)},
     "impacts_per_period": "impacts in a forcing period",
     "lyapunov": "largest Lyapunov exponent",
     "impact_share": "share lost in impacts",

@@ -179,6 +179,7 @@ def _legend(panels: Sequence[EnergyPanel | VelocityPanel]) -> list[tuple[str, tu
         ]
         entries.append((r"$\dot w$ of other attractors", tuple(dots)))
     if energy:
-        entries.append(("with no ball", (Line2D([], [], color=COLOURS["ink"], **NO_BALL),)))
-        entries.append(("with the ball locked", (Line2D([], [], color=COLOURS["ink"], **LOCKED),)))
+        body = " or ".join(dict.fromkeys(panel.body for panel in energy))
+        entries.append((f"with no {body}", (Line2D([], [], color=COLOURS["ink"], **NO_BALL),)))
+        entries.append((f"with the {body} locked", (Line2D([], [], color=COLOURS["ink"], **LOCKED),)))
     return entries

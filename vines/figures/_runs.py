@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -55,6 +55,10 @@ class RunCurves:
         Half the length of the cavity.
     ball : int
         Number of the ball, which then gives the colour; 0 where balls have no numbers.
+    stops : (m, 2) array
+        Begin and end of each stop in mid-cavity [forcing periods].
+    body, ends : str
+        What the ball is called, and the ends of its cavity.
     """
 
     t: Floats
@@ -69,6 +73,9 @@ class RunCurves:
     label: str = ""
     length: float = 1.0
     ball: int = 0
+    stops: Floats = field(default_factory=lambda: np.empty((0, 2)))
+    body: str = "ball"
+    ends: str = "cavity ends"
 
     @property
     def colour(self) -> str:
@@ -97,6 +104,7 @@ class EndsPanel:
                 ax.plot(run.t, run.x1 + shift, color=ends, linestyle=DOTTED, linewidth=1.2)
             ax.plot(run.t, run.x2, color=ball, linewidth=1.1)
             ax.plot(run.hit_t, run.hit_x2, **_HIT)
+            _stops(ax, run, run.x2)
         _along_time(ax, self.periods, "ends", r"$x_1 \pm \beta_i,\ x_{2,i}$" if self.run.ball else None)
         _frame(ax, self.title, self.y)
 
@@ -109,9 +117,10 @@ class EndsPanel:
             hit: Entry = ("impact", (Line2D([], [], **_HIT),))
             return [*_ball_entries((self.run, *self.balls)), ("ends of its cavity", (Line2D([], [], **ink),)), hit]
         return [
-            (r"cavity ends $x_1 \pm 1$", (Line2D([], [], color=COLOURS["R"], linestyle=DOTTED, linewidth=1.4),)),
-            ("ball $x_2$", (Line2D([], [], color=COLOURS["L"], linewidth=1.3),)),
+            (rf"{self.run.ends} $x_1 \pm 1$", (Line2D([], [], color=COLOURS["R"], linestyle=DOTTED, linewidth=1.4),)),
+            (f"{self.run.body} $x_2$", (Line2D([], [], color=COLOURS["L"], linewidth=1.3),)),
             ("impact", (Line2D([], [], **_HIT),)),
+            *_stop_entries([self.run]),
         ]
 
 
@@ -133,6 +142,7 @@ class GapPanel:
                 ax.axhline(wall, color=gap if run.ball else COLOURS["mark"], linewidth=0.5, alpha=0.6)
             ax.plot(run.t, run.w, color=gap, linewidth=1.1)
             ax.plot(run.t, run.w_dot, color=speed, linewidth=1.1, linestyle=_DASHED if run.ball else "-")
+            _stops(ax, run, run.w)
         _along_time(ax, self.periods, "gap")
         _frame(ax, self.title, self.y)
 
@@ -149,6 +159,7 @@ class GapPanel:
         return [
             (r"gap $w$", (Line2D([], [], color=COLOURS["R"], linewidth=1.3),)),
             (r"relative velocity $\dot w$", (Line2D([], [], color=COLOURS["L"], linewidth=1.3),)),
+            *_stop_entries([self.run]),
         ]
 
 
@@ -168,6 +179,9 @@ class PhasePlanePanel:
         for run, colour in zip(self.runs, self._colours(), strict=True):
             many = len(run.hit_t) > _MANY
             ax.plot(run.w, run.w_dot, color=colour, linewidth=0.6 if many else 1.1, label=run.label)
+            if len(run.stops):
+                held = np.interp(run.stops[:, 0], run.t, run.w)
+                ax.plot(held, np.zeros_like(held), **_STOP)
             if len(self.runs) == 1:
                 size = 2.0 if many else 4.5
                 for side, name in ((1, "L"), (-1, "R")):
@@ -196,10 +210,14 @@ class PhasePlanePanel:
         from matplotlib.lines import Line2D
 
         if len(self.runs) > 1:
-            return []
+            return _stop_entries(self.runs)
         dot: dict[str, Any] = {"marker": ".", "markersize": 8, "markeredgewidth": 0, "linestyle": "none"}
         return [
-            (rf"$\dot w$ before an impact on {side}", (Line2D([], [], color=COLOURS[side], **dot),)) for side in "LR"
+            *(
+                (rf"$\dot w$ before an impact on {side}", (Line2D([], [], color=COLOURS[side], **dot),))
+                for side in "LR"
+            ),
+            *_stop_entries(self.runs),
         ]
 
     def _colours(self) -> Sequence[str]:
@@ -226,6 +244,31 @@ _HIT: dict[str, Any] = {
     "markeredgewidth": 0.7,
     "zorder": 3,
 }
+
+
+_STOP: dict[str, Any] = {
+    "linestyle": "none",
+    "marker": "s",
+    "markersize": 3.6,
+    "markerfacecolor": COLOURS["stop"],
+    "markeredgewidth": 0,
+    "zorder": 3,
+}
+
+
+def _stops(ax: Axes, run: RunCurves, values: Floats) -> None:
+    """Draw the part of a curve over time in which the ball stands in mid-cavity."""
+    for begin, end in run.stops:
+        there = (run.t >= begin) & (run.t <= end)
+        ax.plot(run.t[there], values[there], color=COLOURS["stop"], linewidth=3.0, solid_capstyle="butt", zorder=2.5)
+
+
+def _stop_entries(runs: Sequence[RunCurves]) -> list[Entry]:
+    from matplotlib.lines import Line2D
+
+    if not any(len(run.stops) for run in runs):
+        return []
+    return [("stop in mid-cavity", (Line2D([], [], color=COLOURS["stop"], linewidth=3.0),))]
 
 
 def _along_time(ax: Axes, periods: float, name: str, text: str | None = None) -> None:

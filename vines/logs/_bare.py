@@ -298,8 +298,10 @@ def _words(impacts: np.ndarray, sticks: np.ndarray, least: int = 0) -> list[Rows
         )
     ]
     for row, ball in zip(sticks, _numbers(sticks), strict=True):
-        wall = f"{VI_NES.letters([row['side']])}{ball}"
+        wall = f"{VI_NES.letters([row['side']])}{ball}" if row["side"] else ""
         text = f"{wall} sticks after {row['impacts']} impacts, released at {row['t_release']:.4f}"
+        if not wall:
+            text = f"stops in mid-cavity, slides on at {row['t_release']:.4f}"
         lines.append((float(row["t_start"]), text))
     if not lines:
         return []

@@ -20,6 +20,7 @@ from vines.logs._contents import Messages, gather, split
 from vines.logs._decode import decode
 from vines.logs._unpack import CHUNK_LIMIT, Unpacker
 from vines.logs._walk import BROKEN, line_of
+from vines.model import VI_NES
 
 __all__ = ["Tail"]
 
@@ -44,6 +45,8 @@ class Tail:
         The file that is read.
     name, kind : str
         As :class:`vines.logs.Log` has them; empty until they have been read.
+    system : str
+        The system of the run.
     parameters : dict of str to float
         Of the run.
     provenance : dict of str to str
@@ -86,7 +89,7 @@ class Tail:
         self._max_chunk = max_chunk
         self._schemas: dict[int, records.Schema] = {}
         self._known: dict[int, Channel] = {}
-        self.name, self.kind, self.ended = "", "", False
+        self.name, self.kind, self.system, self.ended = "", "", VI_NES.name, False
         self.parameters: dict[str, float] = {}
         self.provenance: dict[str, str] = {}
         self.about: dict[str, dict[str, str]] = {}
@@ -157,6 +160,7 @@ class Tail:
             entry = records.Metadata.read(stream)
             if entry.name == RUN:
                 self.name, self.kind = entry.metadata.get("name", self.path.stem), entry.metadata.get("kind", "run")
+                self.system = entry.metadata.get("system", VI_NES.name)
             elif entry.name == PARAMETERS:
                 self.parameters = {key: float(text) for key, text in entry.metadata.items()}
             elif entry.name == PROVENANCE:

@@ -1,7 +1,7 @@
 """The model: its declaration, parameters and words of impacts. Pure Python, no numba."""
 
 from vines.model._conversion import dimensionless
-from vines.model._declared import most_balls, read_system, system_names, with_all_balls, with_one_ball
+from vines.model._declared import counted, most_balls, read_system, system_names, with_all_balls, with_one_ball
 from vines.model._expression import Expression
 from vines.model._letters import STOPS
 from vines.model._parameters import Parameters
@@ -24,7 +24,7 @@ from vines.model._vi_nes import (
     X1,
     X2,
 )
-from vines.model._words import Word, of_moderate_length, word_for
+from vines.model._words import Word, not_alone, of_moderate_length, word_for
 
 __all__ = [
     "AMPLITUDE",
@@ -52,8 +52,10 @@ __all__ = [
     "Range",
     "System",
     "Word",
+    "counted",
     "dimensionless",
     "most_balls",
+    "not_alone",
     "of_moderate_length",
     "read_system",
     "system_names",

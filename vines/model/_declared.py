@@ -13,19 +13,20 @@ from vines.errors import SchemaError, UnknownNameError, nearest
 from vines.model._system import Body, Contact, Coordinate, Energies, Parameter, Range, Symmetry, System
 from vines.places import shipped
 
-__all__ = ["most_balls", "read_system", "system_names", "with_all_balls", "with_one_ball"]
+__all__ = ["counted", "most_balls", "read_system", "system_names", "with_all_balls", "with_one_ball"]
 
 
 @functools.cache
-def read_system(name: str, balls: int = 0, digest: str = "") -> System:
+def read_system(name: str, count: int = 0, digest: str = "") -> System:
     """Return a system as its file declares it.
 
     Parameters
     ----------
     name : str
         Name of the system, and of its file.
-    balls : int
-        How many balls it has, where its file leaves that open; what is there once a ball gets the ball's number.
+    count : int
+        How many balls, or modes, it has where its file leaves that open; what is there once a ball gets the ball's
+        number.
     digest : str
         What :attr:`System.digest` has to be. Code that relies on a declaration names it, so that the digest of the code
         is also one of the declaration.
@@ -35,7 +36,7 @@ def read_system(name: str, balls: int = 0, digest: str = "") -> System:
     UnknownNameError
         If there is no such system; the message names the nearest.
     SchemaError
-        If the file cannot be read, the system cannot have so many balls, or the declaration is another one.
+        If the file cannot be read, the system cannot have so many of them, or the declaration is another one.
 
     Examples
     --------
@@ -45,12 +46,13 @@ def read_system(name: str, balls: int = 0, digest: str = "") -> System:
     >>> pair_of_balls.state[-1].name, [each.letter for each in pair_of_balls.contacts]
     ('v2_2', ['L1', 'L2', 'R1', 'R2'])
     """
-    form, most, file = _form(name), most_balls(name), f"schemas/systems/{name}.toml"
-    if not (1 <= balls <= most if most else balls == 0):
-        allowed = f"1 to {most} balls" if most else "one ball, which has no number"
-        raise SchemaError(f"the system {name!r} has {allowed}, not {balls}")
+    form, file = _form(name), f"schemas/systems/{name}.toml"
+    what, most = counted(name)
+    if not (1 <= count <= most if most else count == 0):
+        allowed = f"1 to {most} {what}s" if most else "one ball, which has no number"
+        raise SchemaError(f"the system {name!r} has {allowed}, not {count}")
     try:
-        found = _system(form, balls)
+        found = _system(form, what, count)
     except (AttributeError, KeyError, TypeError, ValueError) as error:
         raise SchemaError(f"{file}: {error}; correct it, or install vines again") from None
     if digest and found.digest != digest:
@@ -68,9 +70,26 @@ def system_names() -> tuple[str, ...]:
     Examples
     --------
     >>> system_names()
-    ('cubic_barriers', 'drag', 'friction', 'hybrid', 'impact_pair', 'parallel', 'vi_nes')
+    ('cubic_barriers', 'drag', 'duffing', 'friction', 'hybrid', 'impact_pair', 'modes', 'parallel', 'vi_nes')
     """
     return tuple(sorted(path.stem for path in (shipped("schemas") / "systems").glob("*.toml")))
+
+
+def counted(name: str) -> tuple[str, int]:
+    """Return what a system may have several of, ``ball`` or ``mode``, and how many at most; ("", 0) if nothing.
+
+    Raises
+    ------
+    UnknownNameError
+        If there is no such system; the message names the nearest.
+
+    Examples
+    --------
+    >>> counted("parallel"), counted("modes"), counted("impact_pair")
+    (('ball', 8), ('mode', 6), ('', 0))
+    """
+    form = _form(name)
+    return next(((what, form[f"{what}s"]) for what in ("ball", "mode") if f"{what}s" in form), ("", 0))
 
 
 def most_balls(name: str) -> int:
@@ -90,25 +109,25 @@ def most_balls(name: str) -> int:
 
 
 def with_one_ball(name: str) -> System:
-    """Return a system with one ball, with a number where balls have numbers.
+    """Return a system with one ball, with a number where balls have numbers; of modes with one mode.
 
     Examples
     --------
     >>> with_one_ball("parallel").balls, with_one_ball("impact_pair").balls
     (1, 0)
     """
-    return read_system(name, min(most_balls(name), 1))
+    return read_system(name, min(counted(name)[1], 1))
 
 
 def with_all_balls(name: str) -> System:
-    """Return a system with as many balls as it may have: all its names.
+    """Return a system with as many balls, or modes, as it may have: all its names.
 
     Examples
     --------
-    >>> with_all_balls("parallel").balls, with_all_balls("impact_pair").balls
-    (8, 0)
+    >>> with_all_balls("parallel").balls, with_all_balls("impact_pair").balls, with_all_balls("modes").modes
+    (8, 0, 6)
     """
-    return read_system(name, most_balls(name))
+    return read_system(name, counted(name)[1])
 
 
 @functools.cache
@@ -118,21 +137,22 @@ def _form(name: str) -> dict[str, Any]:
     return tomllib.loads((shipped("schemas") / "systems" / f"{name}.toml").read_text("utf-8"))
 
 
-def _system(form: Mapping[str, Any], balls: int) -> System:
+def _system(form: Mapping[str, Any], what: str, count: int) -> System:
     own = {each["name"] for key in ("rig", "run") for each in form.get(key, ()) if "each" in each}
     mirror, energies = form["mirror"], form["energies"]
+    balls = count if what == "ball" else 0
     numbers = [str(ball) for ball in range(1, balls + 1)] or [""]
     return System(
         name=form["name"],
         title=form["title"],
         parameters_of=form["parameters_of"],
         balls=balls,
-        parameters=tuple(_parameter(each, n, own) for each, n in _numbered(form["parameters"], balls)),
-        rig=tuple(_parameter(each, n, own) for each, n in _numbered(form.get("rig", ()), balls)),
-        run=tuple(_parameter(each, n, own) for each, n in _numbered(form.get("run", ()), balls)),
-        bodies=tuple(_body(each, n) for each, n in _numbered(form["bodies"], balls)),
-        phase=_coordinate(form["phase"], 0),
-        contacts=tuple(_contact(each, n) for each, n in _numbered(form["contacts"], balls)),
+        parameters=tuple(_parameter(each, n, own) for each, n in _numbered(form["parameters"], count)),
+        rig=tuple(_parameter(each, n, own) for each, n in _numbered(form.get("rig", ()), count)),
+        run=tuple(_parameter(each, n, own) for each, n in _numbered(form.get("run", ()), count)),
+        bodies=tuple(_body(each, n) for each, n in _numbered(form["bodies"], count)),
+        phase=_coordinate(form["phase"], "", 0),
+        contacts=tuple(_contact(each, n) for each, n in _numbered(form["contacts"], count)),
         mirror=Symmetry(
             sign=mirror["sign"],
             shift=mirror["shift"],
@@ -140,33 +160,41 @@ def _system(form: Mapping[str, Any], balls: int) -> System:
             broken_by=tuple(mirror.get("broken_by", ())),
         ),
         energies=Energies(**{key: tuple(names) for key, names in energies.items()}),
-        met=tuple(_coordinate(each[key], 0) for each in form["bodies"] for key in ("position", "velocity")),
+        met=tuple(
+            _coordinate(each[key], "", 0)
+            for each in form["bodies"]
+            if each.get("each") != "mode"
+            for key in ("position", "velocity")
+        ),
         without=tuple(form.get("without", ())),
         order=form.get("order", 0),
         stops=form.get("stops", False),
         starred=form.get("starred", True),
+        smooth=form.get("smooth", False),
+        modes=count if what == "mode" else 0,
     )
 
 
-def _numbered(forms: Iterable[Mapping[str, Any]], balls: int) -> list[tuple[dict[str, Any], int]]:
-    """Return each entry with the number of its ball, those of a ball once for each; 0 for what belongs to none."""
+def _numbered(forms: Iterable[Mapping[str, Any]], count: int) -> list[tuple[dict[str, Any], int]]:
+    """Return each entry with its number, those of a ball or a mode once for each; 0 for what belongs to none."""
     return [
-        ({key: value for key, value in form.items() if key != "each"}, number)
+        ({key: value for key, value in form.items() if key != "from"}, number)
         for form in forms
-        for number in (range(1, balls + 1) if "each" in form else (0,))
+        for number in (range(form.get("from", 1), count + 1) if "each" in form else (0,))
     ]
 
 
-def _parameter(form: dict[str, Any], ball: int, own: Iterable[str]) -> Parameter:
-    if ball:
-        form = form | _of_ball(form, ball)
+def _parameter(form: dict[str, Any], number: int, own: Iterable[str]) -> Parameter:
+    what = form.pop("each", "")
+    if number:
+        form = form | _of_one(form, what, number)
         for name in own:
-            form["physical"] = re.sub(rf"\b{name}\b", f"{name}_{ball}", form.get("physical", ""))
+            form["physical"] = re.sub(rf"\b{name}\b", f"{name}_{number}", form.get("physical", ""))
     return Parameter(**_ranged(form))
 
 
-def _coordinate(form: dict[str, Any], ball: int) -> Coordinate:
-    return Coordinate(**_ranged(form | (_of_ball(form, ball) if ball else {})))
+def _coordinate(form: dict[str, Any], what: str, number: int) -> Coordinate:
+    return Coordinate(**_ranged(form | (_of_one(form, what, number) if number else {})))
 
 
 def _ranged(form: Mapping[str, Any]) -> dict[str, Any]:
@@ -187,9 +215,10 @@ def _ranged(form: Mapping[str, Any]) -> dict[str, Any]:
     return {**form, "allowed": allowed}
 
 
-def _body(form: dict[str, Any], ball: int) -> Body:
-    name = f"{form['name']}_{ball}" if ball else form["name"]
-    return Body(name, _coordinate(form["position"], ball), _coordinate(form["velocity"], ball))
+def _body(form: dict[str, Any], number: int) -> Body:
+    what = form.get("each", "")
+    name = f"{form['name']}_{number}" if number else form["name"]
+    return Body(name, _coordinate(form["position"], what, number), _coordinate(form["velocity"], what, number))
 
 
 def _contact(form: dict[str, Any], ball: int) -> Contact:
@@ -198,17 +227,18 @@ def _contact(form: dict[str, Any], ball: int) -> Contact:
     return Contact(f"{form['letter']}{ball}", form["sign"], f"{form['text']}, ball {ball}", ball)
 
 
-def _of_ball(form: Mapping[str, Any], ball: int) -> dict[str, Any]:
-    found = {"name": f"{form['name']}_{ball}", "text": f"{form['text']}, ball {ball}"}
+def _of_one(form: Mapping[str, Any], what: str, number: int) -> dict[str, Any]:
+    """Return what an entry says of one ball, or one mode."""
+    found = {"name": f"{form['name']}_{number}", "text": f"{form['text']}, {what} {number}"}
     if "symbol" in form:
-        found["symbol"] = _subscript(form["symbol"], ball)
+        found["symbol"] = _subscript(form["symbol"], number)
     if "label" in form:
-        found["label"] = f"{form['label']} {ball}"
+        found["label"] = f"{form['label']} {number}"
     return found
 
 
-def _subscript(symbol: str, ball: int) -> str:
-    """Return a symbol with the number of a ball.
+def _subscript(symbol: str, number: int) -> str:
+    """Return a symbol with the number of a ball or a mode.
 
     Examples
     --------
@@ -217,4 +247,4 @@ def _subscript(symbol: str, ball: int) -> str:
     """
     stem, prime = symbol.rstrip("'"), "'" * (len(symbol) - len(symbol.rstrip("'")))
     base, _, index = stem.partition("_")
-    return f"{base}_{{{','.join(filter(None, (index, str(ball))))}}}{prime}"
+    return f"{base}_{{{','.join(filter(None, (index, str(number))))}}}{prime}"

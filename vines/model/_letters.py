@@ -5,13 +5,16 @@ from __future__ import annotations
 import re
 from collections.abc import Collection, Iterable
 
-__all__ = ["STICKS", "STOPS", "ball_of", "impacts", "renamed", "roles", "rotated"]
+__all__ = ["NOTHING", "STICKS", "STOPS", "ball_of", "impacts", "renamed", "roles", "rotated"]
 
 STICKS = "*"
 """Behind the letter of a contact that is a complete chatter, after which the ball sticks."""
 
 STOPS = "s"
 """The letter of a stop in mid-cavity, which friction may bring about."""
+
+NOTHING = "-"
+"""The letters of a period without impacts: what a run has instead is its passage through phase 0."""
 
 _CONTACT = re.compile(r"[A-Zs][1-9]?\*?")
 

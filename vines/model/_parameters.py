@@ -21,12 +21,12 @@ __all__ = ["Parameters"]
 class Parameters:
     """Base of the parameters of a system: a frozen dataclass whose fields are the declared parameters.
 
-    A field that belongs to each ball is a tuple of numbers; its flat names are ``mu_1``, ``mu_2``, ….
+    A field that belongs to each ball, or each mode, is a tuple of numbers; its flat names are ``mu_1``, ``mu_2``, ….
     """
 
     __slots__ = ()
     DECLARATION: ClassVar[System]
-    """The declaration of a system whose number of balls is not open; one with an open number has its own `declared`."""
+    """The declaration of a system of which nothing is counted; one of balls or modes has its own `declared`."""
 
     def __post_init__(self) -> None:
         for parameter in self.system.parameters:
@@ -101,7 +101,8 @@ class Parameters:
                 raise ParameterError(f"unknown parameter {name!r}: {nearest(name, fields)}")
         for stem, own in several.items():
             if sorted(own) != list(range(1, len(own) + 1)):
-                raise ParameterError(f"{stem} is given for the balls {sorted(own)}; give it for 1, 2, … without a gap")
+                what = "modes" if cls.declared(1).modes else "balls"
+                raise ParameterError(f"{stem} is given for the {what} {sorted(own)}; give it for 1, 2, … without a gap")
             found[stem] = tuple(own[number] for number in sorted(own))
         for name, each in fields.items():
             if name not in found and each.default is dataclasses.MISSING:
@@ -129,7 +130,7 @@ class Parameters:
 
     @classmethod
     def declared(cls, balls: int = 0) -> System:
-        """Return the declaration of the system, with so many balls where that is open."""
+        """Return the declaration of the system, with so many balls, or modes, where that is open."""
         del balls
         return cls.DECLARATION
 

@@ -217,6 +217,10 @@ class System(msgspec.Struct, frozen=True, dict=True):
         Whether a ball may stop in mid-cavity.
     starred : bool
         Whether orbits that stick are computed.
+    smooth : bool
+        Whether motions without impacts are isolated, so that they have orbits.
+    modes : int
+        How many modes have numbers after their parameters; 0 where there is one without a number.
     """
 
     name: str
@@ -236,6 +240,8 @@ class System(msgspec.Struct, frozen=True, dict=True):
     order: int = 0
     stops: bool = False
     starred: bool = True
+    smooth: bool = False
+    modes: int = 0
 
     @property
     def state(self) -> tuple[Coordinate, ...]:
@@ -246,6 +252,11 @@ class System(msgspec.Struct, frozen=True, dict=True):
     def start(self) -> tuple[Coordinate, ...]:
         """The coordinates of a start: the state and the phase of the forcing."""
         return (*self.state, self.phase)
+
+    @property
+    def between_walls(self) -> str:
+        """Name of the body that flies between the walls, where there is one alone."""
+        return next(body.name for body in self.bodies if body.position.name in ("x2", "w"))
 
     def parameter(self, name: str) -> Parameter:
         """Return the dimensionless parameter of a name.

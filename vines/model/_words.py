@@ -8,15 +8,17 @@ from dataclasses import dataclass
 
 from vines.bounds import shown
 from vines.errors import ParameterError
-from vines.model._letters import STICKS, STOPS, ball_of, impacts, renamed, roles, rotated
+from vines.model._letters import NOTHING, STICKS, STOPS, ball_of, impacts, renamed, roles, rotated
 from vines.model._system import System
 from vines.model._vi_nes import VI_NES
 
-__all__ = ["Word", "of_moderate_length", "word_for"]
+__all__ = ["Word", "not_alone", "of_moderate_length", "word_for"]
 
 _LEFT, _RIGHT = (contact.letter for contact in VI_NES.contacts)
-_SIGNS = {contact.letter: contact.sign for contact in VI_NES.contacts} | {STOPS: 0}
-_SHAPE = re.compile(rf"((?:[{VI_NES.alphabet}]\*?|{STOPS})+|(?:[{VI_NES.alphabet}][1-9]\*?)+)(?:/([1-9][0-9]*)?T)?")
+_SIGNS = {contact.letter: contact.sign for contact in VI_NES.contacts} | {STOPS: 0, NOTHING: 0}
+_SHAPE = re.compile(
+    rf"((?:[{VI_NES.alphabet}]\*?|{STOPS})+|(?:[{VI_NES.alphabet}][1-9]\*?)+|{NOTHING}|0:0)(?:/([1-9][0-9]*)?T)?"
+)
 _LONGEST = 5000
 """Most impacts of a word, and most forcing periods: what a simulation settles to may have many."""
 
@@ -25,7 +27,7 @@ _SEARCHED = 200
 _SWAP = str.maketrans(dict(VI_NES.mirror.letters))
 _HOW = (
     f"write the impacts as letters {' and '.join(VI_NES.alphabet)}, each with the number of its ball where there are "
-    "several and a star where it sticks, then /pT if p > 1, such as LR, LLR, LRLR/2T, L*R or L1L2R1R2"
+    "several and a star where it sticks, or - for none, then /pT if p > 1, such as LR, LLR, LRLR/2T, L*R or L1L2R1R2"
 )
 
 
@@ -42,6 +44,9 @@ class Word:
     contact at the time of the first: ``L*R*`` is a 1:1 orbit that sticks on both sides, ``LR`` one that never does.
 
     With friction a ball may stop in mid-cavity: ``s``, ``LsRs``. A stop counts as a contact, but as no impact.
+
+    Without any impact it is ``-``, ``-/3T``, of the type 0:0; ``0:0`` is read as that. What stands for an impact there,
+    as a contact at no wall, is the passage through phase 0 of the forcing.
 
     Where a system has several balls, each letter has the number of the ball that hits: ``L1L2R1R2``. A system with one
     ball writes no number.
@@ -77,6 +82,8 @@ class Word:
     >>> w = Word("RL*")
     >>> str(w), w.name, w.sticks
     ('L*R', '1:1', (True, False))
+    >>> Word("0:0/3T"), Word("-/3T").name
+    (Word('-/3T'), '0:0/3T')
     """
 
     letters: str
@@ -92,7 +99,10 @@ class Word:
                 if isinstance(text, str) and re.fullmatch(r"\d+:\d+(/\d*T)?", text):
                     hint = f"n:m/pT does not tell the order of the impacts; {_HOW}"
                 raise ParameterError(f"{shown(text)} is not a word: {hint}")
-            letters, p = match[1], int(match[2] or 1) if len(match[2] or "") < 6 else _LONGEST + 1
+            letters, p = (
+                match[1] if match[1] != "0:0" else NOTHING,
+                int(match[2] or 1) if len(match[2] or "") < 6 else _LONGEST + 1,
+            )
             if len(impacts(letters)) > _LONGEST or p > _LONGEST:
                 raise ParameterError(_too_long(text, _LONGEST))
             if STICKS in letters:
@@ -187,9 +197,25 @@ class Word:
         return STICKS in self.letters
 
     @property
+    def unstruck(self) -> bool:
+        """Whether nothing is hit in the orbit."""
+        return self.letters == NOTHING
+
+    @property
     def mirror(self) -> Word:
         """The word of the mirror image x -> -x, t -> t + T/2 of an orbit."""
         return _word(self.letters.translate(_SWAP), self.p)
+
+    @property
+    def doubled(self) -> Word:
+        """The word of an orbit of this word that is gone through twice.
+
+        Examples
+        --------
+        >>> Word("LR/3T").doubled
+        Word('LRLR/6T')
+        """
+        return _word(self.letters * 2, 2 * self.p)
 
     @property
     def symmetric(self) -> bool:
@@ -205,6 +231,8 @@ class Word:
         [True, True, False, False, True]
         """
         half = len(self.letters) // 2
+        if self.unstruck:
+            return self.p % 2 == 1
         return len(self) % 2 == 0 and self.p % 2 == 1 and self.letters[half:] == self.letters[:half].translate(_SWAP)
 
     def relabelled(self, alike: Iterable[Iterable[int]]) -> tuple[Word, dict[int, int]]:
@@ -302,6 +330,10 @@ def word_for(text: str | Word, system: System, *, sticking: bool = True) -> Word
     vines.errors.ParameterError: 'L1R1' is not a word of the system 'vi_nes', which has the impacts L, R
     """
     word = of_moderate_length(Word(text))
+    if word.unstruck:
+        if not system.smooth:
+            raise ParameterError(not_alone(word, system))
+        return word
     known = [contact.letter for contact in system.contacts]
     if system.stops:
         known.append(STOPS)
@@ -319,6 +351,14 @@ def word_for(text: str | Word, system: System, *, sticking: bool = True) -> Word
             "star, or follow it by simulation"
         )
     return word
+
+
+def not_alone(word: Word, system: System) -> str:
+    """Say why a system has no orbit of a word without impacts."""
+    return (
+        f"{word} has no impact, and in the system {system.name!r} nothing says where a ball stays that hits nothing: "
+        "such motions are no isolated orbits; give a word with impacts"
+    )
 
 
 def _refuse_split_chatter(text: str, letters: str) -> None:

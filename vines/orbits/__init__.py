@@ -3,6 +3,7 @@
 from vines.orbits import _balls as _balls
 from vines.orbits import _capsule as _capsule
 from vines.orbits import _dragged as _dragged
+from vines.orbits import _modal as _modal
 from vines.orbits._all import Orbits, all_orbits
 from vines.orbits._branch import Bifurcation, Branch
 from vines.orbits._carry import carry_orbit, of_two_mirror_images, one_of

@@ -23,9 +23,11 @@ from vines.orbits._own_word import sticking_word, whole_word
 from vines.orbits._seeds import base_word, doubled_times, harvested_times, random_times, simplex_times
 from vines.orbits._shooting import refuse_no_walls, shoots
 from vines.orbits._shooting_search import gather_shots, of_the_vi_nes
-from vines.orbits._slid import slid_orbits, slides
+from vines.orbits._slid import slid_orbits
+from vines.orbits._slid_round import slides
+from vines.orbits._smooth_search import smooth_orbits
 from vines.orbits._sticking_capsule import capsule_orbits, rides_capsule
-from vines.orbits._sticking_of_balls import rides_in_parallel
+from vines.orbits._sticking_of_balls import by_sections
 from vines.orbits._sticking_search import search_sticking
 from vines.orbits._sticking_search_of_balls import search_balls
 from vines.orbits._values import marks_of, unit_of
@@ -112,12 +114,15 @@ def all_orbits(word: str | Word, p: Any, *, proof: bool = False) -> Orbits:
     (True, [(True, False), (False, True), (False, True)])
     """
     word = whole_word(word, p)
+    if word.unstruck:
+        found, how = smooth_orbits(word, p)
+        return Orbits(_in_order(found), complete=False, remark=how, nearest=np.inf)
     if word.sticking:
         word = sticking_word(word, p)
         if rides_capsule(p):
             found, how = capsule_orbits(word, p)
             return Orbits(found, complete=True, remark=how, nearest=np.inf)
-        if rides_in_parallel(p):
+        if by_sections(p):
             found, how = search_balls(word, p)
             return Orbits(_in_order(found), complete=False, remark=how, nearest=np.inf)
         found, how = search_sticking(word, p)

@@ -14,6 +14,7 @@ from vines.model import VI_NES, X1, X2, Params, Word
 from vines.orbits._budget import orbit_measures
 from vines.orbits._floquet import FIXED_TIME, IMPACT_TO_IMPACT, half_map, monodromy, sorted_multipliers, squared
 from vines.orbits._orbit import Orbit
+from vines.orbits._smooth_orbit import assemble_smooth
 from vines.orbits._survey import survey_kernel
 from vines.orbits._values import marks_of
 
@@ -36,10 +37,12 @@ def assemble(word: Word, p: Any, t: Floats, states: Floats, remark: str = "") ->
         Times of the impacts in the order of any rotation of the word, increasing within one period pT; the phase of
         the forcing is zero at t = 0.
     states : (N, 4) float array
-        x1, v1, x2, v2 just before each impact.
+        x1, v1, x2, v2 just before each impact; of a word without impacts the state at phase 0.
     remark : str
         Kept with the orbit.
     """
+    if word.unstruck:
+        return assemble_smooth(word, p, states[0], remark)
     t, states = _canonical(word, p, t, states)
     duration = word.p * p.period
     side = marks_of(word)

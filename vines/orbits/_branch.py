@@ -35,7 +35,7 @@ class Bifurcation:
     half_multiplier : complex
         For a symmetric orbit that of the half map, -1 at a symmetry breaking; else `multiplier`.
     orbit : Orbit
-        The orbit there; at an end of a family that sticks, next to it.
+        The orbit there; at an end of a family that sticks or stops, next to it.
     """
 
     type: str
@@ -71,10 +71,11 @@ class Branch:
         What is worth a remark but changes no stability: pair_turns_real, where two multipliers meet on the real
         axis and a complex pair becomes two real ones, or the reverse.
     ends : tuple of str, str
-        Why the branch begins and ends where it does: ``range`` (of the parameter), ``grazing``, ``symmetry_breaking``
+        Why the branch begins and ends where it does: ``range`` (of the parameter), ``closed`` (both ends are one orbit:
+        the family is an isola), ``grazing``, ``symmetry_breaking``
         or ``period_doubling`` (where it comes out of another family), ``incomplete_chatter`` or ``release_tangency``
-        (of orbits that stick), ``points`` (as many as were allowed), ``lost`` (the corrector failed at the smallest
-        step).
+        (of orbits that stick), ``crossing_sliding``, ``switching_sliding``, ``adding_sliding`` or ``grazing_sliding``
+        (with friction), ``points`` (as many as were allowed), ``lost`` (the corrector failed at the smallest step).
     parent : str or None
         Name of the branch that it was switched from, if it was.
     remark : str

@@ -46,7 +46,7 @@ class ChainCurve(CurveEquations):
         self.start = self._closing.start
         if kind == "grazing":
             speeds = orbit.side * orbit.w_dot
-            if orbit.min_clearance < speeds.min():
+            if orbit.word.unstruck or orbit.min_clearance < speeds.min():
                 touch = self.touching(orbit)
                 self._wall = int(touch[2])
                 self.start = np.insert(self.start, self._n, touch[1])
@@ -94,15 +94,19 @@ class ChainCurve(CurveEquations):
 
     def _condition(self, closed: Closed) -> float:
         """Return det(I - M), det(I + M) or det(I - M∧M), over a power of the size of M."""
-        side = self._closing.side
-        jacobians = survey_kernel(closed.constants, closed.duration, side, closed.t, closed.states)[0]
-        M = half_map(jacobians, FIXED_TIME) if self.symmetric else monodromy(jacobians)
+        M = self._growth(closed)
         if not np.isfinite(M).all():
             return np.nan
         size = 1.0 + float(np.linalg.norm(M))
         if self.kind == "neimark_sacker":
             return float(np.linalg.det(np.eye(len(M) * (len(M) - 1) // 2) - second_compound(M))) / size**2
         return float(np.linalg.det(np.eye(len(M)) + (-M if self.kind == "fold" else M))) / size
+
+    def _growth(self, closed: Closed) -> Floats:
+        """Return M."""
+        side = self._closing.side
+        jacobians = survey_kernel(closed.constants, closed.duration, side, closed.t, closed.states)[0]
+        return half_map(jacobians, FIXED_TIME) if self.symmetric else monodromy(jacobians)
 
 
 def second_compound(M: Floats) -> Floats:

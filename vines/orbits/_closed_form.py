@@ -63,8 +63,15 @@ def refuse_resonance(p: Any) -> None:
     ParameterError
         At Omega = 1 without damping.
     """
-    if hasattr(p, "lam") and math.hypot(1 - p.Omega**2, p.lam * p.Omega) <= 1e-9:
-        raise ParameterError(f"lam is {p.lam:g} at Omega = {p.Omega:g}, where no response is steady; give lam > 0")
+    values = p.as_dict()
+    for name, lam in values.items():
+        if name.partition("_")[0] != "lam":
+            continue
+        omega = values.get(f"omega{name.removeprefix('lam')}", 1.0)
+        if math.hypot(omega**2 - p.Omega**2, lam * p.Omega) <= 1e-9:
+            raise ParameterError(
+                f"{name} is {lam:g} at Omega = {p.Omega:g}, where no response is steady; give {name} > 0"
+            )
 
 
 def family_of(mu: float, Omega: float, r: float, lam: float, period: int) -> SymmetricFamily:

@@ -64,7 +64,7 @@ def grazing_margin(point: Point) -> float:
     """Return the least of the clearances of turning points and the speeds at which the walls are met."""
     orbit = point.orbit
     speeds = (orbit.side * orbit.w_dot)[orbit.side != 0]
-    return min(orbit.min_clearance, float(np.min(speeds)))
+    return min(orbit.min_clearance, float(np.min(speeds, initial=np.inf)))
 
 
 def tie_margin(point: Point) -> float:

@@ -64,10 +64,11 @@ def contacts(rows, n, start):
             sticks = True
         elif kind == col.STICK:
             run = int(rows[i, col.RUN])
-            while count > 0 and run > 0 and keep[count - 1] >= i - run:
+            first = _begins(rows, i, run)
+            while count > 0 and run > 0 and keep[count - 1] >= first:
                 count -= 1
-            if run > 0 and i - run > 0 and rows[i - run, col.TIME] > start:
-                keep[count] = i - run
+            if run > 0 and first > 0 and rows[first, col.TIME] > start:
+                keep[count] = first
                 count += 1
     while count > 1 and _same_run(rows, keep[count - 2], keep[count - 1]):
         count -= 1
@@ -102,10 +103,30 @@ def _without_chatter(rows, keep, count, i):
 
 
 @njit
+def _begins(rows, i, run):
+    """Return the row at which the chatter of so many events before row i begins.
+
+    Flights may be begun afresh in it, and a ball with friction may turn more than once between two impacts, which
+    count once.
+    """
+    turned = False
+    while run > 0 and i > 0:
+        i -= 1
+        kind = rows[i, col.KIND]
+        if kind == col.START or (kind == col.SLIDE and turned):
+            continue
+        turned = kind == col.SLIDE
+        run -= 1
+    return i
+
+
+@njit
 def _same_run(rows, i, j):
-    """Say whether rows i and j are neighbouring impacts on the same wall, with no other event between."""
-    near = j == i + 1 or (j == i + 2 and rows[i + 1, col.KIND] == col.SLIDE)
-    return near and mark(rows, i) == mark(rows, j) != 0
+    """Say whether rows i and j are neighbouring impacts on the same wall, with no other event than turns between."""
+    for k in range(i + 1, j):
+        if rows[k, col.KIND] != col.SLIDE and rows[k, col.KIND] != col.START:
+            return False
+    return mark(rows, i) == mark(rows, j) != 0
 
 
 @njit

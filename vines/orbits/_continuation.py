@@ -29,16 +29,17 @@ from vines.orbits._family import GeneralProblem
 from vines.orbits._general import origin
 from vines.orbits._orbit import Orbit
 from vines.orbits._problem import Point, Problem, ZeroSet
-from vines.orbits._slid import SlidProblem, slides
+from vines.orbits._slid import SlidProblem
+from vines.orbits._slid_round import slides
 from vines.orbits._sticking_capsule import CapsuleSticking, rides_capsule
 from vines.orbits._sticking_curve import bound_beside
 from vines.orbits._sticking_ends import end_of
 from vines.orbits._sticking_family import StickingProblem
 from vines.orbits._sticking_family_of_balls import BallsProblem
-from vines.orbits._sticking_of_balls import rides_in_parallel
+from vines.orbits._sticking_of_balls import by_sections
 from vines.orbits._symmetric import SymmetricProblem
 
-__all__ = ["continue_orbit"]
+__all__ = ["CLOSED", "continue_orbit"]
 
 _SMALLEST_STEP = 1e-8
 _TURN = 0.15
@@ -49,6 +50,14 @@ _ELSEWHERE = 1e-6
 """Distance of an orbit from its own repetition or mirror image below which it is one of the family that is left."""
 _EXTRAPOLATED = 1e-5
 """Most by which an extrapolated end may be wrong, in ranges of the parameter."""
+
+CLOSED = "closed"
+_FIRST = 4
+"""Points before which a branch is not looked at for having closed."""
+_ALONG = 0.9
+"""Least cosine of the angle between the directions in which it passes where it began."""
+_BESIDE = 1e-4
+"""Length of a step, next to an end of a family beyond which its map does not exist, that may be of rounding alone."""
 
 _TOLERANCE = 1e-14
 """Of the root of a defining equation, as a fraction of the step in which it lies."""
@@ -78,8 +87,8 @@ def continue_orbit(
     """Follow an orbit in one parameter, through folds, and locate the bifurcations on the way.
 
     The branch ends where the parameter leaves its range on either side, or at the grazing that ends admissibility,
-    or where two balls hit together, beyond which their impacts have changed places. A family that sticks ends also
-    where a chatter no longer completes, or the contact force vanishes without falling.
+    or where two balls hit together, beyond which their impacts have changed places, or where it closes. A family that
+    sticks ends also where a chatter no longer completes, or the contact force vanishes without falling.
 
     Parameters
     ----------
@@ -147,7 +156,7 @@ def continue_orbit(
 def _problem(orbit: Orbit, parameter: str) -> Problem:
     if orbit.word.sticking and rides_capsule(orbit.params):
         return CapsuleSticking(orbit, parameter)
-    if orbit.word.sticking and rides_in_parallel(orbit.params):
+    if orbit.word.sticking and by_sections(orbit.params):
         return BallsProblem(orbit, parameter)
     if slides(orbit.params):
         return SlidProblem(orbit, parameter)
@@ -197,7 +206,7 @@ class _Branch:
             only_inside=True,
             is_on=None if self.symmetric or origin(self.orbit, _ELSEWHERE) else self._is_on,
         ).follow(here, self._record, self.max_points)
-        if end == "lost" and self.orbit.word.sticking:
+        if end == "lost" and self._ends_by_itself:
             end = self._ended() or end
         return Branch(
             self.problem.word,
@@ -205,8 +214,13 @@ class _Branch:
             tuple(self.orbits),
             tuple(self.bifurcations),
             tuple(self.events),
-            ("range", end),
+            (CLOSED if end == CLOSED else "range", end),
         )
+
+    @property
+    def _ends_by_itself(self) -> bool:
+        """Whether the orbits are those of a map that does not exist beyond the end of the family."""
+        return bool(self.orbit.word.sticking) or slides(self.orbit.params)
 
     def _is_on(self, point: Point) -> bool:
         """Say whether a point is not on the family that this one comes out of, whose orbits solve its equations too."""
@@ -230,6 +244,9 @@ class _Branch:
 
     def _record(self, here: Point, there: Point, last: bool) -> str | None:
         """Add what lies between two points, and the second one; return why the branch ends there, if it does."""
+        closed = len(self.points) > _FIRST and self._passes(here, there)
+        if closed:
+            there = self.points[0]
         self.points.append(there)
         met = sorted(
             (hit for condition in self.conditions if (hit := self._locate(condition, here, there)) is not None),
@@ -257,13 +274,31 @@ class _Branch:
                 return kind
         self._add_values(before, there)
         self.orbits.append(there.orbit)
+        if closed:
+            return CLOSED
         return "range" if last else None
+
+    def _passes(self, here: Point, there: Point) -> bool:
+        """Say whether the branch comes past the orbit at which it began, in the same direction."""
+        begin, scale = self.points[0], self.curve.scale
+        near = np.linalg.norm((there.y - begin.y) / scale) < np.linalg.norm((there.y - here.y) / scale)
+        return bool(near and begin.tangent @ there.tangent > _ALONG)
 
     def _locate(self, condition: Condition, here: Point, there: Point) -> tuple[float, str, Point] | None:
         first, second = condition.function(here), condition.function(there)
         if not (math.isfinite(first) and math.isfinite(second)) or (first > 0) == (second > 0):
             return None
         chord = Chord(self.curve, here, there)
+        try:
+            return self._root(condition, chord, first)
+        except OrbitNotFound:
+            far = float(np.linalg.norm((there.y - here.y) / self.curve.scale))
+            if self._ends_by_itself and (condition.type in _MARGINS or far < _BESIDE):
+                # Next to the end, on one side of which no equations hold; steps get short there.
+                return None
+            raise
+
+    def _root(self, condition: Condition, chord: Chord, first: float) -> tuple[float, str, Point]:
         try:
             root = chord.root(condition.function, _TOLERANCE)
         except OrbitNotFound:

@@ -8,14 +8,17 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from vines.model import PARAMETER_NAMES, Params, Word
+from vines.model import PARAMETER_NAMES, Params
 from vines.orbits._family import closing_at
 from vines.orbits._joined import unfolded
+from vines.orbits._moved import moved
 from vines.orbits._orbit import Orbit
-from vines.orbits._release_of_balls import run_round
+from vines.orbits._release_of_balls import run_closed
 from vines.orbits._shooting import closing_of
+from vines.orbits._slid import first_impact
+from vines.orbits._slid_round import SlidRound, slides
 from vines.orbits._sticking_family import closing_of_round
-from vines.orbits._sticking_of_balls import rides_in_parallel
+from vines.orbits._sticking_of_balls import by_sections
 from vines.orbits._sticking_orbit import Round, release_of
 from vines.orbits._values import frequency_of, values_of
 
@@ -36,6 +39,8 @@ def _equations(kind: str, orbit: Orbit, names: tuple[str, str], direction: Float
     """Return the equations of the family that comes out of an orbit, and their unknowns there."""
     if orbit.word.sticking:
         return _of_rounds(kind, orbit, names, direction)
+    if slides(orbit.params):
+        return _of_runs(kind, orbit, names, direction)
     orbit = unfolded(kind, orbit)
     phases = orbit.t * frequency_of(orbit.params)
     if not isinstance(orbit.params, Params):
@@ -52,34 +57,48 @@ def _equations(kind: str, orbit: Orbit, names: tuple[str, str], direction: Float
     side = np.array(orbit.word.sides, dtype=np.int64)
 
     def of_bare_values(z: Floats, shift: float = 0.0) -> tuple[Floats, Floats]:
-        moved = values.copy()
-        moved[where] += shift * direction
-        return closing_at(moved, orbit.word.p, side, z)[:2]
+        there = values.copy()
+        there[where] += shift * direction
+        return closing_at(there, orbit.word.p, side, z)[:2]
 
     return of_bare_values, phases
 
 
+def _of_runs(kind: str, orbit: Orbit, names: tuple[str, str], direction: Floats) -> tuple[Equations, Floats]:
+    """Return the same of an orbit with friction, the unknowns being those of its first impact."""
+    word = orbit.word.doubled if kind == "period_doubling" else orbit.word
+    values = np.array([orbit.params.as_dict()[name] for name in names])
+
+    def of_runs(z: Floats, shift: float = 0.0) -> tuple[Floats, Floats]:
+        p = moved(orbit.params, dict(zip(names, values + shift * direction, strict=True)))
+        if p is None:
+            return z * np.nan, np.outer(z, z) * np.nan
+        way = SlidRound(word, p, z, len(word))
+        return way.closing(half=False), way.slopes(half=False)
+
+    return of_runs, first_impact(orbit)
+
+
 def _of_rounds(kind: str, orbit: Orbit, names: tuple[str, str], direction: Floats) -> tuple[Equations, Floats]:
     """Return the same of an orbit that sticks, the unknowns being phase and velocity of a release."""
-    twice = f"{orbit.word.letters * 2}/{2 * orbit.word.p}T"
-    word = Word(twice) if kind == "period_doubling" else orbit.word
+    word = orbit.word.doubled if kind == "period_doubling" else orbit.word
     values = np.array([orbit.params.as_dict()[name] for name in names])
-    if rides_in_parallel(orbit.params):
+    if by_sections(orbit.params):
         section, start = orbit.release
 
         def of_balls(z: Floats, shift: float = 0.0) -> tuple[Floats, Floats]:
-            p = orbit.params.replace(**dict(zip(names, (values + shift * direction).tolist(), strict=True)))
-            span = word.p * p.period
-            ran = run_round(p, section, span, z, section)
-            return (z * np.nan, np.outer(z, z) * np.nan) if ran is None else section.closing(p, ran, span, z, 1.0)
+            p = moved(orbit.params, dict(zip(names, values + shift * direction, strict=True)))
+            met = None if p is None else run_closed(p, section, word.p * p.period, z, mirrored=False)
+            return (z * np.nan, np.outer(z, z) * np.nan) if met is None else met[1]
 
         return of_balls, start
     way = Round(word)
     begin = release_of(orbit)
 
     def of_rounds(z: Floats, shift: float = 0.0) -> tuple[Floats, Floats]:
-        moved = dict(zip(names, (values + shift * direction).tolist(), strict=True))
-        return closing_of_round(way, orbit.params.replace(**moved), float(z[0]), float(z[1]))
+        p = moved(orbit.params, dict(zip(names, values + shift * direction, strict=True)))
+        nothing = z * np.nan, np.outer(z, z) * np.nan
+        return nothing if p is None else closing_of_round(way, p, float(z[0]), float(z[1]))
 
     return of_rounds, np.array([begin.phase, begin.v1])
 

@@ -13,11 +13,11 @@ from vines.orbits._closing import difference, stays_symmetric
 from vines.orbits._orbit import Orbit
 from vines.orbits._problem import Point
 
-__all__ = ["CurveEquations"]
+__all__ = ["TOUCHING", "CurveEquations"]
 
 Floats = npt.NDArray[np.float64]
 
-_TOUCHING = 1e-5
+TOUCHING = 1e-5
 """Time between the turning point that touches and one that the survey finds, below which they are one."""
 
 
@@ -94,7 +94,7 @@ class CurveEquations(ABC):
         rows = self.turnings(orbit)
         # The mirror image of a symmetric orbit touches the other wall at the same time of its own flight.
         around = len(orbit.word) // (2 if self.symmetric else 1)
-        mine = (rows[:, 0] % around == self.place % around) & (np.abs(rows[:, 1] - y[-3]) < _TOUCHING)
+        mine = (rows[:, 0] % around == self.place % around) & (np.abs(rows[:, 1] - y[-3]) < TOUCHING)
         mine &= rows[:, 5] == self.ball
         return float(rows[~mine, 3].min(initial=2.0))
 

@@ -12,7 +12,7 @@ from vines.model import Params, Word
 from vines.orbits._all import all_orbits
 from vines.orbits._branch import Branch
 from vines.orbits._cascade import generations
-from vines.orbits._continuation import continue_orbit
+from vines.orbits._continuation import CLOSED, continue_orbit
 from vines.orbits._general import same
 from vines.orbits._joined import BRANCHING, is_joint, mirror_image
 from vines.orbits._orbit import Orbit
@@ -137,15 +137,16 @@ def _both_ways(
     """Return the branch through an orbit from its lower end to its upper one, None if it is lost."""
     value = orbit.params.as_dict()[parameter]
     for finer in _FINER:
+        followed: list[Branch | None] = []
         try:
-            down, up = (
-                continue_orbit(orbit, parameter, stop, within=within, at=at, step=finer * step)
-                if stop != value
-                else None
-                for stop in within
-            )
+            for stop in within:
+                options = {"within": within, "at": at, "step": finer * step}
+                followed.append(continue_orbit(orbit, parameter, stop, **options) if stop != value else None)
+                if followed[-1] is not None and followed[-1].ends[1] == CLOSED:
+                    return _joined(None, followed[-1])
         except OrbitNotFound:
             continue
+        down, up = followed
         return _joined(down, up)
     return None
 

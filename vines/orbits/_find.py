@@ -15,9 +15,10 @@ from vines.orbits._general import refine, search
 from vines.orbits._orbit import Orbit
 from vines.orbits._own_word import sticking_word, whole_word
 from vines.orbits._shooting import shoots
-from vines.orbits._slid import refine_slid, slides
+from vines.orbits._slid import refine_slid
+from vines.orbits._slid_round import slides
 from vines.orbits._sticking_capsule import capsule_sticks, rides_capsule
-from vines.orbits._sticking_of_balls import rides_in_parallel
+from vines.orbits._sticking_of_balls import by_sections
 from vines.orbits._sticking_search import no_sticking_orbit, refine_sticking
 from vines.orbits._sticking_search_of_balls import refine_balls
 from vines.orbits._symmetric import no_symmetric_orbit
@@ -48,9 +49,10 @@ def find_orbit(word: str | Word, p: Any, guess: Orbit | npt.ArrayLike | None = N
     guess : Orbit or (N,) array, optional
         An orbit of the word at nearby parameters, or times of the impacts in the canonical order of the word, for a
         forcing of phase zero at t = 0; for a word with a star time and v1 of the release after the first one, two
-        numbers; where flights have no closed form (`systems.CubicBarriers`, `systems.Hybrid`) an orbit, or rows of t,
-        x1, v1, x2, v2 (x3, v3) just before each impact; where a ball slides with friction x1, v1, v2 and t just before
-        the first impact, four. The solution that Newton's method finds from there is returned.
+        numbers; where flights have no closed form (`systems.CubicBarriers`, `systems.Duffing`, `systems.Hybrid`) an
+        orbit, or rows of t, x1, v1, x2, v2 (x3, v3) just before each impact; where a ball slides with friction x1, v1,
+        v2 and t just before the first impact, four; without impacts an orbit, or the state at phase 0 of the forcing.
+        The solution that Newton's method finds from there is returned.
 
     Returns
     -------
@@ -78,7 +80,7 @@ def find_orbit(word: str | Word, p: Any, guess: Orbit | npt.ArrayLike | None = N
             return refine_slid(word, p, guess)
         if word.sticking and rides_capsule(p):
             return capsule_sticks(word, p)
-        if word.sticking and rides_in_parallel(p):
+        if word.sticking and by_sections(p):
             return refine_balls(word, p, guess)
         return refine_sticking(sticking_word(word, p), p, guess) if word.sticking else refine(word, p, guess)
     found = all_orbits(word, p)

@@ -22,10 +22,13 @@ from vines.orbits._curve_problem import CurveProblem
 from vines.orbits._joined import is_joint, left_family
 from vines.orbits._own_word import sticking_word
 from vines.orbits._problem import Point, ZeroSet
+from vines.orbits._slid_curve import SlidCurve
+from vines.orbits._slid_round import slides
+from vines.orbits._smooth_curve import SmoothCurve
 from vines.orbits._special import END, Special, special_functions
 from vines.orbits._sticking_curve import StickingCurve
 from vines.orbits._sticking_curve_of_balls import BallsCurve
-from vines.orbits._sticking_of_balls import rides_in_parallel
+from vines.orbits._sticking_of_balls import by_sections
 
 __all__ = ["follow_curve"]
 
@@ -164,11 +167,6 @@ def _bounds(
         If it is none around the bifurcation.
     """
     p = bifurcation.params
-    if p.system.stops:
-        raise ParameterError(
-            f"bifurcation is of {type(p).__name__}; turns and stops of a ball have no closing equations in two "
-            f"parameters: locate it on branches, one for each value of {parameters[-1]}"
-        )
     for name in parameters:
         p.system.parameter(name)
     if len(set(parameters)) != 2:
@@ -193,10 +191,12 @@ def _problem(bifurcation: Bifurcation, parameters: tuple[str, str], spans: Float
             f"parameters are {parameters}; there is no symmetry to break unless {name} = 0, and folds of {orbit.word} "
             "have a cusp there; give two others, or follow a fold"
         )
-    form = CurveProblem if isinstance(orbit.params, Params) else ChainCurve
+    form = CurveProblem if isinstance(orbit.params, Params) else SlidCurve if slides(orbit.params) else ChainCurve
+    if orbit.word.unstruck:
+        form = SmoothCurve
     if orbit.word.sticking:
         sticking_word(orbit.word, orbit.params)
-        form = BallsCurve if rides_in_parallel(orbit.params) else StickingCurve
+        form = BallsCurve if by_sections(orbit.params) else StickingCurve
     return form(bifurcation.type, orbit, parameters, tuple(spans.tolist()))
 
 

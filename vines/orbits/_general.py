@@ -17,6 +17,8 @@ from vines.orbits._closed_form import refuse_resonance
 from vines.orbits._equations import newton_kernel
 from vines.orbits._orbit import Orbit
 from vines.orbits._shooting import shoots, shot_from
+from vines.orbits._smooth_orbit import same_smooth, smooth_origin
+from vines.orbits._smooth_search import refine_smooth
 from vines.orbits._values import frequency_of, marks_of, unit_of
 
 __all__ = ["ITERATIONS", "check_word", "origin", "proper", "refine", "same", "search"]
@@ -48,6 +50,8 @@ def refine(word: Word, p: Any, guess: Orbit | npt.ArrayLike) -> Orbit:
     ParameterError
         If the guess does not fit the word, or at Omega = 1 without damping.
     """
+    if word.unstruck:
+        return refine_smooth(word, p, guess)
     refuse_resonance(p)
     if isinstance(guess, Orbit):
         check_word(guess, word)
@@ -132,6 +136,8 @@ def origin(orbit: Orbit, within: float = _NEAR) -> str | None:
     A family that broke the symmetry meets its mirror image there, a doubled one its own repetition; both look like
     folds from within. `within` is how near to the other family counts as on it.
     """
+    if orbit.word.unstruck:
+        return smooth_origin(orbit, within)
     mirrored = orbit.params.mirrored and orbit.word.symmetric
     if mirrored and asymmetry(orbit.word, orbit.period, orbit.t, orbit.states) < within:
         return "symmetry_breaking"
@@ -149,6 +155,8 @@ def same(orbit: Orbit, t: Floats, states: Floats) -> bool:
     t, states : (N,), (N, 4) float array
         Times of the impacts in canonical order, and the states just before them.
     """
+    if orbit.word.unstruck:
+        return same_smooth(orbit, states[0])
     T, N = orbit.params.period, len(orbit.t)
     for k in orbit.word.rotations():
         shift = np.append(t[k:], t[:k] + orbit.period) - orbit.t

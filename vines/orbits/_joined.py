@@ -17,9 +17,11 @@ from vines.orbits._general import origin, refine
 from vines.orbits._orbit import Orbit
 from vines.orbits._problem import ZeroSet
 from vines.orbits._shooting import shoots
-from vines.orbits._slid import SlidProblem, slid_image, slides
+from vines.orbits._slid import SlidProblem, first_impact, refine_slid, slid_again, slid_image
+from vines.orbits._slid_round import slides
+from vines.orbits._smooth_orbit import smooth_doubled, smooth_image
 from vines.orbits._sticking_capsule import capsule_sticks, rides_capsule
-from vines.orbits._sticking_of_balls import mirrored_balls, rides_in_parallel
+from vines.orbits._sticking_of_balls import by_sections, mirrored_balls
 from vines.orbits._sticking_orbit import mirrored_sticking
 from vines.orbits._values import frequency_of
 
@@ -51,9 +53,11 @@ def mirror_image(orbit: Orbit) -> Orbit:
     if orbit.word.sticking and rides_capsule(orbit.params):
         return capsule_sticks(orbit.word.mirror, orbit.params)
     if orbit.word.sticking:
-        return (mirrored_balls if rides_in_parallel(orbit.params) else mirrored_sticking)(orbit)
+        return (mirrored_balls if by_sections(orbit.params) else mirrored_sticking)(orbit)
     if slides(orbit.params):
         return slid_image(orbit)
+    if orbit.word.unstruck:
+        return smooth_image(orbit)
     word, t, states = orbit.word.mirror, orbit.t + orbit.params.period / 2, -orbit.states
     if any(word.balls):
         word, names = word.relabelled(getattr(orbit.params, "alike", ()))
@@ -88,7 +92,11 @@ def unfolded(kind: str, orbit: Orbit) -> Orbit:
     """
     if kind == "symmetry_breaking":
         return orbit
-    word = Word(f"{orbit.word.letters * 2}/{2 * orbit.word.p}T")
+    if orbit.word.unstruck:
+        return smooth_doubled(orbit)
+    word = orbit.word.doubled
+    if slides(orbit.params):
+        return slid_again(word, orbit.params, first_impact(orbit))
     return assemble(
         word, orbit.params, np.concatenate([orbit.t, orbit.t + orbit.period]), np.tile(orbit.states, (2, 1))
     )
@@ -108,12 +116,20 @@ def left_family(joint: Bifurcation) -> Orbit:
     n = len(orbit.word) // 2
     if shoots(orbit.params):
         return _left_by_shots(joint)
+    if slides(orbit.params) and joint.type == "period_doubling":
+        word = Word(f"{orbit.word.letters[: len(orbit.word.letters) // 2]}/{orbit.word.p // 2}T")
+        x1, v1, _, v2 = (orbit.states[0] + orbit.states[n]) / 2
+        t = (orbit.t[0] + orbit.t[n] - orbit.period / 2) / 2
+        return refine_slid(word, orbit.params, [x1, v1, v2, t])
     if joint.type == "period_doubling":
         word = Word(f"{orbit.word.letters[: len(orbit.word.letters) // 2]}/{orbit.word.p // 2}T")
         return refine(word, orbit.params, (orbit.t[:n] + orbit.t[n:] - orbit.period / 2) / 2)
     problem = family_through(orbit, joint.parameter, symmetric=True)
-    phases = (orbit.t[:n] + orbit.t[n:] - orbit.period / 2) / 2 * frequency_of(orbit.params)
-    y = ZeroSet(problem, 1.0).at_value(np.append(phases, joint.value), joint.value)
+    start = problem.start
+    if not slides(orbit.params):
+        phases = (orbit.t[:n] + orbit.t[n:] - orbit.period / 2) / 2 * frequency_of(orbit.params)
+        start = np.append(phases, joint.value)
+    y = ZeroSet(problem, 1.0).at_value(start, joint.value)
     if y is None:
         raise OrbitNotFound(f"the symmetric orbit at {joint} was lost; follow the symmetric family to it")
     return problem.orbit(y)
@@ -122,6 +138,8 @@ def left_family(joint: Bifurcation) -> Orbit:
 def _left_by_shots(joint: Bifurcation) -> Orbit:
     """Return the same of an orbit whose states at the impacts are all unknown."""
     orbit, halves = joint.orbit, joint.type == "symmetry_breaking"
+    if orbit.word.unstruck and not halves:
+        return refine(Word(f"-/{orbit.word.p // 2}T"), orbit.params, orbit.states[0])
     word = orbit.word if halves else Word(f"{orbit.word.letters[: len(orbit.word) // 2]}/{orbit.word.p // 2}T")
     if not halves:
         n = len(word)

@@ -113,7 +113,9 @@ def _segment_state(c, row, tau):
 def begin_at(c, row):
     """Return where the first step of the flight after an impact begins."""
     v = row[col.A_V1]
-    return row[col.X1], v, row[col.SIDE], v - row[col.A_V2]
+    # On a wall the gap is exact; at phase 0 of a motion without impacts it is what the positions say.
+    w = row[col.SIDE] if row[col.SIDE] != 0.0 else row[col.X1] - row[col.X2]
+    return row[col.X1], v, w, v - row[col.A_V2]
 
 
 @begin_at.register(HybridConstants)

@@ -11,10 +11,13 @@ import numpy as np
 import numpy.typing as npt
 
 from vines.dynamics import Measures
-from vines.dynamics.kernels import after_impact, room_of
+from vines.dynamics.kernels import after_impact, constants, room_of
+from vines.dynamics.kernels import rows as col
 from vines.dynamics.runs import IMPACT
 from vines.html import html_table
 from vines.model import V1, V2, X2, Word
+from vines.orbits._budget import orbit_rows
+from vines.orbits._values import marks_of
 
 __all__ = ["SPELL", "Orbit", "short_hash"]
 
@@ -93,7 +96,7 @@ class Orbit:
     struck : (N, 2) float array or None
         Of balls in parallel that stick: v1, v2 just after each impact, whatever else is struck at that instant.
     release : object or None
-        Of balls in parallel that stick: the release from which the orbit was run.
+        Of orbits that stick, but those of the VI-NES and the impact pair: the release from which the orbit was run.
     """
 
     word: Word
@@ -212,7 +215,11 @@ class Orbit:
         return {**at, "t": float(self.t[0])}
 
     def _balls(self) -> list[float]:
-        """Return what a row of an event has behind x1 … v2 where balls have numbers, just after the first impact."""
+        """Return what a row of an event has behind x1 … v2 where something has numbers, just after the first impact."""
+        if self.params.system.modes:
+            t, states = self.t.copy(), self.states.copy()  # read-only ones would be another type to the kernel
+            rows = orbit_rows(constants(self.params), self.period, marks_of(self.word), t, states)
+            return rows[0, col.ROW :].tolist()
         numbers, after, G = np.maximum(self.word.balls, 1), self._after(), getattr(self.params, "G", 0.0)
         found = [float(numbers[0]), 0.0, 0.0]
         for ball in range(1, getattr(self.params, "balls", 0) + 1):

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from vines.errors import OrbitNotFound, ParameterError
-from vines.model import STOPS, Word, of_moderate_length
+from vines.model import STOPS, Word, not_alone, of_moderate_length
 
 __all__ = ["own_word", "sticking_word", "whole_word"]
 
@@ -47,6 +47,8 @@ def whole_word(word: str | Word, p: Any) -> Word:
     vines.errors.ParameterError: L2R2 has impacts of ball 2, the system has balls 1 … 2; give a word in which each hits
     """
     word = of_moderate_length(own_word(word, p))
+    if word.unstruck and not p.system.smooth:
+        raise ParameterError(not_alone(word, p.system))
     if STOPS in word.letters and not p.system.stops:
         raise ParameterError(f"{word} has stops, and a ball of the system {p.system.name!r} never stops in mid-cavity")
     balls = getattr(p, "balls", 1)

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from vines.errors import OrbitNotFound, ParameterError
-from vines.model import Word
 from vines.orbits._find import find_orbit
 from vines.orbits._general import same
 from vines.orbits._orbit import Orbit
@@ -20,8 +19,8 @@ _MOST = 64
 def partners(orbit: Orbit) -> Iterator[Orbit]:
     """Yield admissible stable orbits that Newton's method finds along the direction in which an orbit is unstable.
 
-    Of one without sticking whose largest multiplier is real: below -1 orbits of twice the period, above 1 and
-    symmetric such without the symmetry.
+    Of one with impacts and without sticking whose largest multiplier is real: below -1 orbits of twice the period,
+    above 1 and symmetric such without the symmetry.
 
     Examples
     --------
@@ -30,12 +29,12 @@ def partners(orbit: Orbit) -> Iterator[Orbit]:
     False
     """
     largest = complex(orbit.multipliers[0])
-    if orbit.word.sticking or abs(largest) <= 1 or abs(largest.imag) > 1e-9 * abs(largest):
+    if orbit.word.sticking or orbit.word.unstruck or abs(largest) <= 1 or abs(largest.imag) > 1e-9 * abs(largest):
         return
     if largest.real < 0:
         if 2 * len(orbit.word) > _MOST:
             return
-        word = Word(f"{orbit.word.letters * 2}/{2 * orbit.word.p}T")
+        word = orbit.word.doubled
         guesses = doubled_times(orbit)
     elif orbit.symmetric:
         word, guesses = orbit.word, asymmetric_times(orbit)

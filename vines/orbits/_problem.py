@@ -20,6 +20,9 @@ _ITERATIONS = 12
 _CONVERGED = 1e-9
 """Scaled Newton step after which one more iteration reaches rounding, convergence being quadratic or nearly so."""
 
+SMALL = 0.25
+"""Least size that is taken for a coordinate of a motion without impacts, in half gaps."""
+
 
 class Problem(Protocol):
     """A family of orbits in one parameter: n equations in n unknowns and the parameter, y = (unknowns, parameter)."""
@@ -64,7 +67,9 @@ class ZeroSet:
     def __init__(self, problem: Problem, *spans: float) -> None:
         self.problem = problem
         unknowns = np.abs(problem.start[: -len(spans)])
-        self.scale = np.append(np.maximum(unknowns, 0.1 * unknowns.max(initial=1e-3)), spans)
+        # States without impacts may begin small and grow a hundred times.
+        least = max(0.1 * unknowns.max(initial=1e-3), SMALL if problem.word.unstruck else 0.0)
+        self.scale = np.append(np.maximum(unknowns, least), spans)
 
     def tangent(self, y: Floats, towards: Floats) -> Floats:
         """Return the unit tangent at y on the side of `towards`.

@@ -8,6 +8,7 @@ are always kicked off or struck instead, a section is a phase of the forcing at 
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
@@ -19,7 +20,18 @@ from vines.dynamics.kernels import rows as col
 from vines.dynamics.parallel.kernels import B_DECIDE, B_RELEASED, B_V2, B_WALL, B_X2, BALL, R_V2, R_X2, at
 from vines.dynamics.runs import EVENTS_PER_PERIOD, IN_TURN
 
-__all__ = ["Moment", "Ran", "Release", "Section", "falling", "releases_among", "run_closed", "run_on", "run_round"]
+__all__ = [
+    "Moment",
+    "Ran",
+    "Release",
+    "Section",
+    "falling",
+    "force_slope",
+    "releases_among",
+    "run_closed",
+    "run_on",
+    "run_round",
+]
 
 Floats = npt.NDArray[np.float64]
 
@@ -90,7 +102,7 @@ class Release:
         """Return the disturbances, at the time of the release, by its time and coordinates, shape (2 + 2 N, k)."""
         columns = np.zeros((2 + 2 * p.balls, len(z)))
         # A release later by dt, with the same velocity, was before on its own motion.
-        columns[0, 0], columns[1, 0] = _force_slope(p, float(z[0])) - z[1], p.G
+        columns[0, 0], columns[1, 0] = force_slope(p, float(z[0])) - z[1], p.G
         columns[0, 1], columns[1, 1] = -p.lam, 1.0
         for k in self.riders:
             columns[2 + 2 * k : 4 + 2 * k] = columns[:2]
@@ -107,9 +119,17 @@ class Release:
             found += [Y[2 + 2 * k] + end[3 + 2 * place] * late, Y[3 + 2 * k] - p.G * late]
         return np.stack(found)
 
+    def falling(self, p: Any, phase: float, v1: float) -> float:
+        """Return the derivative by time of the push, x1'' + G, at a release."""
+        return falling(p, phase, v1)
+
+    def among(self, rows: Floats) -> Sequence[tuple[int, Release]]:
+        """Return the last rows of releases, each with its section."""
+        return releases_among(rows, self.balls, self.ties)
+
     def reached(self, p: Any, rows: Floats, span: float) -> int | None:
         """Return the row of that release which comes nearest to a time, None if none comes about then."""
-        ends = [i for i, met in releases_among(rows, p.balls, self.ties) if met == self]
+        ends = [i for i, met in self.among(rows) if met == self]
         last = min(ends, key=lambda i: abs(rows[i, col.TIME] - span), default=None)
         return None if last is None or abs(rows[last, col.TIME] - span) > _EARLY * p.period else last
 
@@ -213,14 +233,14 @@ class Ran(NamedTuple):
     slopes: Floats
 
 
-def _force_slope(p: Any, phase: float) -> float:
+def force_slope(p: Any, phase: float) -> float:
     """Return the derivative by time of the force of the base."""
     return p.A * p.Omega * (math.cos(phase) - p.lam * p.Omega * math.sin(phase))
 
 
 def falling(p: Any, phase: float, v1: float) -> float:
     """Return the derivative by time of x1'' + G at a release."""
-    return _force_slope(p, phase) + p.lam * p.G - v1
+    return force_slope(p, phase) + p.lam * p.G - v1
 
 
 def _begin(p: Any, x1: float, v1: float, x2: Floats, v2: Floats, phase: float, ties: str) -> Floats:

@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from vines.dynamics import simulate
-from vines.dynamics.kernels import Constants
+from vines.dynamics.kernels import Constants, room_of
 from vines.model import STATE_NAMES, VI_NES, Params, Word
 from vines.orbits._flights import start_kernel
 from vines.orbits._floquet import monodromy
@@ -79,8 +79,9 @@ def starts_of(p: Any) -> Iterator[dict[str, Any]]:
         yield from (dict(zip(STATE_NAMES, start, strict=True)) for start in STARTS)
         return
     balls = [body.velocity.name for body in p.system.bodies if body.name != "oscillator"]
-    for *_, speed in STARTS:
-        yield {name: speed / (1 + k) for k, name in enumerate(balls)}
+    for frame in ({}, *room_of(p).swings(p)):
+        for *_, speed in STARTS:
+            yield {**frame, **{name: speed / (1 + k) for k, name in enumerate(balls)}}
 
 
 def base_word(word: Word) -> Word | None:

@@ -20,6 +20,7 @@ from vines.orbits._closing import Closed, Closing
 from vines.orbits._moved import moved
 from vines.orbits._orbit import Orbit
 from vines.orbits._shots import KINDS, shots_kernel
+from vines.orbits._smooth_closing import SmoothClosing
 from vines.orbits._values import frequency_of, marks_of
 
 __all__ = ["Shooting", "closing_of", "refuse_no_walls", "shoots", "shot", "shot_from"]
@@ -39,7 +40,7 @@ def shoots(p: Any) -> bool:
 def refuse_no_walls(p: Any) -> None:
     """Raise `ParameterError` where there are no walls that a word could tell of."""
     if not getattr(p, "walls", 1.0):
-        raise ParameterError("walls is 0: a word tells of impacts; vines.settle finds what there is without barriers")
+        raise ParameterError("walls is 0: a word tells of impacts; orbits without any have the words -, -/2T, …")
 
 
 def _free(states: Floats) -> Floats:
@@ -47,8 +48,10 @@ def _free(states: Floats) -> Floats:
     return np.delete(states, X2, axis=1)
 
 
-def closing_of(orbit: Orbit, names: Sequence[str], symmetric: bool) -> Closing | Shooting:
+def closing_of(orbit: Orbit, names: Sequence[str], symmetric: bool) -> Closing | Shooting | SmoothClosing:
     """Return the closing equations of the word of an orbit, in the form that its system has; see `Closing`."""
+    if orbit.word.unstruck:
+        return SmoothClosing(orbit, names, symmetric)
     return (Shooting if shoots(orbit.params) else Closing)(orbit, names, symmetric)
 
 

@@ -1,4 +1,4 @@
-"""Orbits whose flights no closed form gives: from simulations, and from those of the VI-NES as the spring grows."""
+"""Orbits whose flights no closed form gives: from simulations, and from those of the VI-NES as the springs grow."""
 
 from __future__ import annotations
 
@@ -20,10 +20,11 @@ __all__ = ["gather_shots", "of_the_vi_nes"]
 
 Floats = npt.NDArray[np.float64]
 
-_SPRING = ("k1", "k3", "l2")
+_SPRINGS = ("k1", "k3", "l2", "alpha")
+"""Parameters without which a system is the VI-NES."""
 
 _LEAST = 1.0 / 256.0
-"""Smallest step, as a part of the spring, in which an orbit is followed from that of the VI-NES."""
+"""Smallest step, as a part of the springs, in which an orbit is followed from that of the VI-NES."""
 
 
 def gather_shots(word: Word, p: Any, likes: list[Orbit]) -> tuple[list[Orbit], int]:
@@ -44,25 +45,25 @@ def _starts(word: Word, p: Any, likes: list[Orbit]) -> Iterator[tuple[Floats, Fl
     for times, hits in stretches(word, p):
         yield times, np.stack([hits[name] for name in (*STATE_NAMES, *room_of(p).beside)], axis=1)
     for orbit in likes:
-        followed = _with_spring(word, p, orbit)
+        followed = _with_springs(word, p, orbit)
         if followed is not None:
             yield followed
 
 
 def of_the_vi_nes(p: Any) -> Params:
-    """Return the parameters of the same system without its spring."""
+    """Return the parameters of the same system without its springs."""
     values = p.as_dict()
     return Params(**{name: values[name] for name in PARAMETER_NAMES})
 
 
-def _with_spring(word: Word, p: Any, orbit: Orbit) -> tuple[Floats, Floats] | None:
-    """Return times and states of an orbit of the VI-NES followed as the spring grows to its own, None if it is lost."""
+def _with_springs(word: Word, p: Any, orbit: Orbit) -> tuple[Floats, Floats] | None:
+    """Return times and states of an orbit of the VI-NES followed as the springs grow to their own, None if lost."""
     values = p.as_dict()
     t, states, done, step = orbit.t, orbit.states, 0.0, 0.25
-    grows = _SPRING
+    grows = [name for name in _SPRINGS if name in values]
     if room_of(p).beside:
         # A mass beside the ball moves as the oscillator drives it, and grows from nothing.
-        grows = ("mu_n",)
+        grows = ["mu_n"]
         states = np.column_stack([states, states[:, [X1, V1]]])
         converged, t, _, states = shot(word, p.replace(mu_n=0.0), t, states)
         if not converged:

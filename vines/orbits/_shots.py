@@ -15,7 +15,7 @@ from vines.orbits._motions import begin_at, end_at, impact_row, motion, move_on,
 from vines.orbits._survey import NO_TURNING, inspect_row, survey_kernel, survey_rows
 from vines.orbits._turnings_of_balls import gap_kernel, turnings_kernel
 
-__all__ = ["KINDS", "shots_kernel"]
+__all__ = ["KINDS", "shots_kernel", "turnings"]
 
 KINDS = (TaylorConstants, HybridConstants)
 """Constants of systems whose flights have no closed form."""
@@ -115,7 +115,7 @@ def _turning(a, order, low, high):
 
 
 @linked_njit
-def _turnings(c, row, tau):
+def turnings(c, row, tau):
     """Return the turning points of the gap in the flight after a row: time since then, w, w''."""
     a = coefficients(c.field)
     order = c.field.order
@@ -151,7 +151,7 @@ def _inspect_row(c, side, row, tau):
     if side * (row[col.A_V1] - row[col.A_V2]) > 0.0:
         violation, wall = 0.0, side
     before = 0.0
-    for when, w, bend in _turnings(c, row, tau):
+    for when, w, bend in turnings(c, row, tau):
         towards = 1 if bend < 0.0 else -1
         clearance = min(clearance, 1.0 - towards * w)
         if towards * w >= 1.0 and wall == 0:
@@ -182,7 +182,7 @@ def _turnings_kernel(c, duration, side, t, states):
     rows = _rows(c, duration, side, t, states)
     found = []
     for j in range(side.size):
-        for when, w, bend in _turnings(c, rows[j], rows[j + 1, col.TAU]):
+        for when, w, bend in turnings(c, rows[j], rows[j + 1, col.TAU]):
             wall = 1.0 if bend < 0.0 else -1.0
             found.append((float(j), when, wall, 1.0 - wall * w, bend, 1.0))
     out = new_matrix(len(found), 6)

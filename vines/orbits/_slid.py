@@ -16,36 +16,39 @@ import numpy.typing as npt
 
 from vines.domains import Numbers
 from vines.dynamics import simulate
-from vines.dynamics.friction import FrictionConstants
 from vines.dynamics.kernels import (
-    after_impact,
-    constants,
-    open_window,
     room_of,
-    run_window,
-    set_state,
     tangent_product,
     window_totals,
 )
 from vines.dynamics.kernels import rows as col
-from vines.dynamics.runs import EVENTS_PER_PERIOD, measures_from
+from vines.dynamics.runs import measures_from
 from vines.errors import OrbitNotFound, ParameterError
-from vines.kernels import linked_njit, new_matrix, new_vector, njit
 from vines.model import Word
 from vines.orbits._assemble import asymmetry, begun_first
-from vines.orbits._equations import closing_kernel, closing_unit, prepared
+from vines.orbits._closing import difference
 from vines.orbits._floquet import FIXED_TIME, half_map, monodromy, sorted_multipliers, squared
 from vines.orbits._general import check_word, same
 from vines.orbits._moved import moved
 from vines.orbits._orbit import Orbit
+from vines.orbits._slid_round import SlidRound
 from vines.orbits._survey import NO_TURNING
 
-__all__ = ["SlidProblem", "refine_slid", "slid_image", "slid_orbits", "slides"]
+__all__ = [
+    "SlidProblem",
+    "clearance_of_rests",
+    "first_impact",
+    "refine_slid",
+    "slid_again",
+    "slid_image",
+    "slid_orbit",
+    "slid_orbits",
+]
 
 Floats = npt.NDArray[np.float64]
 
 _STEP = 1e-6
-"""Step of the differences that steer Newton's method; they do not move its goal."""
+"""Step of the differences in a parameter, which steer Newton's method and do not move its goal."""
 
 _CLOSES = 1e-11
 _SAME = 1e-9
@@ -55,76 +58,6 @@ _PERIODS = 120
 """Random starts from which runs are looked through for the word, and how long these are."""
 
 REMARK = f"Newton's method from runs of {_STARTS} random starts: there may be more"
-
-
-@prepared.register(FrictionConstants)
-@njit
-def _prepared(c):
-    return c
-
-
-@closing_unit.register(FrictionConstants)
-@njit
-def _closing_unit(c):
-    return 1.0, 1.0
-
-
-@closing_kernel.register(FrictionConstants)
-@linked_njit
-def _closing(c, duration, side, t):
-    N = t.size
-    return False, new_vector(N), new_matrix(N, N), new_matrix(N, 4)
-
-
-def slides(p: Any) -> bool:
-    """Say whether the ball of a system slides with friction."""
-    return isinstance(constants(p), FrictionConstants)
-
-
-class _Round:
-    """A run from an impact on, over so many contacts of a word.
-
-    Attributes
-    ----------
-    rows : ndarray
-        Its events from that impact to the last contact, both included; empty if the contacts are others.
-    places : list of int
-        Rows of the contacts.
-    """
-
-    def __init__(self, word: Word, p: Any, z: Floats, contacts: int) -> None:
-        self.word, self.p = word, p
-        self.c = constants(p)
-        self.rows, self.places = np.empty((0, col.ROW)), []
-        x1, v1, v2, phase = z.tolist()
-        side = word.sides[0]
-        if not (np.isfinite(z).all() and side * (v1 - v2) > 0 and np.abs(z).max() < 1e6):
-            return
-        after1, after2 = after_impact(room_of(p).law(p, 1), v1, v2)
-        state = np.zeros(col.STATE)
-        set_state(state, x1, after1, x1 - side, after2, phase % (2 * math.pi), 0.0)
-        rows = np.empty((64, col.ROW))
-        # A little longer, so that the contact at the end is among the events.
-        stop = (word.p * contacts / len(word) + 0.5) * p.period
-        rows, count, code = run_window(self.c, state, stop, EVENTS_PER_PERIOD, rows, open_window(self.c, state, rows))
-        wanted = [*word.sides[1:], *word.sides][:contacts]
-        places = [0]
-        for i in range(1, count if code == col.COMPLETE else 0):
-            kind = rows[i, col.KIND]
-            if kind == col.STICK:
-                return
-            if kind in (col.IMPACT, col.STOP):
-                if (rows[i, col.SIDE] if kind == col.IMPACT else 0.0) != wanted[len(places) - 1]:
-                    return
-                places.append(i)
-                if len(places) > contacts:
-                    self.rows, self.places = rows[: i + 1].copy(), places
-                    return
-
-    @property
-    def end(self) -> Floats:
-        """x1, v1, v2 and the time at the last contact; nan where the contacts are others."""
-        return self.rows[-1, [col.X1, col.V1, col.V2, col.TIME]] if self.places else np.full(4, math.nan)
 
 
 class SlidProblem:
@@ -145,58 +78,42 @@ class SlidProblem:
         self._fixed = orbit.params
         breaks = parameter in orbit.params.system.mirror.broken_by
         self._half = orbit.symmetric and not breaks if symmetric is None else symmetric
-        self.start = np.append(_before(orbit), orbit.params.as_dict()[parameter])
+        self._contacts = len(self.word) // 2 if self._half else len(self.word)
+        self.start = np.append(first_impact(orbit), orbit.params.as_dict()[parameter])
 
     def equations(self, y: Floats) -> tuple[Floats, Floats]:
         """Return what does not close, shape (4,), and its derivatives, (4, 5); nan where the word does not follow."""
-        here = self._defect(y)
-        slopes = np.full((4, 5), math.nan)
-        for k in range(5):
-            step = np.zeros(5)
-            step[k] = _STEP * max(1.0, abs(float(y[k]))) if k < 4 else _STEP * max(abs(float(y[k])), 0.01)
-            above, below = self._defect(y + step), self._defect(y - step)
-            if np.isfinite(above).all() and np.isfinite(below).all():
-                slopes[:, k] = (above - below) / (2 * step[k])
-            else:
-                slopes[:, k] = (above - here if np.isfinite(above).all() else here - below) / step[k]
-        return here, slopes
+        p = moved(self._fixed, {self.parameter: y[-1]})
+        if p is None:
+            return np.full(4, math.nan), np.full((4, 5), math.nan)
+        way = SlidRound(self.word, p, y[:4], self._contacts)
+        step = _STEP * max(abs(float(y[-1])), 0.01)
+        across = difference(self._defect, y, 4, step)
+        return way.closing(self._half), np.column_stack([way.slopes(self._half), across])
 
     def _defect(self, y: Floats) -> Floats:
         p = moved(self._fixed, {self.parameter: y[-1]})
-        return np.full(4, math.nan) if p is None else _defect(self.word, p, y[:4], self._half)
+        if p is None:
+            return np.full(4, math.nan)
+        return SlidRound(self.word, p, y[:4], self._contacts).closing(self._half)
 
     def orbit(self, y: Floats) -> Orbit:
         """Return the orbit of a solution."""
-        found = _assembled(self.word, self._fixed.replace(**{self.parameter: float(y[-1])}), y[:4])
-        if found is None:
-            raise OrbitNotFound(f"the {self.word} branch ends at {self.parameter} = {y[-1]:.9g}; stop before")
-        return found
+        return slid_again(self.word, self._fixed.replace(**{self.parameter: float(y[-1])}), y[:4])
 
 
-def _before(orbit: Orbit) -> Floats:
+def first_impact(orbit: Orbit) -> Floats:
     """Return x1, v1, v2 and the phase of the first impact; one turn more: the size of unknowns sets that of steps."""
     x1, v1, _, v2 = orbit.states[0]
     return np.array([x1, v1, v2, orbit.phase[0] + 2 * math.pi])
 
 
-def _defect(word: Word, p: Any, z: Floats, half: bool) -> Floats:
-    """Return by how much x1, v1, v2 and the time at the return of the first contact, or of its image, are off."""
-    contacts = len(word) // 2 if half else len(word)
-    x1, v1, v2, t = _Round(word, p, z, contacts).end
-    sign, lasts = (-1.0, 0.5) if half else (1.0, 1.0)
-    return np.array([sign * x1 - z[0], sign * v1 - z[1], sign * v2 - z[2], t - lasts * word.p * p.period])
-
-
 def _solved(word: Word, p: Any, z: Floats) -> Floats | None:
     """Return the first impact of an orbit from a guess, None if Newton's method does not find one."""
     for _ in range(_ITERATIONS):
-        here = _defect(word, p, z, False)
-        if not np.isfinite(here).all():
-            return None
-        slope = np.empty((4, 4))
-        for k, step in enumerate(_STEP * np.eye(4)):
-            slope[:, k] = (_defect(word, p, z + step, False) - _defect(word, p, z - step, False)) / (2 * _STEP)
-        if not np.isfinite(slope).all():
+        way = SlidRound(word, p, z, len(word))
+        here, slope = way.closing(False), way.slopes(False)
+        if not (np.isfinite(here).all() and np.isfinite(slope).all()):
             return None
         try:
             move = np.linalg.solve(slope, here)
@@ -205,13 +122,13 @@ def _solved(word: Word, p: Any, z: Floats) -> Floats | None:
         share = min(1.0, 0.3 / np.abs(move).max(initial=1e-300))
         z = z - share * move
         if np.abs(move).max() < _CLOSES:
-            return z if np.abs(_defect(word, p, z, False)).max() < 1e2 * _CLOSES else None
+            return z if np.abs(SlidRound(word, p, z, len(word)).closing(False)).max() < 1e2 * _CLOSES else None
     return None
 
 
-def _assembled(word: Word, p: Any, z: Floats, remark: str = "") -> Orbit | None:
+def slid_orbit(word: Word, p: Any, z: Floats, remark: str = "") -> Orbit | None:
     """Return the orbit with this first impact, None if the contacts are not those of the word."""
-    way = _Round(word, p, z, len(word))
+    way = SlidRound(word, p, z, len(word))
     if not way.places:
         return None
     rows, places, c = way.rows, way.places, way.c
@@ -238,7 +155,7 @@ def _assembled(word: Word, p: Any, z: Floats, remark: str = "") -> Orbit | None:
         half_multipliers=halves,
         symmetric=symmetric,
         admissible=True,
-        min_clearance=_clearance(rows),
+        min_clearance=clearance_of_rests(rows),
         violation_time=math.nan,
         violation_side=0,
         residual=float(np.abs(np.array([x1, v1, v2]) - z[:3]).max()),
@@ -247,7 +164,21 @@ def _assembled(word: Word, p: Any, z: Floats, remark: str = "") -> Orbit | None:
     )
 
 
-def _clearance(rows: Floats) -> float:
+def slid_again(word: Word, p: Any, z: Floats, remark: str = "") -> Orbit:
+    """Return the orbit with this first impact.
+
+    Raises
+    ------
+    OrbitNotFound
+        If the contacts are not those of the word.
+    """
+    found = slid_orbit(word, p, z, remark)
+    if found is None:
+        raise OrbitNotFound(f"no {word} orbit at {p}: from its first impact other contacts come; give a nearer guess")
+    return found
+
+
+def clearance_of_rests(rows: Floats) -> float:
     """Return the least distance of a turn or stop to the wall that the ball came towards."""
     least = NO_TURNING
     for row in rows[1:]:
@@ -283,7 +214,7 @@ def slid_orbits(word: Word, p: Any) -> tuple[list[Orbit], str]:
         run = simulate(p, **start, periods=_PERIODS, max_impacts_per_period=2000)
         for guess in _guesses(word, p, run)[:2]:
             z = _solved(word, p, guess)
-            orbit = None if z is None else _assembled(word, p, z, REMARK)
+            orbit = None if z is None else slid_orbit(word, p, z, REMARK)
             if orbit is not None and not any(same(each, orbit.t, orbit.states) for each in found):
                 found.append(orbit)
     return found, REMARK
@@ -302,7 +233,7 @@ def refine_slid(word: Word, p: Any, guess: Any) -> Orbit:
     _check(word)
     if isinstance(guess, Orbit):
         check_word(guess, word)
-        first = _before(guess)
+        first = first_impact(guess)
     else:
         Numbers(most=4).check("guess", guess, ParameterError)
         first = np.asarray(guess, dtype=np.float64)
@@ -312,7 +243,7 @@ def refine_slid(word: Word, p: Any, guess: Any) -> Orbit:
             )
         first = first * [1.0, 1.0, 1.0, p.Omega]
     z = _solved(word, p, first)
-    orbit = None if z is None else _assembled(word, p, z)
+    orbit = None if z is None else slid_orbit(word, p, z)
     if orbit is None:
         raise OrbitNotFound(f"no {word} orbit from this guess at {p}; give a nearer one, or look what a run settles to")
     return orbit
@@ -324,6 +255,4 @@ def slid_image(orbit: Orbit) -> Orbit:
     sides = [-side for side in orbit.word.sides]
     k = next(k for k in range(len(sides)) if tuple(sides[k:] + sides[:k]) == word.sides)
     x1, v1, _, v2 = -orbit.states[k]
-    found = _assembled(word, orbit.params, np.array([x1, v1, v2, orbit.phase[k] + math.pi]), orbit.remark)
-    assert found is not None
-    return found
+    return slid_again(word, orbit.params, np.array([x1, v1, v2, orbit.phase[k] + math.pi]), orbit.remark)

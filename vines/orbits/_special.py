@@ -103,7 +103,9 @@ def special_functions(problem: CurveEquations) -> tuple[Special, ...]:
 
     def other_margin(point: Point) -> float:
         orbit = point.orbit
-        return min(problem.elsewhere(orbit, point.y), float((orbit.side * orbit.w_dot).min()))
+        return min(
+            problem.elsewhere(orbit, point.y), float((orbit.side * orbit.w_dot)[orbit.side != 0].min(initial=np.inf))
+        )
 
     def bend(point: Point) -> float:
         return problem.bend(point.y)

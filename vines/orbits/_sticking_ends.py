@@ -1,4 +1,4 @@
-"""Where a family of orbits that stick ends, and why: what it needs of its flights, chatters and spells runs out.
+"""Where a family of orbits that stick or stop ends, and why: what it needs of flights, chatters, spells runs out.
 
 The simulator's map from release to release exists on one side of such an end only, so that no function of it changes
 its sign there: the branch is followed until steps of 1e-8 fail, and the end is where the margin that runs out would
@@ -15,6 +15,8 @@ import numpy as np
 
 from vines.orbits._conditions import TIE, tie_margin
 from vines.orbits._problem import Point
+from vines.orbits._rests import RESTS, rest_margins
+from vines.orbits._riding_alone import only_held
 
 __all__ = [
     "GRAZING",
@@ -100,16 +102,24 @@ def chatter_exponent(r: float) -> float:
 
 def _speeds(point: Point) -> float:
     orbit = point.orbit
-    return float(min(np.min(orbit.side * orbit.w_dot), np.min(orbit.spells["slowest"])))
+    # A ball that stops in mid-cavity has no speed, and always so.
+    speeds = (orbit.side * orbit.w_dot)[orbit.side != 0]
+    return float(min(np.min(speeds), np.min(orbit.spells["slowest"], initial=math.inf)))
 
 
 def _stick(point: Point) -> float:
     """Return the length of the shortest spell, to the power with which it falls as the distance to its end.
 
-    On the curve of such an end spells without length are not those that end next.
+    On the curve of such an end spells without length are not those that end next. With friction hops end where it
+    alone would hold the ball, and the time left until then falls as that distance itself.
     """
-    spells, r = point.orbit.spells, point.orbit.params.r
+    spells, p = point.orbit.spells, point.orbit.params
+    if len(spells) == 0:
+        return math.inf
+    r = p.r
     lengths = spells["t_release"] - spells["t_start"]
+    if getattr(p, "f", 0.0) > 0:
+        return float(np.min(lengths - [only_held(p, spell) for spell in spells]))
     shortest = float(np.min(lengths[lengths > 0], initial=math.inf))
     if isinstance(r, tuple):
         ball = point.orbit.word.balls[int(spells["contact"][np.argmin(lengths)])]
@@ -122,13 +132,18 @@ def _apart(point: Point) -> float:
     return tie_margin(point) if any(point.orbit.word.balls) else math.inf
 
 
+def _least(point: Point, name: str) -> float:
+    return float(np.min(point.orbit.spells[name], initial=math.inf))
+
+
 _MARGINS: tuple[tuple[str, Callable[[Point], float]], ...] = (
     (GRAZING, lambda point: point.orbit.min_clearance),
     (GRAZING, _speeds),
     (INCOMPLETE_CHATTER, _stick),
     (TIE, _apart),
-    (RELEASE_TANGENCY, lambda point: float(np.min(point.orbit.spells["falls"]))),
-    (RELEASE_TANGENCY, lambda point: float(np.min(point.orbit.spells["least_force"]))),
+    (RELEASE_TANGENCY, lambda point: _least(point, "falls")),
+    (RELEASE_TANGENCY, lambda point: _least(point, "least_force")),
+    *((kind, lambda point, kind=kind: rest_margins(point.orbit)[kind]) for kind in RESTS),
 )
 
 
@@ -168,4 +183,4 @@ def end_of(points: Sequence[Point], width: float) -> End | None:
         return None
     move = last.value - before.value
     found = what_vanishes(before, last, _NEAR * width / abs(move))
-    return None if found is None else End(found[0], move * found[1])
+    return None if found is None else End(found[0], float(move * found[1]))

@@ -1,4 +1,7 @@
-"""An orbit of balls in parallel that sticks, from a section of it (docs/sticking.md)."""
+"""An orbit that sticks, of balls in parallel or of another system than the VI-NES, from a section of it.
+
+docs/sticking.md, "Balls in parallel" and "A coil, friction or a spring".
+"""
 
 from __future__ import annotations
 
@@ -9,24 +12,25 @@ from typing import Any, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from vines.dynamics.kernels import constants, derivatives, flight, pull, tangent_product, turn, window_totals
+from vines.dynamics.kernels import constants, tangent_product, window_totals
 from vines.dynamics.kernels import rows as col
 from vines.dynamics.parallel import ParallelConstants
-from vines.dynamics.parallel.kernels import BALL, R_V2, R_X2, frame_with
+from vines.dynamics.parallel.kernels import BALL, R_X2
 from vines.dynamics.runs import measures_from
 from vines.errors import OrbitNotFound
-from vines.kernels import linked_njit, njit
-from vines.model import Word
+from vines.model import STOPS, Word
 from vines.orbits._assemble import asymmetry, begun_first
 from vines.orbits._contacts import completes, contacts, mark, slowest_followed
 from vines.orbits._floquet import sorted_multipliers, squared
 from vines.orbits._newton_of_balls import solve_round
 from vines.orbits._orbit import SPELL, Orbit
 from vines.orbits._own_word import own_word
-from vines.orbits._release_of_balls import Ran, Section, falling, run_on, run_round
-from vines.orbits._survey import NO_TURNING, inspect_flight
+from vines.orbits._release_of_balls import Ran, Section, run_on, run_round
+from vines.orbits._release_of_one import rides_alone
+from vines.orbits._riding_alone import clearance_of_one, fall_of_one, least_of_one
+from vines.orbits._riding_of_balls import clearance_of_balls, fall_of_balls, least_of_balls
 
-__all__ = ["Begun", "balls_orbit", "mirrored_balls", "rides_in_parallel"]
+__all__ = ["Begun", "balls_orbit", "by_sections", "mirrored_balls"]
 
 Floats = npt.NDArray[np.float64]
 
@@ -36,11 +40,7 @@ _SAME = 1e-9
 _ALMOST = 1e-5
 """The same before the symmetric solution is computed as such; also within which a contact is found again."""
 
-_SHORT = 1e-4
-"""Flights shorter than this turn once, away from the wall; after a release the ball has hardly left the wall before."""
-
-_PARTS = 64
-"""Parts of a spell in which a minimum of the contact force is looked for."""
+_LETTERS = {1: "L", -1: "R", 0: STOPS}
 
 
 class Begun(NamedTuple):
@@ -58,9 +58,9 @@ class _Contacts(NamedTuple):
     states: Floats
 
 
-def rides_in_parallel(p: Any) -> bool:
-    """Say whether a system has balls in parallel cavities."""
-    return isinstance(constants(p), ParallelConstants)
+def by_sections(p: Any) -> bool:
+    """Say whether orbits of a system that stick are found by its sections: all but the VI-NES and the impact pair."""
+    return rides_alone(p) or isinstance(constants(p), ParallelConstants)
 
 
 def balls_orbit(word: Word, p: Any, release: Begun, remark: str = "") -> Orbit:
@@ -107,21 +107,18 @@ def _ordered(word: Word, p: Any, section: Section, z: Floats, ran: Ran) -> _Cont
     marks, places = _read(p, section, z, ran)
     if len(marks) != len(word):
         return None
-    text = "".join(f"{_letter(side)}{ball if p.balls > 1 else ''}{'*' * star}" for side, ball, star in marks)
+    several = getattr(p, "balls", 1) > 1
+    text = "".join(f"{_LETTERS[side]}{ball if several else ''}{'*' * star}" for side, ball, star in marks)
     if own_word(f"{text}/{word.p}T", p) != word:
         return None
-    names = Word(f"{text}/{word.p}T").relabelled(p.alike)[1] if p.balls > 1 else {}
-    own = [(side, names.get(ball, ball) if p.balls > 1 else 0, star) for side, ball, star in marks]
+    names = Word(f"{text}/{word.p}T").relabelled(p.alike)[1] if several else {}
+    own = [(side, names.get(ball, ball) if several else 0, star) for side, ball, star in marks]
     wanted = list(zip(word.sides, word.balls, word.sticks, strict=True))
     t = section.phase(z) / p.Omega + ran.rows[places, col.TIME]
     starts = [k for k in range(len(own)) if own[k:] + own[:k] == wanted]
     k, t = begun_first(starts, word, p, t)
     states = ran.rows[places][:, [col.X1, col.V1, col.X2, col.V2]]
     return _Contacts([*places[k:], *places[:k]], t, np.concatenate([states[k:], states[:k]]))
-
-
-def _letter(side: int) -> str:
-    return "L" if side > 0 else "R"
 
 
 def _read(p: Any, section: Section, z: Floats, ran: Ran) -> tuple[list[tuple[int, int, bool]], list[int]]:
@@ -151,7 +148,7 @@ def _read(p: Any, section: Section, z: Floats, ran: Ran) -> tuple[list[tuple[int
 
 def _mark(rows: Floats, i: int) -> tuple[int, int, bool]:
     number = int(mark(rows, i))
-    return (1 if number > 0 else -1), abs(number), bool(completes(rows, len(rows), i))
+    return (number > 0) - (number < 0), abs(number), number != 0 and bool(completes(rows, len(rows), i))
 
 
 def _assembled(word: Word, p: Any, release: Begun, ran: Ran, met: _Contacts, half: Floats | None, remark: str) -> Orbit:
@@ -165,7 +162,7 @@ def _assembled(word: Word, p: Any, release: Begun, ran: Ran, met: _Contacts, hal
     jacobians = np.stack([tangent_product(c, twice, a, b) for a, b in pairwise(ends.tolist())])
     jacobians = np.roll(jacobians, turn_at, axis=0)
     symmetric = half is not None and asymmetry(word, duration, met.t, met.states) < _SAME
-    nothing = np.zeros(2 + 2 * p.balls - len(z), dtype=np.complex128)
+    nothing = np.zeros(jacobians.shape[1] - len(z), dtype=np.complex128)
     half_multipliers = None
     if symmetric and half is not None:
         half_multipliers = np.concatenate([sorted_multipliers(half), nothing])
@@ -173,9 +170,12 @@ def _assembled(word: Word, p: Any, release: Begun, ran: Ran, met: _Contacts, hal
     else:
         multipliers = np.concatenate([sorted_multipliers(ran.slopes), nothing])
     spells = _spells(word, p, twice, met)
-    instant, struck = _instant(rows, met.places[0]), rows[met.places][:, [col.A_V1, col.A_V2]]
+    instant = struck = None
+    if not rides_alone(p):
+        instant, struck = _instant(rows, met.places[0]), rows[met.places][:, [col.A_V1, col.A_V2]]
     for array in (met.t, met.states, jacobians, spells, instant, struck):
-        array.setflags(write=False)
+        if array is not None:
+            array.setflags(write=False)
     return Orbit(
         word=word,
         params=p,
@@ -186,7 +186,7 @@ def _assembled(word: Word, p: Any, release: Begun, ran: Ran, met: _Contacts, hal
         half_multipliers=half_multipliers,
         symmetric=symmetric,
         admissible=True,
-        min_clearance=_clearance(p, rows),
+        min_clearance=(clearance_of_one if rides_alone(p) else clearance_of_balls)(p, rows),
         violation_time=math.nan,
         violation_side=0,
         residual=float(np.abs(section.closing(p, ran, duration, z, 1.0)[0]).max()),
@@ -207,37 +207,14 @@ def _instant(rows: Floats, place: int) -> Floats:
     return np.append(rows[last, [col.X1, col.A_V1]], rows[last, R_X2:])
 
 
-def _clearance(p: Any, rows: Floats) -> float:
-    """Return the least distance of a turning point of a flight to the wall that it points at."""
-    c, least = constants(p), NO_TURNING
-    loaded = {0.0: c}
-    for row, tau in zip(rows[:-1], rows[1:, col.TAU].tolist(), strict=True):
-        if tau <= 2 * _SHORT:
-            continue
-        mode = float(row[col.MODE])
-        if mode not in loaded:
-            loaded[mode] = c._replace(free=frame_with(c, mode))
-        o = loaded[mode]
-        motion = flight(o, o.free, row[col.X1], row[col.A_V1], row[col.PHASE], 0.0)
-        x1, v1, _, _, _ = derivatives(o.free, o.Omega, *turn(o.free, o.Omega, *motion, _SHORT))
-        for k in range(p.balls):
-            if int(abs(mode)) >> k & 1:
-                continue
-            x2 = row[R_X2 + 2 * k] + _SHORT * (row[R_V2 + 2 * k] - 0.5 * p.G * _SHORT)
-            v2 = row[R_V2 + 2 * k] - p.G * _SHORT
-            phase = row[col.PHASE] + p.Omega * _SHORT
-            distance, _, _ = inspect_flight(o, p.beta[k], 0, x1, v1, x2, v2, phase, tau - _SHORT)
-            least = min(least, float(distance))
-    return least
-
-
 def _spells(word: Word, p: Any, twice: Floats, met: _Contacts) -> npt.NDArray[np.void]:
     """Return the spells of sticking in the order of the contacts: of each the last, at whose end the ball leaves."""
+    least, fall = (least_of_one, fall_of_one) if rides_alone(p) else (least_of_balls, fall_of_balls)
     starred = [k for k, sticks in enumerate(word.sticks) if sticks]
     out = np.empty(len(starred), dtype=SPELL)
     for spell, k in zip(out, starred, strict=True):
         place = met.places[k]
-        own = [i for i in range(place, len(twice)) if twice[i, BALL] == twice[place, BALL]]
+        own = [i for i in range(place, len(twice)) if _whose(twice[i]) == _whose(twice[place])]
         until = next((i for i in own[1:] if _leaves(twice, i, twice[place, col.SIDE])), own[-1])
         merges = [i for i in own if i < until and twice[i, col.KIND] == col.STICK]
         stick = merges[-1]
@@ -253,10 +230,17 @@ def _spells(word: Word, p: Any, twice: Floats, met: _Contacts) -> npt.NDArray[np
         spell["phase_start"], spell["phase_release"] = begin[col.PHASE], end[col.PHASE]
         spell["x1"], spell["v1"] = end[col.X1], end[col.V1]
         spell["slowest"] = slowest_followed(twice[hits])
-        riding = [(twice[i], twice[i + 1, col.TAU]) for i in range(stick, ends)]
-        spell["least_force"] = min(least_of_ride(constants(p), row, float(tau)) for row, tau in riding)
-        spell["falls"] = abs(falling(p, float(end[col.PHASE]), float(end[col.V1]))) if natural else math.inf
+        spell["falls"] = fall(p, end) if natural else math.inf
+        rides = [(twice[i], float(twice[i + 1, col.TAU])) for i in range(stick, ends)]
+        spell["least_force"] = min(least(p, row, tau) for row, tau in rides)
     return out
+
+
+def _whose(row: Floats) -> float:
+    """Return the number of the ball of an event, where there is one alone 0; -1 where a flight is begun afresh."""
+    if len(row) > col.ROW:
+        return float(row[BALL])
+    return 0.0 if row[col.KIND] in (col.IMPACT, col.STICK, col.RELEASE, col.STOP) else -1.0
 
 
 def _leaves(rows: Floats, i: int, side: float) -> bool:
@@ -265,36 +249,6 @@ def _leaves(rows: Floats, i: int, side: float) -> bool:
     if row[col.KIND] == col.RELEASE:
         return bool(row[col.V1] == row[col.V2])
     return bool(row[col.KIND] == col.IMPACT and row[col.SIDE] != side)
-
-
-@njit
-def _push(c, o, motion, side, tau):
-    """Return side (x1'' + G) of the loaded frame, and its derivative."""
-    _, _, a, j, _ = derivatives(o, c.Omega, *turn(o, c.Omega, *motion, tau))
-    return side * pull(c, a), side * j
-
-
-@linked_njit
-def least_of_ride(c, row, tau):
-    """Return the least side (x1'' + G) at a minimum within a time tau after a row where balls ride, inf if none."""
-    side = 1.0 if row[col.MODE] > 0.0 else -1.0
-    o = frame_with(c, row[col.MODE])
-    motion = flight(c, o, row[col.X1], row[col.A_V1], row[col.PHASE], 0.0)
-    least = math.inf
-    before = _push(c, o, motion, side, 0.0)[1]
-    for k in range(1, _PARTS + 1):
-        here = _push(c, o, motion, side, tau * k / _PARTS)[1]
-        if before < 0.0 <= here:
-            low, high = tau * (k - 1) / _PARTS, tau * k / _PARTS
-            for _ in range(60):
-                middle = 0.5 * (low + high)
-                if _push(c, o, motion, side, middle)[1] < 0.0:
-                    low = middle
-                else:
-                    high = middle
-            least = min(least, _push(c, o, motion, side, 0.5 * (low + high))[0])
-        before = here
-    return least
 
 
 def mirrored_balls(orbit: Orbit) -> Orbit:

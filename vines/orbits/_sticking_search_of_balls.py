@@ -1,9 +1,9 @@
-"""Orbits of balls in parallel that stick, of one word: Newton's method from simulations and from a grid of releases."""
+"""Orbits that stick, of one word, by sections of runs: Newton's method from simulations and a grid of releases."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import Any
 
 import numpy as np
@@ -19,7 +19,8 @@ from vines.orbits._general import check_word, same
 from vines.orbits._newton_of_balls import solve_round
 from vines.orbits._orbit import Orbit
 from vines.orbits._own_word import own_word
-from vines.orbits._release_of_balls import Moment, Release, Section, falling, releases_among, run_on, run_round
+from vines.orbits._release_of_balls import Moment, Release, Section, releases_among, run_on, run_round
+from vines.orbits._release_of_one import LetGo, rides_alone
 from vines.orbits._seeds import starts_of
 from vines.orbits._sticking_of_balls import Begun, balls_orbit, mirrored_balls
 from vines.orbits._sticking_search import repeats
@@ -60,7 +61,7 @@ def search_balls(word: Word, p: Any) -> tuple[list[Orbit], str]:
     """Return the different orbits of a word with a star that are found, each once, and how they were searched for."""
     how = "Newton's method from simulations and from a grid of releases of all balls: there may be more"
     found = _searched(word, p, IN_TURN)
-    if not found and len(set(p.beta)) < p.balls:
+    if not found and len(set(getattr(p, "beta", (1.0,)))) < getattr(p, "balls", 1):
         # Equal cavities: what arrives together after a common release may also be struck at once.
         found = _searched(word, p, TOGETHER)
         how += "; balls that arrive together are struck at once"
@@ -111,7 +112,7 @@ def sections_of(run: Trajectory, ties: str, periods: float) -> Iterator[tuple[Se
     """
     p, rows = run.params, run.rows
     late = rows[:, col.TIME] > run.t_end - periods * p.period
-    met = [(i, section) for i, section in releases_among(rows, p.balls, ties) if late[i]]
+    met = [(i, section) for i, section in _releases(p, rows, ties) if late[i]]
     for i, section in met[: -_LATE - 1 : -1]:
         yield section, section.read(rows[i])
     if met or not (rows[late, col.KIND] == col.STICK).any():
@@ -123,6 +124,11 @@ def sections_of(run: Trajectory, ties: str, periods: float) -> Iterator[tuple[Se
     if flown_to is not None:
         moment = Moment(float(flown_to[-1, col.PHASE]), ties)
         yield moment, moment.read(flown_to[-1])
+
+
+def _releases(p: Any, rows: Floats, ties: str) -> Sequence[tuple[int, Release]]:
+    """Return the rows of releases, each with its section."""
+    return LetGo(1).among(rows) if rides_alone(p) else releases_among(rows, p.balls, ties)
 
 
 def _add(
@@ -160,7 +166,9 @@ def _all_ride(word: Word, p: Any, ties: str) -> Iterator[Release]:
     for side in (1, -1):
         marks = zip(word.sides, word.balls, word.sticks, strict=True)
         riders = {ball for wall, ball, sticks in marks if sticks and wall == side}
-        if len(riders) == p.balls:
+        if riders and rides_alone(p):
+            yield LetGo(side)
+        elif len(riders) == getattr(p, "balls", 1):
             yield Release(side, tuple(range(p.balls)), p.balls, ties)
 
 
@@ -182,7 +190,7 @@ def _of_grid(word: Word, p: Any, section: Release, fastest: float, mirrored: boo
     releases = np.empty((_GRID, _GRID, 2))
     for i, phase in enumerate((2.0 * math.pi * places).tolist()):
         for j, speed in enumerate((fastest * places**2).tolist()):
-            z = releases[i, j] = (phase, falling(p, phase, 0.0) + section.side * speed)
+            z = releases[i, j] = (phase, section.falling(p, phase, 0.0) + section.side * speed)
             ran = run_round(p, section, span, np.array(z), target)
             if ran is not None:
                 misses[i, j] = np.abs(section.closing(p, ran, span, np.array(z), sign)[0]).max()
@@ -211,13 +219,15 @@ def refine_balls(word: Word, p: Any, guess: Orbit | npt.ArrayLike) -> Orbit:
         section, z = guess.release
     else:
         given = np.asarray(guess, dtype=np.float64)
-        if p.balls > 1 or given.shape != (2,) or not np.isfinite(given).all():
-            numbers = ", or time and v1 of the release after its first star, two numbers" if p.balls == 1 else ""
+        one = getattr(p, "balls", 1) == 1
+        if not one or given.shape != (2,) or not np.isfinite(given).all():
+            numbers = ", or time and v1 of the release after its first star, two numbers" if one else ""
             raise ParameterError(
                 f"the guess for {word}, which sticks, has to be an orbit{numbers}; it is "
                 f"{np.array2string(given, precision=4, threshold=8)}"
             )
-        section = Release(word.sides[word.sticks.index(True)], (0,), 1)
+        side = word.sides[word.sticks.index(True)]
+        section = LetGo(side) if rides_alone(p) else Release(side, (0,), 1)
         z = np.array([float(given[0] * p.Omega) % (2 * math.pi), given[1]])
     solved, left = solve_round(p, section, word.p * p.period, z, mirrored=False, most=_ROUNDS)
     if not math.isfinite(left):

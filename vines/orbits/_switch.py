@@ -16,9 +16,11 @@ from vines.orbits._general import origin, refine
 from vines.orbits._joined import BRANCHING, family_through, is_joint, left_family, mirror_image, unfolded
 from vines.orbits._orbit import Orbit
 from vines.orbits._problem import Problem
+from vines.orbits._slid import refine_slid
+from vines.orbits._slid_round import slides
 from vines.orbits._sticking_family import StickingProblem
 from vines.orbits._sticking_family_of_balls import BallsProblem
-from vines.orbits._sticking_of_balls import rides_in_parallel
+from vines.orbits._sticking_of_balls import by_sections
 from vines.orbits._sticking_search import refine_sticking
 from vines.orbits._sticking_search_of_balls import refine_balls
 
@@ -34,11 +36,11 @@ _ITERATIONS = 15
 _CLOSE = 1e-6
 """Newton step relative to the step off the family, after which the closing equations take over."""
 
-_STICKING = 1e-11
-"""The same of an orbit that sticks, which is run from release to release and not flight by flight."""
-
 _RESIDUAL = 1e-13
 """Largest residual of an orbit that was reached, in a cavity that is larger than the motion."""
+
+_RUN = 1e-11
+"""The same of an orbit that sticks or stops, which is run as a whole and not flight by flight."""
 
 
 @stated(ParameterError, bifurcation=Of("Bifurcation", how="one of Branch.bifurcations"))
@@ -97,8 +99,8 @@ def _unfolded(bifurcation: Bifurcation) -> Problem:
     if not orbit.word.sticking:
         return family_through(unfolded(bifurcation.type, orbit), parameter, symmetric=False)
     twice = bifurcation.type == "period_doubling"
-    word = Word(f"{orbit.word.letters * 2}/{2 * orbit.word.p}T") if twice else orbit.word
-    form = BallsProblem if rides_in_parallel(orbit.params) else StickingProblem
+    word = orbit.word.doubled if twice else orbit.word
+    form = BallsProblem if by_sections(orbit.params) else StickingProblem
     return form(orbit, parameter, word=word, symmetric=False)
 
 
@@ -136,14 +138,15 @@ def _step_off(problem: Problem, step: float) -> Orbit | None:
         orbit = _solver(here)(here.word, here.params, here)
     except OrbitNotFound:
         return None
-    allowed = (_STICKING if orbit.word.sticking else _RESIDUAL) * (1.0 + _size(orbit.params))
+    by_runs = orbit.word.sticking or slides(orbit.params)
+    allowed = (_RUN if by_runs else _RESIDUAL) * (1.0 + _size(orbit.params))
     return orbit if orbit.residual <= allowed and origin(orbit) is None and not orbit.symmetric else None
 
 
 def _solver(orbit: Orbit) -> Callable[[Word, Any, Orbit], Orbit]:
     if not orbit.word.sticking:
-        return refine
-    return refine_balls if rides_in_parallel(orbit.params) else refine_sticking
+        return refine_slid if slides(orbit.params) else refine
+    return refine_balls if by_sections(orbit.params) else refine_sticking
 
 
 def _size(p: Any) -> float:

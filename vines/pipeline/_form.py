@@ -10,15 +10,14 @@ import msgspec
 
 from vines import schema
 from vines.catalogue import Deposit
-from vines.model import VI_NES, most_balls, system_names
+from vines.model import VI_NES, counted, system_names
 from vines.pipeline._kinds import Kind, kinds
 from vines.pipeline._names import NAME
-from vines.pipeline._parameters import BALLS, quantities, stems
+from vines.pipeline._parameters import COUNTS, counts_of, quantities, stems
 
 __all__ = ["json_schema"]
 
 _NUMBER = {"type": "number"}
-_COUNT = {"type": "integer", "minimum": 1, "description": "How many balls there are"}
 _NUMBERS = {"anyOf": [_NUMBER, {"type": "array", "items": _NUMBER, "minItems": 1}]}
 _SYSTEM = "The system, vi_nes if nothing is said"
 
@@ -54,7 +53,7 @@ def json_schema() -> dict[str, Any]:
                 "type": "object",
                 "description": "Parameters of every stage that takes them",
                 "additionalProperties": False,
-                "properties": {**dict.fromkeys(parameters, _NUMBERS), BALLS: _COUNT},
+                "properties": {**dict.fromkeys(parameters, _NUMBERS), **{key: _count(key) for key in COUNTS}},
             },
             "physical": _physical(physical),
             "system": {"enum": list(system_names()), "description": _SYSTEM},
@@ -80,11 +79,15 @@ def json_schema() -> dict[str, Any]:
     }
 
 
+def _count(key: str) -> dict[str, Any]:
+    return {"type": "integer", "minimum": 1, "description": f"How many {key} there are"}
+
+
 def _all_systems(spec: Kind) -> dict[str, Kind]:
-    """Return what a kind is for each system that it can do, with as many balls as there may be."""
+    """Return what a kind is for each system that it can do, with as many balls or modes as there may be."""
     if not spec.parameters:
         return {spec.system: spec}
-    return {spec.system: spec} | {name: spec.of_system(name, most_balls(name)) for name in spec.systems}
+    return {spec.system: spec} | {name: spec.of_system(name, counted(name)[1]) for name in spec.systems}
 
 
 def _key(kind: str, system: str) -> str:
@@ -149,7 +152,7 @@ def _stage(spec: Kind, options: type[msgspec.Struct]) -> dict[str, Any]:
             "additionalProperties": False,
             "properties": {
                 **dict.fromkeys(stems(axes), _NUMBERS if spec.balls else _NUMBER),
-                **({BALLS: _COUNT} if spec.balls else {}),
+                **({counts_of(spec): _count(counts_of(spec))} if spec.balls else {}),
             },
         }
         properties["system"] = {"const": spec.system, "description": _SYSTEM}

@@ -63,8 +63,9 @@ class Kind:
         name, each with `options` that are a subclass of the `options` here. The key is the tag field of both.
     code : callable, optional
         ``code(options)`` returns what the body calls beside its imports, as `body`, so that its code counts too.
-    again : {"", "points", "starts"}
-        What of it ``vines verify --recompute`` can compute again in seconds from a row alone: a point, or a start.
+    again : {"", "points", "long_points", "starts"}
+        What of it ``vines verify --recompute`` can compute again from a row alone: a point in seconds, a point that
+        takes longer, of which one of each result is drawn, or a start.
     scaled : tuple of str
         Parameters that its rows may have other values of than a declaration fixes, because it scales them.
     kernels : tuple of str, or callable
@@ -72,14 +73,14 @@ class Kind:
         others; ``kernels(options, carried)`` where it depends on the stage.
     systems : mapping of str to callable
         What it is for each other system that it can do beside the VI-NES: ``make(balls)`` returns the kind of the same
-        name with the parameters, options, tables and body for that system with so many numbered balls (0 where none
-        has a number). Its options have the field ``system``, which so belongs to the key.
+        name with the parameters, options, tables and body for that system with so many numbered balls or modes (0 where
+        none has a number). Its options have the field ``system``, which so belongs to the key.
     meaningless : mapping of str to str
         Systems that it does not do for what they are, and why; the refusal says so.
     system : str
         The system that it is for.
     balls : int
-        How many balls of that system have numbers.
+        How many balls, or modes, of that system have numbers.
     """
 
     name: str
@@ -99,7 +100,7 @@ class Kind:
     fits: Callable[[Any, Any], None] | None = None
     variants: Register[Any] | None = None
     code: Callable[[Any], tuple[str, ...]] | None = None
-    again: Literal["", "points", "starts"] = ""
+    again: Literal["", "points", "long_points", "starts"] = ""
     scaled: tuple[str, ...] = ()
     kernels: tuple[str, ...] | Callable[[Any, bool], tuple[str, ...]] = ()
     systems: Mapping[str, Callable[[int], Kind]] = field(default_factory=dict)

@@ -10,19 +10,19 @@ from fractions import Fraction
 from typing import Any
 
 from vines.errors import DeclarationError, VinesError
-from vines.model import Expression, dimensionless, most_balls, read_system, system_names
+from vines.model import Expression, counted, dimensionless, read_system, system_names
 from vines.pipeline._axes import Axis, exact
 from vines.pipeline._kinds import Kind
 from vines.pipeline._links import linked_values, read_links
 from vines.pipeline._options import known
 from vines.pipeline._written import written
 
-__all__ = ["BALLS", "Given", "balls_of", "quantities", "read_params", "stems"]
+__all__ = ["COUNTS", "Given", "count_of", "counts_of", "quantities", "read_params", "stems"]
 
 _NUMBERED = re.compile(r".*_([1-9])")
 
-BALLS = "balls"
-"""The key under ``params`` that counts balls; it is no parameter, and in no key of results."""
+COUNTS = ("balls", "modes")
+"""The keys under ``params`` that count what has numbers; they are no parameters, and in no key of results."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,7 +36,9 @@ class Given:
     where : str
         File and stage, for messages.
     count : int
-        How many balls it says that there are; 0 where it leaves that to lists and numbered names.
+        How many balls, or modes, it says that there are; 0 where it leaves that to lists and numbered names.
+    counts : str
+        The key that says so.
     lists : dict of str to int
         The parameters that it gives as lists, and how long these are.
     """
@@ -45,6 +47,7 @@ class Given:
     physical: dict[str, Fraction]
     where: str
     count: int = 0
+    counts: str = ""
     lists: dict[str, int] = field(default_factory=dict)
 
     @classmethod
@@ -58,18 +61,19 @@ class Given:
         """
         params, physical = (_flat(form.get(key, {}), f"{where}{key}") for key in ("params", "physical"))
         lists = {name: len(value) for name, value in form.get("params", {}).items() if isinstance(value, list)}
-        if BALLS not in params:
+        key = next((each for each in COUNTS if each in params), "")
+        if not key:
             return cls(params, physical, where, lists=lists)
-        count, most = params.pop(BALLS), max(map(most_balls, system_names()))
+        count, most = params.pop(key), max(most for what, most in map(counted, system_names()) if f"{what}s" == key)
         if count not in range(1, most + 1):
-            raise DeclarationError(f"{where}params.{BALLS} is {float(count):g}; balls are counted, 1 to {most}")
+            raise DeclarationError(f"{where}params.{key} is {float(count):g}; {key} are counted, 1 to {most}")
         for name, length in lists.items():
             if length != count:
                 raise DeclarationError(
-                    f"{where}params.{name} has {length} values, and {BALLS} = {count}; give a number for all "
-                    "balls, or one for each"
+                    f"{where}params.{name} has {length} values, and {key} = {count}; give a number for all "
+                    f"{key}, or one for each"
                 )
-        return cls(params, physical, where, int(count), lists)
+        return cls(params, physical, where, int(count), key, lists)
 
     def check(self, kinds: Iterable[Kind]) -> None:
         """Refuse what no kind takes.
@@ -84,19 +88,20 @@ class Given:
         names = sorted({name for each in specs for name in stems(each.parameters)})
         known_params(self.params, names, physical, self.where)
         known(self.physical, physical, f"{self.where}physical")
-        self.check_count(any(each.balls for each in specs))
+        self.check_count({counts_of(each) for each in specs})
 
-    def check_count(self, numbered: bool) -> None:
-        """Refuse a count of balls where the system has one, without a number.
+    def check_count(self, keys: Collection[str]) -> None:
+        """Refuse a count of balls, or modes, where the system has one, without a number.
 
         Raises
         ------
         DeclarationError
         """
-        if self.count and not numbered:
+        if self.count and self.counts not in keys:
+            systems = " or ".join(f'"{name}"' for name in system_names() if f"{counted(name)[0]}s" == self.counts)
             raise DeclarationError(
-                f"{self.where}params.{BALLS} is {self.count}; the system has one ball, which is not counted: leave it "
-                'out, or give system = "parallel"'
+                f"{self.where}params.{self.counts} is {self.count}; the system has one {self.counts[:-1]}, which is "
+                f"not counted: leave it out, or give system = {systems}"
             )
 
 
@@ -112,31 +117,37 @@ def known_params(given: Mapping[str, Fraction], names: list[str], physical: list
         if name not in names and stem in names and _NUMBERED.fullmatch(name):
             values = ", ".join(f"{float(value):g}" for each, value in given.items() if each[:-2] == stem)
             raise DeclarationError(
-                f"{where}params.{stem} is a list, a number for each ball, and one ball has no list; "
+                f"{where}params.{stem} is a list, a number for each ball or mode, and one alone has no list; "
                 f"to vary it, use vary.{stem} = [{values}] in a stage"
             )
     known(given, names, f"{where}params")
 
 
-def balls_of(system: str, names: Iterable[str], count: int = 0) -> int:
-    """Return how many balls a declaration counts or numbers; 0 where the balls of a system have no numbers.
+def counts_of(spec: Kind) -> str:
+    """Return the key that counts what has numbers in the system of a kind; empty where nothing has."""
+    return f"{counted(spec.system)[0]}s" if spec.balls else ""
+
+
+def count_of(system: str, names: Iterable[str], count: int = 0) -> int:
+    """Return how many balls, or modes, a declaration counts or numbers; 0 where those of a system have no numbers.
 
     Raises
     ------
     DeclarationError
-        If a name has a higher number than there are balls.
+        If a name has a higher number than there are.
 
     Examples
     --------
-    >>> balls_of("parallel", ["A", "mu_1", "beta_3"]), balls_of("parallel", ["A"], 2), balls_of("impact_pair", ["B"])
+    >>> count_of("parallel", ["A", "mu_1", "beta_3"]), count_of("modes", ["A"], 2), count_of("impact_pair", ["B"])
     (3, 2, 0)
     """
-    if system not in system_names() or not most_balls(system):
+    what, most = counted(system) if system in system_names() else ("", 0)
+    if not most:
         return 0
     numbers = {name: int(found[1]) for name in names if (found := _NUMBERED.fullmatch(name))}
     for name, number in numbers.items():
         if number > count > 0:
-            raise DeclarationError(f"{name} is of ball {number}, and {BALLS} = {count}; give as many as there are")
+            raise DeclarationError(f"{name} is of {what} {number}, and {what}s = {count}; give as many as there are")
     return count or max(numbers.values(), default=1)
 
 
@@ -156,7 +167,7 @@ def read_params(
     """
     physical = quantities(spec)
     known_params(own.params, stems(spec.parameters), physical, f"{where}.")
-    own.check_count(bool(spec.balls))
+    own.check_count({counts_of(spec)})
     known(own.physical, physical, f"{where}.physical")
     varied = {axis.name for axis in axes}
     mine, theirs = (_spread(given.params, spec) for given in (own, common))
@@ -201,8 +212,8 @@ def _whole_lists(spec: Kind, lists: Mapping[str, int], given: Collection[str], w
         for number in range(length + 1, spec.balls + 1):
             if f"{name}_{number}" in spec.parameters and f"{name}_{number}" not in given:
                 raise DeclarationError(
-                    f"{where}: params.{name} is a list of {length}, and there are {spec.balls} balls; give a number "
-                    "for all balls, or one for each"
+                    f"{where}: params.{name} is a list of {length}, and there are {spec.balls} {counts_of(spec)}; give "
+                    f"a number for all {counts_of(spec)}, or one for each"
                 )
 
 
@@ -250,7 +261,7 @@ def _quantities(system: str, balls: int, parameters: tuple[str, ...]) -> tuple[s
 
 
 def stems(parameters: Iterable[str]) -> list[str]:
-    """Return names of parameters, and those that stand for one of each ball."""
+    """Return names of parameters, and those that stand for one of each ball or mode."""
     return list(_stems(tuple(parameters)))
 
 

@@ -22,7 +22,7 @@ from vines.pipeline._kinds import Kind, kind
 from vines.pipeline._links import linked_values
 from vines.pipeline._names import NAME, RESERVED
 from vines.pipeline._options import known, option_names, read_options
-from vines.pipeline._parameters import Given, balls_of, read_params
+from vines.pipeline._parameters import Given, count_of, read_params
 from vines.pipeline._points import read_carry, read_refine, read_zipped
 from vines.pipeline._written import written
 from vines.places import find_root
@@ -199,7 +199,7 @@ def _kind(table: object, common: Given, system: str, where: str) -> Kind:
     names = [*own.params, *own.physical, *(name for each in tables for name in each)]
     try:
         count = own.count or common.count
-        return spec.of_system(system, balls_of(system, [*names, *common.params, *common.physical], count))
+        return spec.of_system(system, count_of(system, [*names, *common.params, *common.physical], count))
     except VinesError as error:
         raise type(error)(f"{where}: {error}") from None
 

@@ -68,14 +68,15 @@ def of_system(name: str) -> Table:
 
 
 def _of_balls(entry: dict[str, Any], system: System) -> list[dict[str, Any]]:
-    """Return an entry, one a ball where it is said to be there for each, none where its parameter is not there."""
+    """Return an entry, one a ball or a mode where it is there for each, none where its parameter is not there."""
     entry = dict(entry)
     if entry.pop("beside", None) not in (None, *(each.name for each in system.parameters)):
         return []
     if "each" not in entry:
         return [entry]
     rest = {key: value for key, value in entry.items() if key != "each"}
+    what = entry["each"]
     return [
-        rest | {"name": f"{rest['name']}_{ball}", "description": f"{rest['description']}, ball {ball}"}
-        for ball in range(1, system.balls + 1)
+        rest | {"name": f"{rest['name']}_{number}", "description": f"{rest['description']}, {what} {number}"}
+        for number in range(1, (system.modes if what == "mode" else system.balls) + 1)
     ]

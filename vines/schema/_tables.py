@@ -32,8 +32,8 @@ def tables() -> dict[str, Table]:
 
     Examples
     --------
-    >>> [name for name in tables() if "branches" in name and name < "i"]
-    ['branches', 'cubic_barriers_branches', 'drag_branches', 'friction_branches', 'hybrid_branches']
+    >>> [name for name in tables() if "branches" in name and name < "f"]
+    ['branches', 'cubic_barriers_branches', 'drag_branches', 'duffing_branches']
     """
     return {name: _table(name) for name in dict.fromkeys([*_names(), *brought(GROUP)])}
 

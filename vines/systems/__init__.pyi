@@ -1,9 +1,11 @@
 from ._cubic_barriers import CubicBarriers as CubicBarriers
 from ._drag import Drag as Drag
+from ._duffing import Duffing as Duffing
 from ._friction import Friction as Friction
 from ._harvest import Harvest as Harvest
 from ._hybrid import Hybrid as Hybrid
 from ._impact_pair import ImpactPair as ImpactPair
+from ._modes import Modes as Modes
 from ._parallel import Parallel as Parallel
 from ._register import names as names
 from ._register import parameters as parameters

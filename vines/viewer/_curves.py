@@ -6,8 +6,10 @@ import numpy as np
 import rerun as rr
 
 from vines.model import VI_NES
+from vines.viewer._called import NO_STOPS, Called
 from vines.viewer._clock import Clock
-from vines.viewer._style import BALL, BASE, BESIDE, DAMPER, IMPACTS, LEFT, LINE, MASS, RIGHT, SPRING, STORED
+from vines.viewer._impacts import bars_of
+from vines.viewer._style import BALL, BASE, BESIDE, DAMPER, IMPACTS, LEFT, LINE, MASS, RIGHT, SPRING, STOPPED, STORED
 
 __all__ = ["balance", "balance_of", "curves", "lines", "running"]
 
@@ -51,19 +53,26 @@ def curves(
     clock: Clock,
     *,
     sprung: bool = True,
+    names: Called | None = None,
+    stops: np.ndarray = NO_STOPS,
+    modal: bool = False,
 ) -> None:
     """Send all curves and the marks of the impacts on them.
 
-    Parameters are those of `vines.viewer._scene.cavity`; `impacts` has the columns of ``vines.v1.Impact``.
+    Parameters are those of `vines.viewer._scene.cavity`; `impacts` has the columns of ``vines.v1.Impact``, and with
+    `modal` energies of the frame are those of its modes.
     """
+    names = names or Called()
     x1, x2 = states["x1"], states["x2"]
     indexes = clock.columns(states["t"])
     # The LEFT end is at x1 - 1: there x2 = x1 - 1, so w = x1 - x2 = +1.
     ends: list[tuple[str, np.ndarray, _Colour]] = [
-        ("right end, x1 + 1", x1 + 1.0, RIGHT),
-        ("ball, x2", x2, BALL),
-        ("left end, x1 − 1", x1 - 1.0, LEFT),
+        (f"right {names.wall}, x1 + 1", x1 + 1.0, RIGHT),
+        (f"{names.body}, x2", x2, BALL),
+        (f"left {names.wall}, x1 − 1", x1 - 1.0, LEFT),
     ]
+    if not names.walls:
+        ends = [(f"{names.frame}, x1", x1, LINE), ends[1]]
     if "x3" in states:
         ends.append(("mass on the spring, x3", states["x3"], BESIDE))
     lines(rec, f"{root}/ends", ends, indexes)
@@ -71,10 +80,13 @@ def curves(
     lines(rec, f"{root}/w_dot/rate", [("w'", states["w_dot"], LINE)], indexes)
     energies: list[tuple[str, np.ndarray, _Colour]] = [
         ("total", _stored(states), MASS),
-        ("mass, v1²/2", states["kinetic_1"], LINE),
-        ("spring, (x1 − e)²/2", states["potential"], SPRING),
-        ("ball, µ v2²/2", states["kinetic_2"], BALL),
+        (f"{names.frame}, v1²/2", states["kinetic_1"], LINE),
+        (names.stored, states["potential"], SPRING),
+        (f"{names.body}, µ v2²/2", states["kinetic_2"], BALL),
     ]
+    if modal:
+        energies[1] = ("modes, Σ q'²/2", states["kinetic_1"], LINE)
+        energies[2] = ("springs, Σ ω²(q − γ e)²/2", states["potential"], SPRING)
     if "x3" in states:
         of_frame = states["potential"] - states["spring"]
         energies[2] = ("spring, (x1 − e)²/2", of_frame, SPRING)
@@ -83,7 +95,14 @@ def curves(
         weight = ("ball, G x2", states["potential"], SPRING)
         energies = [energies[0], weight, ("ball, v2²/2", states["kinetic_2"], BALL)]
     lines(rec, f"{root}/energy", energies, indexes)
-    running(rec, root, balance(states), indexes)
+    running(rec, root, balance(states), indexes, names.lost)
+    if len(stops):
+        held = np.interp(stops[:, 0], states["t"], states["w"])
+        for part, height in (("w", held), ("w_dot", np.zeros_like(held))):
+            path = f"{root}/{part}/stopped"
+            rec.log(path, rr.SeriesLines(colors=STOPPED, widths=5.0, names="stop in mid-cavity"), static=True)
+            times, bars = bars_of(stops, height)
+            rec.send_columns(path, indexes=clock.columns(times), columns=rr.Scalars.columns(scalars=bars))
 
     for name, side, colour in (("left", 1, LEFT), ("right", -1, RIGHT)):
         hits = impacts["side"] == side
@@ -103,11 +122,17 @@ def curves(
             rec.send_columns(marks, indexes=times, columns=rr.Scalars.columns(scalars=values[hits]))
 
 
-def running(rec: rr.RecordingStream, root: str, parts: dict[str, np.ndarray], indexes: list[rr.TimeColumn]) -> None:
-    """Send the curves of the running balance."""
+def running(
+    rec: rr.RecordingStream,
+    root: str,
+    parts: dict[str, np.ndarray],
+    indexes: list[rr.TimeColumn],
+    lost: str = Called.lost,
+) -> None:
+    """Send the curves of the running balance; `lost` says what that of the damper holds."""
     series: list[tuple[str, np.ndarray, _Colour]] = [
         ("work of the base", parts["base_work"], BASE),
-        ("lost in the damper", parts["damper_loss"], DAMPER),
+        (lost, parts["damper_loss"], DAMPER),
         ("lost in impacts", parts["impact_loss"], IMPACTS),
         ("stored", parts["stored"], STORED),
     ]

@@ -8,6 +8,7 @@ import numpy as np
 
 from vines.logs import Log
 from vines.packages import need
+from vines.viewer._called import called, stops_of
 from vines.viewer._clock import Clock
 from vines.viewer._scene import DRIVEN
 
@@ -18,6 +19,7 @@ __all__ = ["Film"]
 
 _LEFT, _RIGHT, _MASS, _BASE, _SPRING = "#d62728", "#1f77b4", "#444444", "#2ca02c", "#888888"
 _BALLS = ("#e69f00", "#cc79a7", "#009e73", "#56b4e9", "#8c564b", "#7f7f7f", "#bcbd22", "#17becf")
+_STOPPED = "#8f949c"
 _RADIUS = 0.09
 """Of the drawn ball, b; the ends are drawn as much further out, so that they touch exactly at an impact."""
 _TRACK = 1.0
@@ -52,7 +54,8 @@ class Film:
         longest = max(halves)
         reach = float(np.abs(self._x1).max())
         self._mount = -(reach + longest + 0.9)
-        sprung = run.system not in DRIVEN
+        sprung, names = run.system not in DRIVEN, called(run)
+        self._stopped = [(times >= begin) & (times <= end) for begin, end in stops_of(run)]
         above, below = figure.subplots(2, 1, height_ratios=[0.9 + 0.5 * len(tables), 1.2])
         left = self._mount - 0.3 if sprung else -(reach + longest + 0.4)
         above.set(xlim=(left, reach + longest + 0.4), ylim=(-len(tables) * _TRACK + 0.5, 0.55))
@@ -63,7 +66,7 @@ class Film:
         for k, (ball, half) in enumerate(zip(tables, halves, strict=True)):
             y, inner = -k * _TRACK, half + _RADIUS
             colour = _BALLS[(ball - 1) % len(_BALLS)]
-            for side, of_side in ((-1, _LEFT), (1, _RIGHT)):
+            for side, of_side in ((-1, _LEFT), (1, _RIGHT)) if names.walls else ():
                 x = np.full(2, side * (inner + 0.04))
                 self._moving.append((above.plot(x, [y - 0.3, y + 0.3], color=of_side, lw=5)[0], x))
             for edge in (-0.34, 0.34):
@@ -87,10 +90,12 @@ class Film:
             name = f"ball {ball}" if run.balls else "w"
             colour = _BALLS[(ball - 1) % len(_BALLS)]
             below.plot(cycles, table["w"].to_numpy()[shown] / half, color=colour, lw=1.2, label=name)
-        for side, of_side in ((1, _LEFT), (-1, _RIGHT)):
+        for side, of_side in ((1, _LEFT), (-1, _RIGHT)) if names.walls else ():
             below.axhline(side, color=of_side, lw=1)
         self._cursor = below.axvline(cycles[0] if len(cycles) else 0.0, color="black", lw=1)
-        below.set(xlabel="forcing cycles", ylabel="w/β" if run.balls else "w = (x1 − x2)/b", ylim=(-1.15, 1.15))
+        below.set(xlabel="forcing cycles", ylabel="w/β" if run.balls else "w = (x1 − x2)/b")
+        widest = 1.0 if names.walls else max(1.0, float(np.abs(states["w"].to_numpy()).max()))
+        below.set(ylim=(-1.15 * widest, 1.15 * widest))
         below.set(xlim=(self._cycles[0], self._cycles[-1]))
         if run.balls:
             place = {"loc": "lower right", "bbox_to_anchor": (1.0, 1.0), "borderaxespad": 0.2}
@@ -101,8 +106,10 @@ class Film:
         x1 = self._x1[k]
         for line, x in self._moving:
             line.set_xdata(x + x1)
-        for (disc, y), x2 in zip(self._balls, self._x2, strict=True):
+        for number, ((disc, y), x2) in enumerate(zip(self._balls, self._x2, strict=True)):
             disc.set_center((x2[k], y))
+            if self._stopped:
+                disc.set_color(_STOPPED if any(there[k] for there in self._stopped) else _BALLS[number])
         if self._beside is not None and self._x3 is not None:
             # A mass on a spring beside the ball, under the middle of the cavity.
             self._beside.set_xdata([x1, self._x3[k]])

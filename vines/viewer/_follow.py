@@ -15,6 +15,7 @@ import rerun as rr
 from vines.errors import ViewerError
 from vines.logs import Tail
 from vines.schema import numpy_dtype
+from vines.viewer._called import called_in
 from vines.viewer._clock import SIM_TIME, Clock
 from vines.viewer._curves import curves
 from vines.viewer._impacts import lanes
@@ -147,8 +148,9 @@ class _Run:
         self._impacts = []
         of_states = {name: states[name] for name in states.dtype.names or ()}
         of_impacts = {name: waiting[name] for name in waiting.dtype.names or ()}
-        cavity(self._rec, "/run/cavity", of_states, self._clock, reach=_REACH)
-        curves(self._rec, "/run", of_states, of_impacts, self._clock)
+        names = called_in(self._tail.system, self._tail.parameters)
+        cavity(self._rec, "/run/cavity", of_states, self._clock, reach=_REACH, walls=names.walls)
+        curves(self._rec, "/run", of_states, of_impacts, self._clock, names=names)
         lanes(self._rec, "/run/lanes", of_states, of_impacts, self._clock)
         send_impact_log(self._rec, "/run/impacts", of_impacts, self._clock)
         self._rec.flush()
@@ -157,7 +159,9 @@ class _Run:
         Omega = self._tail.parameters.get("Omega")
         period = 2 * math.pi / (Omega or 1.0)
         times = (0.0, math.inf, 0.0, math.inf)
-        shown = Shown("/run", self._tail.name, *times, period, _REACH, following=True, timeline=SIM_TIME)
+        names = called_in(self._tail.system, self._tail.parameters)
+        moving = {"following": True, "timeline": SIM_TIME, "called": names}
+        shown = Shown("/run", self._tail.name, *times, period, _REACH, **moving)
         self._rec = rec = self._show.recording(self._tail.name, following(shown))
         self._clock = Clock(float(states["t"][0]), float(states["phase"][0]), Omega)
         rows = "\n".join(f"| {key} | {value:.10g} |" for key, value in self._tail.parameters.items())

@@ -7,11 +7,12 @@ from collections.abc import Sequence
 import numpy as np
 import rerun as rr
 
+from vines.viewer._called import NO_STOPS
 from vines.viewer._clock import Clock
 from vines.viewer._scene import write
-from vines.viewer._style import BALL, BALLS, GRID, LEFT, RIGHT
+from vines.viewer._style import BALL, BALLS, GRID, LEFT, RIGHT, STOPPED
 
-__all__ = ["DIAL_BOUNDS", "LANES", "dial", "lanes"]
+__all__ = ["DIAL_BOUNDS", "LANES", "bars_of", "dial", "lanes"]
 
 DIAL_BOUNDS = ((-1.75, 1.75), (-1.62, 1.62))
 """What the view of the dial shows; its circle has radius 1."""
@@ -96,8 +97,9 @@ def lanes(
     states: dict[str, np.ndarray],
     impacts: dict[str, np.ndarray],
     clock: Clock,
+    stops: np.ndarray = NO_STOPS,
 ) -> None:
-    """Draw impacts as marks on two lanes, and spells on which the ball sticks as bars.
+    """Draw impacts as marks on two lanes, and spells in which the ball sticks, or stops between the walls, as bars.
 
     Parameters are those of `vines.viewer._scene.cavity`; `impacts` has the columns of ``vines.v1.Impact``.
     """
@@ -129,3 +131,21 @@ def lanes(
                 indexes=clock.columns(impacts["t"][hits]),
                 columns=rr.Scalars.columns(scalars=np.full(hits.sum(), float(side))),
             )
+    if len(stops):
+        path = f"{root}/stopped"
+        rec.log(path, rr.SeriesLines(colors=STOPPED, widths=7.0, names="stop in mid-cavity"), static=True)
+        times, bars = bars_of(stops)
+        rec.send_columns(path, indexes=clock.columns(times), columns=rr.Scalars.columns(scalars=bars))
+
+
+def bars_of(spells: np.ndarray, heights: np.ndarray | float = 0.0) -> tuple[np.ndarray, np.ndarray]:
+    """Return times and values of a curve that is there in some spells, shape (n, 2), only.
+
+    Examples
+    --------
+    >>> bars_of(np.array([[1.0, 2.0], [4.0, 5.0]]))[1]
+    array([ 0.,  0., nan,  0.,  0., nan])
+    """
+    values = np.full((len(spells), 3), np.nan)
+    values[:, :2] = np.broadcast_to(heights, len(spells))[:, None]
+    return np.repeat(spells, [1, 2], axis=1).ravel(), values.ravel()

@@ -3,17 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import rerun.blueprint as rrb
 from rerun.blueprint.encodings import TimelineColumn
 
 from vines.viewer._balls import lanes_range, track
+from vines.viewer._called import Called
 from vines.viewer._clock import CYCLE, IMPACT, SIM_TIME, ticks
 from vines.viewer._impacts import DIAL_BOUNDS, LANES
 from vines.viewer._scene import PHASE_BOUNDS, cavity_bounds
-from vines.viewer._style import CAVITY, PARAMETERS, PLANE
+from vines.viewer._style import PARAMETERS, PLANE
 
 __all__ = ["FPS", "Shown", "blueprint", "cavity_views", "following"]
 
@@ -76,6 +77,10 @@ class Shown:
         Whether other runs stand beside it.
     brief : bool
         Whether there is room for short titles only.
+    called : Called
+        What its bodies are called.
+    widest : float
+        Largest |w| that the phase plane shows; 1 where there are walls.
     """
 
     root: str
@@ -93,6 +98,8 @@ class Shown:
     timeline: str = CYCLE
     beside: bool = False
     brief: bool = False
+    called: Called = field(default_factory=Called)
+    widest: float = 1.0
 
     @property
     def several(self) -> bool:
@@ -217,14 +224,14 @@ def _drawn(run: Shown, origin: str, name: str, more: float = 0.0) -> rrb.Spatial
     (left, right), (top, bottom) = cavity_bounds(run.reach, run.longest)
     return rrb.Spatial2DView(
         origin=origin,
-        name=name if run.brief else f"{CAVITY}: {name}",
+        name=name if run.brief else f"{run.called.drawing}: {name}",
         background=_DARK,
         visual_bounds=rrb.VisualBounds2D(x_range=(left, right), y_range=(top, bottom + (_LOW if run.beside else more))),
     )
 
 
 def _phase(run: Shown) -> rrb.Spatial2DView:
-    (left, right), (top, bottom) = PHASE_BOUNDS
+    (left, right), (top, bottom) = ((run.widest * low, run.widest * high) for low, high in PHASE_BOUNDS)
     if run.brief:
         left, right = left - _NARROW, right + _NARROW
     boundary = rrb.TimeRangeBoundary
@@ -287,13 +294,13 @@ def _moment(run: Shown, part: float) -> dict[str, Any]:
 
 
 def _ends(run: Shown, still: bool) -> rrb.TimeSeriesView:
-    return _series(run, "ends", "Ends of the cavity x1 ± 1 and ball x2", still)
+    return _series(run, "ends", run.called.ends, still)
 
 
 def _gap(run: Shown, still: bool) -> rrb.TimeSeriesView:
     if run.several:
         return _series(run, "w", "Gaps w/β: +1 is an impact on L (▲), −1 on R (▼)", still)
-    return _series(run, "w", "Gap w = x1 − x2: +1 is an impact on L (red), −1 on R (blue)", still, legend=False)
+    return _series(run, "w", run.called.gap, still, legend=False)
 
 
 def _rate(run: Shown, still: bool) -> rrb.TimeSeriesView:
@@ -308,8 +315,7 @@ def _lanes(run: Shown, still: bool) -> rrb.TimeSeriesView:
     if run.several:
         name = "Impacts ball by ball, on L (▲) and R (▼); bars: the ball sticks"
         return _series(run, "lanes", name, still, legend=False, span=lanes_range(len(run.parts)))
-    name = "Impacts on L (above) and R (below); bars: the ball sticks"
-    return _series(run, "lanes", name, still, legend=False, span=LANES)
+    return _series(run, "lanes", run.called.lanes, still, legend=False, span=LANES)
 
 
 def _dial(run: Shown) -> rrb.Spatial2DView:

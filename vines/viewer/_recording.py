@@ -18,6 +18,7 @@ import rerun.blueprint as rrb
 from vines.errors import ViewerError
 from vines.logs import Log
 from vines.viewer._balls import half_of, send_balls, track_labels
+from vines.viewer._called import called, stops_of
 from vines.viewer._clock import Clock
 from vines.viewer._curves import curves
 from vines.viewer._drawn import Drawn, drawn, thinning
@@ -142,7 +143,13 @@ def _shown(root: str, log: Log) -> Shown:
     reach = float(np.abs(log.states["x1"].to_numpy()).max())
     clock = Clock(float(times[0]), log.states["phase"][0].as_py(), 2 * math.pi / period)
     first, last = clock.cycles(times[[0, -1]]).tolist()
-    shown = Shown(root, _title(log), float(times[0]), float(times[-1]), first, last, period, reach, log.kind)
+    names = called(log)
+    widest = 1.0 if names.walls else max(1.0, float(np.abs(log.states["w"].to_numpy()).max()))
+    shown = Shown(
+        *(root, _title(log), float(times[0]), float(times[-1]), first, last, period, reach, log.kind),
+        called=names,
+        widest=widest,
+    )
     if log.balls:
         longest = max(half_of(log, ball) for ball in log.balls)
         return replace(shown, parts=track_labels(log), longest=longest)
@@ -169,13 +176,16 @@ def _send(rec: rr.RecordingStream, root: str, part: Drawn) -> None:
         send_impact_log(rec, f"{root}/impacts", impacts, clock)
         return
     sprung = log.system not in DRIVEN
-    cavity(rec, f"{root}/cavity", states, clock, sprung=sprung)
+    names, stops = called(log), stops_of(log)
+    widest = 1.0 if names.walls else max(1.0, float(np.abs(states["w"]).max()))
+    cavity(rec, f"{root}/cavity", states, clock, sprung=sprung, walls=names.walls, stops=stops)
     if "x3" in states:
         mass_beside(rec, f"{root}/cavity", states, clock)
-    phase_plane(rec, f"{root}/phase", states, impacts, clock, part.parts)
-    curves(rec, root, states, impacts, clock, sprung=sprung)
+    phase = f"{root}/phase"
+    phase_plane(rec, phase, states, impacts, clock, part.parts, widest=widest, walls=names.walls, stops=stops)
+    curves(rec, root, states, impacts, clock, sprung=sprung, names=names, stops=stops, modal=log.system == "modes")
     dial(rec, f"{root}/dial", states, impacts, clock)
-    lanes(rec, f"{root}/lanes", states, impacts, clock)
+    lanes(rec, f"{root}/lanes", states, impacts, clock, stops)
     send_impact_log(rec, f"{root}/impacts", impacts, clock)
 
 

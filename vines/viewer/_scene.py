@@ -10,8 +10,9 @@ from __future__ import annotations
 import numpy as np
 import rerun as rr
 
+from vines.viewer._called import NO_STOPS
 from vines.viewer._clock import Clock
-from vines.viewer._style import BALL, BASE, BESIDE, GRID, LEFT, LINE, MASS, RIGHT, SPRING, TRAIL
+from vines.viewer._style import BALL, BASE, BESIDE, GRID, LEFT, LINE, MASS, RIGHT, SPRING, STOPPED, TRAIL
 
 __all__ = [
     "DRIVEN",
@@ -28,6 +29,7 @@ __all__ = [
 
 DRIVEN = frozenset({"impact_pair"})
 """Systems whose capsule moves as it is driven: they have neither base nor spring."""
+
 _RADIUS = 0.09
 _WALL = 0.07
 _HEIGHT = 0.34
@@ -78,6 +80,8 @@ def cavity(
     colour: tuple[int, int, int] = BALL,
     reach: float | None = None,
     sprung: bool = True,
+    walls: bool = True,
+    stops: np.ndarray = NO_STOPS,
 ) -> None:
     """Draw the shaken base, the spring, the mass with its cavity, and the ball.
 
@@ -99,13 +103,17 @@ def cavity(
         Largest displacement of the mass; that of these states if left out.
     sprung : bool
         Whether there are base and spring; else the mass moves as it is driven.
+    walls : bool
+        Whether there are walls.
+    stops : numpy.ndarray, shape (n, 2)
+        Begin and end of spells in which the ball stops in mid-cavity; it is grey then.
     """
     x1, x2, base = states["x1"], states["x2"], states["base"]
     mount = -_mount((float(np.abs(x1).max()) if reach is None else reach) + (longest - 1.0))
     indexes = clock.columns(states["t"])
     inner = half + _RADIUS
     outer = inner + 2 * _WALL
-    for name, sign, of_wall in (("left", -1, LEFT), ("right", 1, RIGHT)):
+    for name, sign, of_wall in (("left", -1, LEFT), ("right", 1, RIGHT)) if walls else ():
         x = sign * (inner + _WALL)
         rec.log(
             f"{root}/mass/{name}",
@@ -114,10 +122,18 @@ def cavity(
         )
     shell = [[(-outer, y), (outer, y)] for y in (-_HEIGHT - 0.04, _HEIGHT + 0.04)]
     rec.log(f"{root}/mass/shell", rr.LineStrips2D(shell, radii=0.04, colors=MASS), static=True)
-    write(rec, f"{root}/mass/names", [(-inner - _WALL, -0.64), (inner + _WALL, -0.64)], ["L", "R"])
+    if walls:
+        write(rec, f"{root}/mass/names", [(-inner - _WALL, -0.64), (inner + _WALL, -0.64)], ["L", "R"])
     move(rec, f"{root}/mass", indexes, x1)
 
-    rec.log(f"{root}/ball", rr.Points2D([(0.0, 0.0)], radii=_RADIUS, colors=colour, draw_order=40.0), static=True)
+    rec.log(f"{root}/ball", rr.Points2D([(0.0, 0.0)], radii=_RADIUS, draw_order=40.0), static=True)
+    if len(stops):
+        # What is static would be drawn at all times.
+        times = np.concatenate([states["t"][:1], stops.ravel()])
+        turns = np.array([colour, *[STOPPED, colour] * len(stops)], dtype=np.uint8)
+        rec.send_columns(f"{root}/ball", indexes=clock.columns(times), columns=rr.Points2D.columns(colors=turns))
+    else:
+        rec.log(f"{root}/ball", rr.Points2D.from_fields(colors=colour), static=True)
     move(rec, f"{root}/ball", indexes, x2)
 
     if sprung:
@@ -165,17 +181,21 @@ def phase_plane(
     impacts: dict[str, np.ndarray],
     clock: Clock,
     parts: tuple[slice, ...],
+    *,
+    widest: float = 1.0,
+    walls: bool = True,
+    stops: np.ndarray = NO_STOPS,
 ) -> None:
     """Draw the orbit in the plane of w and w', its recent part as a trail, where it is now, and its impacts.
 
     Parameters are those of `vines.viewer._scene.cavity`; `impacts` has the columns of ``vines.v1.Impact``, and `parts`
-    are the states between which none was left out: only these are joined by lines.
+    are the states between which none was left out: only these are joined by lines. `widest` is the largest |w| shown.
     """
     indexes = clock.columns(states["t"])
     path = np.column_stack([states["w"], states["w_dot"]])
     after = impacts["v1_after"] - impacts["v2_after"]
     fastest = float(np.abs(np.concatenate([states["w_dot"], impacts["w_dot"], after])).max()) or 1.0
-    stretch = stretch_of(fastest)
+    stretch = widest * stretch_of(fastest)
     # Beneath the origin of the view, whose own transform would not show.
     root = f"{root}/plane"
     rec.log(root, rr.Transform3D(scale=[1.0, -stretch, 1.0]), static=True)
@@ -212,7 +232,16 @@ def phase_plane(
                 rr.Points2D(np.concatenate([marks, leaves]), radii=size, colors=colour, draw_order=30.0),
                 static=True,
             )
-    phase_frame(rec, root, fastest)
+    if len(stops):
+        held = np.interp(stops[:, 0], states["t"], states["w"])
+        marks = rr.Points2D(
+            np.column_stack([held, np.zeros_like(held)]),
+            radii=rr.Radius.ui_points(4.5),
+            colors=STOPPED,
+            draw_order=30.0,
+        )
+        rec.log(f"{root}/stops", marks, static=True)
+    phase_frame(rec, root, fastest, widest=widest, walls=walls)
 
 
 def stretch_of(fastest: float) -> float:
@@ -220,29 +249,39 @@ def stretch_of(fastest: float) -> float:
     return _HIGHEST / fastest
 
 
-def phase_frame(rec: rr.RecordingStream, root: str, fastest: float, across: str = "w") -> None:
+def phase_frame(
+    rec: rr.RecordingStream,
+    root: str,
+    fastest: float,
+    across: str = "w",
+    *,
+    widest: float = 1.0,
+    walls: bool = True,
+) -> None:
     """Draw walls, axes and numbers of a phase plane of `across` and ``w'`` in which ``|w'|`` goes up to `fastest`."""
     thin = rr.Radius.ui_points(0.8)
     top = fastest * 1.12
     frame = [
         [(-1.0, -top), (-1.0, top)],
         [(1.0, -top), (1.0, top)],
-        [(-1.0, 0.0), (1.0, 0.0)],
+        [(-widest, 0.0), (widest, 0.0)],
         [(0.0, -top), (0.0, top)],
     ]
     rec.log(
         f"{root}/frame",
-        rr.LineStrips2D(frame, radii=thin, colors=[RIGHT, LEFT, GRID, GRID], draw_order=1.0),
+        rr.LineStrips2D(
+            frame, radii=thin, colors=[*((RIGHT, LEFT) if walls else (GRID, GRID)), GRID, GRID], draw_order=1.0
+        ),
         static=True,
     )
     step = _step(fastest)
     marks = np.arange(-np.floor(fastest / step), np.floor(fastest / step) + 0.5) * step
-    write(rec, f"{root}/frame/w_dot", [(-1.18, v) for v in marks], [f"{v:.3g}" for v in marks])
+    write(rec, f"{root}/frame/w_dot", [(-1.18 * widest, v) for v in marks], [f"{v:.3g}" for v in marks])
     write(
         rec,
         f"{root}/frame/w",
         [(x, -top * 1.13) for x in (-1.0, 0.0, 1.0)],
-        [f"R  {across} = −1", "0", f"L  {across} = +1"],
+        [f"R  {across} = −1", "0", f"L  {across} = +1"] if walls else ["−1", "0", "+1"],
     )
 
 

@@ -20,6 +20,7 @@ __all__ = [
     "PLANE",
     "RIGHT",
     "SPRING",
+    "STOPPED",
     "STORED",
     "TRAIL",
 ]
@@ -45,6 +46,8 @@ TRAIL = (255, 200, 60)
 OVERLAID = ((255, 160, 60), (235, 240, 248), (120, 190, 200), (190, 130, 255))
 """Of runs that are laid over each other, the first one wide."""
 GRID = (72, 78, 88)
+STOPPED = (158, 162, 170)
+"""Of a ball that friction holds in mid-cavity."""
 
 CAVITY = "Cavity and ball, to scale"
 PARAMETERS = "Parameters"

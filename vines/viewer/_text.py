@@ -7,6 +7,7 @@ import rerun as rr
 
 from vines.logs import Log
 from vines.model import VI_NES
+from vines.viewer._called import called, stops_of
 from vines.viewer._clock import Clock
 from vines.viewer._style import BALLS, LEFT, RIGHT
 
@@ -81,7 +82,10 @@ def _counts(log: Log) -> list[tuple[str, str]]:
     for ball in log.balls:
         own = sides[log.impacts["ball"].to_numpy() == ball]
         rows.append((f"those of ball {ball}", f"{(own == 1).sum()} and {(own == -1).sum()}"))
-    rows.append(("sticks", str(log.sticks.num_rows)))
+    stops = len(stops_of(log))
+    rows.append(("sticks", str(log.sticks.num_rows - stops)))
+    if called(log).stops:
+        rows.append(("stops in mid-cavity", str(stops)))
     return rows
 
 

@@ -49,6 +49,9 @@ class _CubicBarriers(Room):
     def begin(self, c: Any, state: np.ndarray, x1: float, v1: float, x2: Any, v2: Any, phase: float, t: float) -> None:
         set_mass(c, state, float(x1), float(v1), float(x2), float(v2), phase, t)
 
+    def let_go(self, p: Any, side: int) -> float:
+        return side * (1 + p.mu) * (p.k1 + p.k3)
+
     def stored(self, p: Any, at: Any) -> tuple[Any, Any, Any]:
         frame, mass, potential = super().stored(p, at)
         return frame, mass, potential + self.spring(p, at)

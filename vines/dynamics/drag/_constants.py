@@ -8,6 +8,7 @@ the limits delta -> 0 and mu -> 0 are regular (docs/dynamics.md, "A ball that is
 
 from __future__ import annotations
 
+import functools
 import math
 from typing import NamedTuple
 
@@ -153,6 +154,7 @@ def _parts(z: complex) -> tuple[float, float]:
     return z.real, z.imag
 
 
+@functools.lru_cache(maxsize=64)
 def drag_constants(mu: float, A: float, Omega: float, r: float, lam: float, delta: float) -> DragConstants:
     """Return the `DragConstants` at bare parameter values."""
     free = _frame(mu, A, Omega, lam, delta)

@@ -31,6 +31,28 @@ class FrictionRun(Trajectory):
             found["impacts"] = (found["impacts"] + 1) // 2
         return found
 
+    @cached_property
+    def rests(self) -> Table:
+        """Spells in which the ball does not slide: on a wall, and with side 0 in mid-cavity, in their order."""
+        kinds = self.rows[:, col.KIND]
+        begins = np.flatnonzero(kinds == col.STOP)
+        # A ball that stopped lets go before it can stop again.
+        ends = np.append(np.flatnonzero((kinds == col.SLIDE) & (self.rows[:, col.RUN] == 1.0)), len(kinds))
+        after = ends[np.searchsorted(ends, begins)]
+        out = np.zeros(len(begins), dtype=self.sticks.dtype)
+        out["t_start"], out["phase_start"] = self.rows[begins, col.TIME], self.rows[begins, col.PHASE]
+        out["t_release"] = out["phase_release"] = np.nan
+        ended = after < len(kinds)
+        out["t_release"][ended] = self.rows[after[ended], col.TIME]
+        out["phase_release"][ended] = self.rows[after[ended], col.PHASE]
+        every = np.concatenate([self.sticks, out])
+        return every[np.argsort(every["t_start"], kind="stable")]
+
+    def _instants(self) -> tuple[npt.NDArray[np.int64], npt.NDArray[np.int64]]:
+        kinds = self.rows[:, col.KIND]
+        events = np.flatnonzero((kinds != col.START) & (kinds != col.END))
+        return events, events
+
     def _rest_of_chatter(self, begins: npt.NDArray[np.int64]) -> npt.NDArray[np.float64]:
         p, rows = self.params, self.rows[begins]
         side = rows[:, col.SIDE]
@@ -48,6 +70,7 @@ class FrictionRun(Trajectory):
 
 class _Friction(Room):
     trajectory = FrictionRun
+    unstruck = "0:0"
 
     def constants(self, values: Sequence[float]) -> FrictionConstants:
         return friction_constants(*values)
@@ -63,6 +86,9 @@ class _Friction(Room):
 
     def push(self, p: Any, x1: Any, v1: Any, phase: Any) -> Any:
         return super().push(p, x1, v1, phase) + p.G
+
+    def let_go(self, p: Any, side: int) -> float:
+        return -side * (1 + p.mu) * p.f
 
     def conserves(self, p: Any) -> bool:
         return p.f == 0.0 and super().conserves(p)

@@ -55,6 +55,7 @@ from vines.dynamics._tangent import (
     tangent_product,
 )
 from vines.dynamics._totals import ball_mass, segment_state, window_totals
+from vines.dynamics._travel import accelerations
 from vines.dynamics._window import open_window, run_window, width_of, with_room
 
 __all__ = [
@@ -63,6 +64,7 @@ __all__ = [
     "Constants",
     "ParameterTable",
     "Room",
+    "accelerations",
     "advance",
     "after_impact",
     "after_impact_kernel",

@@ -106,7 +106,7 @@ def _advance(c, state, stop, cap, rows, first):
         # A flight is started afresh once a period, so that its rows are a stroboscope where nothing is hit.
         until = min(left, period)
         if side != 0:
-            code, tau, x, v = release(c, side, x1, v1, state[S_PHASE], state[S_CLEAR], until)
+            code, tau, x, v = release(c.stuck, c, side, x1, v1, state[S_PHASE], state[S_CLEAR], until)
             if code == CONTACT:
                 move(c, state, tau)
                 place(state, 0, side, 1.0, x, v, x - side, v)

@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
-from vines.dynamics._constants import Oscillator, constants_at, constants_kernel
+from vines.dynamics._constants import constants_at, constants_kernel
 from vines.dynamics._impact_law import ImpactLaw
 from vines.kernels import njit
 
-__all__ = ["LENGTH", "ORDER", "ROOM", "Field", "TaylorConstants", "TaylorTable", "taylor_constants"]
+__all__ = ["LENGTH", "LONGEST", "ORDER", "ROOM", "Field", "TaylorConstants", "TaylorTable", "taylor_constants"]
 
 ORDER = 20
 """Order for which the length of a step is chosen."""
@@ -54,12 +54,15 @@ class _Fields(NamedTuple):
     near: float
     correction: float
     law: ImpactLaw
-    stuck: Oscillator
-    field: Field
+    stuck: Any
+    field: Any
 
 
 class TaylorConstants(_Fields):
-    """As `Constants`; the spring acts on the mass with ``k1 w + k3 w³ + l2 w'``, and back on the oscillator.
+    """As `Constants`, with the equations of flight in `field`, and in `stuck` what frame and mass are that stick.
+
+    Kernels ask for the types of both: a `Field` and an `Oscillator`, whose spring acts on the mass with
+    ``k1 w + k3 w³ + l2 w'``, and back on the oscillator, or what another room brings.
 
     The doubles in which a kernel holds series live as long as the constants do, being an attribute of them.
     """

@@ -10,6 +10,7 @@ import numpy as np
 
 from vines.dynamics import _totals as entry
 from vines.dynamics._advance import A_V1, A_V2, MODE, PHASE, X1, X2
+from vines.dynamics._constants import Oscillator
 from vines.dynamics._flight import advance_phase, phasors, turn
 from vines.dynamics._integrals import energies_between, peak_between
 from vines.dynamics._sincos import sincos
@@ -27,13 +28,23 @@ from vines.dynamics._totals import (
     stored_energy,
     window_totals,
 )
-from vines.dynamics.taylor._constants import TaylorConstants
+from vines.dynamics.taylor._constants import Field, TaylorConstants
 from vines.dynamics.taylor._contacts import flown_from
 from vines.dynamics.taylor._held import held, ride
 from vines.dynamics.taylor._series import W, X, at, bounds, coefficients, derivatives_at, expand
-from vines.kernels import linked_njit, loop_njit, zero_vector
+from vines.kernels import by_type, fused_njit, linked_njit, loop_njit, njit, zero_vector
 
-__all__ = ["NODES", "TAYLOR_TOTALS", "VISCOUS_LOSS", "WEIGHTS", "peak"]
+__all__ = [
+    "NODES",
+    "TAYLOR_TOTALS",
+    "VISCOUS_LOSS",
+    "WEIGHTS",
+    "by_series",
+    "held_energy",
+    "peak",
+    "ride_integrals",
+    "viscosity",
+]
 
 VISCOUS_LOSS = TOTALS
 """Entry of the totals of a window behind those of one ball: what of the damper loss the damper of the spring takes."""
@@ -53,9 +64,23 @@ for _name in (ball_mass, base_at, event_loss, event_work):
 @stored_energy.register(TaylorConstants)
 @linked_njit
 def _stored_energy(c, x1, v1, x2, v2, phase):
+    return state_energy(c, x1, v1, v2, phase) + held_energy(c.field, x1, x2)
+
+
+@by_type(Field)
+@njit
+def held_energy(f, x1, x2):
+    """Return the energy that the springs of a field hold beside the one between base and oscillator."""
     square = (x1 - x2) * (x1 - x2)
-    spring = square * (0.5 * c.field.k1 + 0.25 * c.field.k3 * square)
-    return state_energy(c, x1, v1, v2, phase) + c.mu * spring
+    spring = square * (0.5 * f.k1 + 0.25 * f.k3 * square)
+    return f.mu * spring
+
+
+@by_type(Field)
+@fused_njit
+def viscosity(f):
+    """Return the damping of the mass over w', times its mass."""
+    return f.mu * f.l2
 
 
 @segment_state.register(TaylorConstants)
@@ -118,46 +143,59 @@ def _flat(a, order, low, high):
             high = middle
 
 
-@add_segment.register(TaylorConstants)
+@by_type(Oscillator)
 @loop_njit
+def ride_integrals(o, c, out, side, begins, x1, v1, phase, length):
+    """Return the integrals of a ride as `energies_between` does, and keep the largest |x1| in the totals."""
+    start = phasors(o, c.Omega, x1, v1, phase)
+    end = turn(o, c.Omega, *start, length)
+    found = energies_between(c, o, True, start, end, v1, length)
+    best, when = peak_between(held(c, 0.0), o, start, end, 0.0, length, out[entry.MAX_ABS_X1])
+    if when >= 0.0:
+        out[entry.MAX_ABS_X1], out[entry.T_MAX_ABS_X1] = best, begins + when
+    return found
+
+
+@loop_njit
+def by_series(f, out, begins, x1, v1, w, u, phase, length):
+    """Return the same of a motion by series; what a damper of the mass takes is added to the totals."""
+    a = coefficients(f)
+    xx = vv = ball = work = loss = viscous = 0.0
+    done = 0.0
+    while done < length:
+        h = min(expand(f, x1, v1, w, u, advance_phase(phase, f.Omega * done)), length - done)
+        for k in range(NODES.shape[0]):
+            s, weight = h * NODES[k], h * WEIGHTS[k]
+            x, v = at(a, X, f.order, s)
+            _, rate = at(a, W, f.order, s)
+            sine, cosine = sincos(advance_phase(phase, f.Omega * (done + s)))
+            base, speed = f.A * sine, f.A * f.Omega * cosine
+            xx += weight * x * x
+            vv += weight * v * v
+            ball += weight * (v - rate) * (v - rate)
+            work += weight * (base - x + f.lam * (speed - v)) * speed
+            loss += weight * (v - speed) * (v - speed)
+            viscous += weight * rate * rate
+        best, when = peak(a, f.order, h, out[entry.MAX_ABS_X1])
+        if when >= 0.0:
+            out[entry.MAX_ABS_X1], out[entry.T_MAX_ABS_X1] = best, begins + done + when
+        x1, v1 = at(a, X, f.order, h)
+        w, u = at(a, W, f.order, h)
+        done += h
+    viscous *= viscosity(f)
+    loss = f.lam * loss + viscous
+    out[VISCOUS_LOSS] += viscous
+    return xx, vv, ball, work, loss
+
+
+@add_segment.register(TaylorConstants)
+@linked_njit
 def _add_segment(c, out, mode, begins, x1, v1, x2, v2, phase, length):
     if mode != 0.0:
-        start = phasors(c.stuck, c.Omega, x1, v1, phase)
-        end = turn(c.stuck, c.Omega, *start, length)
-        xx, vv, ball, work, loss = energies_between(c, c.stuck, True, start, end, v2, length)
-        best, when = peak_between(held(c, 0.0), c.stuck, start, end, 0.0, length, out[entry.MAX_ABS_X1])
-        if when >= 0.0:
-            out[entry.MAX_ABS_X1], out[entry.T_MAX_ABS_X1] = best, begins + when
+        found = ride_integrals(c.stuck, c, out, mode, begins, x1, v1, phase, length)
     else:
-        f = c.field
-        a = coefficients(f)
-        xx = vv = ball = work = loss = viscous = 0.0
-        done = 0.0
-        w, u = x1 - x2, v1 - v2
-        while done < length:
-            h = min(expand(f, x1, v1, w, u, advance_phase(phase, f.Omega * done)), length - done)
-            for k in range(NODES.shape[0]):
-                s, weight = h * NODES[k], h * WEIGHTS[k]
-                x, v = at(a, X, f.order, s)
-                _, rate = at(a, W, f.order, s)
-                sine, cosine = sincos(advance_phase(phase, f.Omega * (done + s)))
-                base, speed = f.A * sine, f.A * f.Omega * cosine
-                xx += weight * x * x
-                vv += weight * v * v
-                ball += weight * (v - rate) * (v - rate)
-                work += weight * (base - x + f.lam * (speed - v)) * speed
-                loss += weight * (v - speed) * (v - speed)
-                viscous += weight * rate * rate
-            best, when = peak(a, f.order, h, out[entry.MAX_ABS_X1])
-            if when >= 0.0:
-                out[entry.MAX_ABS_X1], out[entry.T_MAX_ABS_X1] = best, begins + done + when
-            x1, v1 = at(a, X, f.order, h)
-            w, u = at(a, W, f.order, h)
-            done += h
-        viscous *= f.mu * f.l2
-        loss = f.lam * loss + viscous
-        out[VISCOUS_LOSS] += viscous
-    add_integrals(out, length, xx, vv, ball, work, loss)
+        found = by_series(c.field, out, begins, x1, v1, x1 - x2, v1 - v2, phase, length)
+    add_integrals(out, length, *found)
 
 
 @window_totals.register(TaylorConstants)

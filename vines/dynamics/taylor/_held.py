@@ -1,15 +1,17 @@
 """A mass that sticks to a barrier: both move as one oscillator, in closed form, until the spring would pull it off.
 
 While it sticks x1'' = x2'' is that of the loaded oscillator, and the barrier presses with mu (side x1'' - k1 - k3).
+A frame that has no closed form rides by its own series, by the type of what stands for the loaded oscillator.
 """
 
 from __future__ import annotations
 
 from typing import NamedTuple
 
+from vines.dynamics._constants import Oscillator
 from vines.dynamics._flight import derivatives, forced_fifth, free_ball, modulus, phasors, pull, turn
 from vines.dynamics._sticking import release_within
-from vines.kernels import fused_njit, loop_njit, njit
+from vines.kernels import by_type, fused_njit, loop_njit, njit
 
 __all__ = ["held", "release", "ride"]
 
@@ -45,14 +47,16 @@ def held(c, limit):
     return Held(c.Omega, c.Omega5, c.window, c.near, limit)
 
 
+@by_type(Oscillator)
 @loop_njit
-def release(c, side, x, v, phase, clear, stop):
+def release(o, c, side, x, v, phase, clear, stop):
     """Search for the release after `clear`; see `vines.dynamics._sticking.next_release`."""
     f = c.field
     ends = held(c, side * (f.k1 + f.k3))
-    return release_within(ends, c.stuck, side, phasors(c.stuck, c.Omega, x, v, phase), clear, stop)
+    return release_within(ends, o, side, phasors(o, c.Omega, x, v, phase), clear, stop)
 
 
+@by_type(Oscillator)
 @njit
 def ride(o, Omega, x, v, phase, tau):
     """Return x1 and x1' of the loaded oscillator a time tau after a state."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 import numpy.typing as npt
@@ -17,7 +17,7 @@ from vines.dynamics._trajectory import SAMPLE, Table, Trajectory
 from vines.dynamics.taylor._energies import VISCOUS_LOSS
 from vines.dynamics.taylor._samples import OF_ONE_BALL, sample_flights
 
-__all__ = ["TaylorMeasures", "TaylorRun", "spring_energy", "taylor_measures"]
+__all__ = ["SeriesRun", "TaylorMeasures", "TaylorRun", "spring_energy", "taylor_measures"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,12 +53,44 @@ def spring_energy(p: Any, mass: float, w: Any) -> Any:
     return mass * w**2 * (0.5 * p.k1 + 0.25 * p.k3 * w**2)
 
 
-class TaylorRun(Trajectory):
+class SeriesRun(Trajectory):
+    """One run by series; see `Trajectory`."""
+
+    sample_dtype: ClassVar[np.dtype[np.void]] = SAMPLE
+    """What a sample has, beside what rows have at their ends."""
+
+    def _fill(
+        self,
+        t: npt.NDArray[np.float64],
+        segment: npt.NDArray[np.int64],
+        tau: npt.NDArray[np.float64],
+        before: npt.NDArray[np.bool_],
+    ) -> Table:
+        p, room = self.params, room_of(self.params)
+        raw = np.empty((len(t), OF_ONE_BALL + len(room.beside)))
+        sums = np.zeros(room.layout(p).totals)
+        sample_flights(constants(p), self.rows, segment, tau, before, sums, raw)
+        out = np.empty(len(t), dtype=[*self.sample_dtype.descr, *((name, "f8") for name in room.beside)])
+        out["t"] = t
+        names = ("x1", "v1", "x2", "v2", "phase", "stuck", "base_work", "damper_loss", "impact_loss", "viscous_loss")
+        for k, name in enumerate((*names, *room.beside)):
+            if name in (out.dtype.names or ()):
+                out[name] = raw[:, k]
+        out["w"] = out["x1"] - out["x2"]
+        out["w_dot"] = out["v1"] - out["v2"]
+        out["base"] = room.base(p, out["phase"])
+        out["kinetic_1"], out["kinetic_2"], out["potential"] = room.stored(p, out)
+        return out
+
+
+class TaylorRun(SeriesRun):
     """One run on a cubic spring; see `Trajectory`.
 
     Samples have `spring`, the part mu (k1 w²/2 + k3 w⁴/4) of the potential energy, and `viscous_loss`, the part of the
     damper loss since the start of the run that the damper beside it took.
     """
+
+    sample_dtype = TAYLOR_SAMPLE
 
     def _push(self, rows: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
         """Return (1 + mu) times how a wall that the mass were to ride on would press, towards L."""
@@ -85,18 +117,6 @@ class TaylorRun(Trajectory):
         tau: npt.NDArray[np.float64],
         before: npt.NDArray[np.bool_],
     ) -> Table:
-        p, room = self.params, room_of(self.params)
-        raw = np.empty((len(t), OF_ONE_BALL + len(room.beside)))
-        sums = np.zeros(room.layout(p).totals)
-        sample_flights(constants(p), self.rows, segment, tau, before, sums, raw)
-        out = np.empty(len(t), dtype=[*TAYLOR_SAMPLE.descr, *((name, "f8") for name in room.beside)])
-        out["t"] = t
-        names = ("x1", "v1", "x2", "v2", "phase", "stuck", "base_work", "damper_loss", "impact_loss", "viscous_loss")
-        for k, name in enumerate((*names, *room.beside)):
-            out[name] = raw[:, k]
-        out["w"] = out["x1"] - out["x2"]
-        out["w_dot"] = out["v1"] - out["v2"]
-        out["base"] = room.base(p, out["phase"])
-        out["kinetic_1"], out["kinetic_2"], out["potential"] = room.stored(p, out)
-        out["spring"] = room.spring(p, out)
+        out = super()._fill(t, segment, tau, before)
+        out["spring"] = room_of(self.params).spring(self.params, out)
         return out

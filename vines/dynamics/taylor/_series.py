@@ -1,7 +1,8 @@
 """One step of the series: coefficients by recurrences, how far they reach, and the polynomial they are.
 
 ``x1'' = F - lam x1' - x1 - mu f`` and ``w'' = x1'' - f`` with ``f = k1 w + k3 w³ + l2 w'``. The square and the cube of
-w are Cauchy products of their series; the force of the base is known in closed form.
+w are Cauchy products of their series; the force of the base is known in closed form. That is the first field; other
+fields bring equations of their own for the type of their constants, in the same room.
 """
 
 from __future__ import annotations
@@ -9,10 +10,11 @@ from __future__ import annotations
 import math
 
 from vines.dynamics._sincos import sincos
-from vines.dynamics.taylor._constants import LENGTH, ORDER, ROOM
-from vines.kernels import doubles_at, fused_njit, loop_njit, njit
+from vines.dynamics.taylor._constants import LENGTH, ORDER, ROOM, Field
+from vines.kernels import by_type, doubles_at, fused_njit, loop_njit, njit
 
 __all__ = [
+    "DIRECTIONS",
     "DISTURBED",
     "SQUARE",
     "W",
@@ -75,6 +77,7 @@ def cube(a, first, k):
     return even + odd
 
 
+@by_type(Field)
 @loop_njit
 def expand(f, x, v, w, u, phase):
     """Fill the room with the series of x1 and w from a state, and return how long the step may be.
@@ -168,6 +171,7 @@ def rate(f, w, u):
     return f.k1 * w + f.k3 * w * w * w + f.l2 * u
 
 
+@by_type(Field)
 @fused_njit
 def slopes(f, x, v, w, u, phase):
     """Return x1'' and x2'' of a flight at a state."""
@@ -189,6 +193,7 @@ def times_square(a, of, k):
     return product + other
 
 
+@by_type(Field)
 @loop_njit
 def expand_disturbances(f, h, Y):
     """Carry disturbances of (x1, x1', w, w'), the columns of Y, over h of the step that the room holds.
@@ -202,7 +207,15 @@ def expand_disturbances(f, h, Y):
         dw = dx + LENGTH
         a[dx], a[dx + 1], a[dw], a[dw + 1] = Y[0, j], Y[1, j], Y[2, j], Y[3, j]
         for k in range(order - 1):
-            spring = f.k1 * a[dw + k] + 3.0 * f.k3 * times_square(a, dw, k) + f.l2 * (k + 1) * a[dw + k + 1]
+            # As `times_square`, written out: the sum is rounded in the factor before it.
+            product = 0.0
+            other = 0.0
+            for i in range(0, k, 2):
+                product += a[SQUARE + i] * a[dw + k - i]
+                other += a[SQUARE + i + 1] * a[dw + k - i - 1]
+            if k % 2 == 0:
+                product += a[SQUARE + k] * a[dw]
+            spring = f.k1 * a[dw + k] + 3.0 * f.k3 * (product + other) + f.l2 * (k + 1) * a[dw + k + 1]
             own = -f.lam * (k + 1) * a[dx + k + 1] - a[dx + k] - f.mu * spring
             share = 1.0 / ((k + 1.0) * (k + 2.0))
             a[dx + k + 2] = share * own

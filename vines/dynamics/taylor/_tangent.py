@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 from vines.dynamics._advance import A_V1, A_V2, IMPACT, KIND, MODE, PHASE, SIDE, STICK, V1, V2, X1, X2
+from vines.dynamics._constants import Oscillator
 from vines.dynamics._flight import advance_phase
 from vines.dynamics._impact_law import after_impact_kernel
 from vines.dynamics._tangent import carry_basis, directions, jump_basis, offset, swing, swing_of
 from vines.dynamics._travel import merged, struck_under
 from vines.dynamics.taylor._constants import TaylorConstants
 from vines.dynamics.taylor._series import W, X, at, coefficients, expand, expand_disturbances, slopes
-from vines.kernels import fused_njit, linked_njit, loop_njit, njit
+from vines.kernels import by_type, fused_njit, linked_njit, loop_njit, njit
 
-__all__: list[str] = []
+__all__ = ["carried", "ride_basis"]
 
 directions.register(TaylorConstants)(directions.first)
 
@@ -24,27 +25,38 @@ def _to_gaps(Y):
         Y[3, j] = Y[1, j] - Y[3, j]
 
 
-@carry_basis.register(TaylorConstants)
+@by_type(Oscillator)
 @loop_njit
-def _carry_basis(c, row, tau, Y):
-    if row[MODE] != 0.0:
-        sine, cosine = swing_of(c.stuck, tau)
-        for j in range(Y.shape[1]):
-            swing(c.stuck, sine, cosine, Y, j)
-            Y[2, j], Y[3, j] = Y[0, j], Y[1, j]
-        return
-    f = c.field
+def ride_basis(o, row, tau, Y):
+    """Carry disturbances over a ride; those of the mass become those of the oscillator."""
+    sine, cosine = swing_of(o, tau)
+    for j in range(Y.shape[1]):
+        swing(o, sine, cosine, Y, j)
+        Y[2, j], Y[3, j] = Y[0, j], Y[1, j]
+
+
+@loop_njit
+def carried(f, x, v, w, u, phase, tau, Y):
+    """Carry disturbances of (x1, x1', w, w') by series over a time tau after a state."""
     a = coefficients(f)
-    x, v = row[X1], row[A_V1]
-    w, u = x - row[X2], v - row[A_V2]
-    _to_gaps(Y)
     done = 0.0
     while done < tau:
-        h = min(expand(f, x, v, w, u, advance_phase(row[PHASE], f.Omega * done)), tau - done)
+        h = min(expand(f, x, v, w, u, advance_phase(phase, f.Omega * done)), tau - done)
         expand_disturbances(f, h, Y)
         x, v = at(a, X, f.order, h)
         w, u = at(a, W, f.order, h)
         done += h
+
+
+@carry_basis.register(TaylorConstants)
+@linked_njit
+def _carry_basis(c, row, tau, Y):
+    if row[MODE] != 0.0:
+        ride_basis(c.stuck, row, tau, Y)
+        return
+    x, v = row[X1], row[A_V1]
+    _to_gaps(Y)
+    carried(c.field, x, v, x - row[X2], v - row[A_V2], row[PHASE], tau, Y)
     _to_gaps(Y)
 
 

@@ -88,7 +88,7 @@ def orbit_log(orbit: Orbit, path: str | os.PathLike[str], *, per_period: int = 6
         path,
         states=run.sample(per_period=per_period, at_events=True),
         impacts=run.impacts,
-        sticks=run.sticks,
+        sticks=run.rests,
         provenance={"kind": "orbit", "orbit_id": orbit.orbit_id},
         parameters=p.as_dict(),
         name=orbit.name,
@@ -104,7 +104,7 @@ def _in_flight(orbit: Orbit) -> dict[str, float]:
     """Return where the orbit is in the middle of its longest flight, its time and its phase."""
     p, longest = orbit.params, int(np.argmax(orbit.flight_times))
     ahead = float(orbit.flight_times[longest]) / 2
-    if getattr(p, "balls", 0):
+    if p.system.balls or p.system.modes:
         at = orbit.start()
         t, phase = at.pop("t"), float(orbit.phase[0])
         ahead += float(orbit.t[longest]) - t

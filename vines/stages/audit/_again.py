@@ -18,6 +18,7 @@ from vines.stages.audit._compare import (
     compare_within_errors,
     stored_row,
 )
+from vines.stages.audit._exits import compare_exits
 from vines.stages.audit._systems import base_of, kind_of, parameters_of_row, start_names
 
 if TYPE_CHECKING:
@@ -35,13 +36,21 @@ class PointsAgain:
     """Computes points again; each only once, though several of its rows may be drawn."""
 
     def __init__(self) -> None:
+        self._chosen: dict[str, str] = {}
         self._known: dict[tuple[str, str], tuple[dict[str, list[dict[str, Any]]], dict[str, list[dict[str, Any]]]]] = {}
 
     @staticmethod
     def can(result: Result) -> bool:
         """Say whether points of this result can be computed again from their rows."""
         spec = kind_of(result)
-        return spec.again == "points" and set(result.tables) <= set(spec.tables)
+        return spec.again in ("points", "long_points") and set(result.tables) <= set(spec.tables)
+
+    def passes_over(self, result: Result, table: str, place: int) -> bool:
+        """Say whether a row is of a point that takes long, and is not the one of its result that was drawn first."""
+        if kind_of(result).again != "long_points":
+            return False
+        point = stored_row(result, table, place)["point_id"]
+        return self._chosen.setdefault(result.key, point) != point
 
     def compare(self, result: Result, table: str, place: int) -> Comparison:
         """Compute the point of a row again and compare the rows that it has in the table.
@@ -59,6 +68,9 @@ class PointsAgain:
             stored = {name: _rows_of(result, point, name) for name in result.tables}
             self._known[key] = (stored, _compute(result, primary))
         stored, again = self._known[key]
+        if base_of(result.tables[0]) == "exit_points":
+            compare_exits(comparison, table, stored, again)
+            return comparison
         if not regular:
             compare_within_errors(comparison, primary, again[table][0], names=_given(result, primary))
             return comparison

@@ -13,7 +13,7 @@ from vines.stages.audit._flights import Flights
 from vines.stages.audit._orbits import product_defect
 from vines.stages.audit._rows import Floats, Rows
 
-__all__ = ["bifurcation_defects", "branch_defects", "curve_defects", "curve_equations"]
+__all__ = ["bifurcation_defects", "branch_defects", "critical_defect", "curve_defects", "curve_equations"]
 
 _AT_ONE = ("fold", "symmetry_breaking")
 _WITHOUT = ("grazing", "incomplete_chatter", "release_tangency")
@@ -28,7 +28,7 @@ def bifurcation_defects(rows: Rows) -> Iterator[Defect]:
     yield from model_defects(rows, np.ones(len(rows), dtype=bool))
     yield Defect("word", "word and name agree", 0.0, words(rows))
     yield Defect("value", "that of the parameter it is found in", 1e-12, _named(rows, "parameter", "value"))
-    yield Defect("critical multiplier", "+1, -1, on the unit circle, or real, by the type", _CRITICAL, _critical(rows))
+    yield critical_defect(rows)
     lists = ("side", "x1", "w_dot", "phase")
     right = (rows.lengths > 0) & all(len(rows.lists(name)) == int(rows.lengths.sum()) for name in lists)
     yield Defect("impacts", "as many in each list", 0.0, np.where(right, 0.0, np.inf))
@@ -71,6 +71,11 @@ def _named(rows: Rows, names: str, values: str) -> Floats:
     return off
 
 
+def critical_defect(rows: Rows) -> Defect:
+    """Return the check of the multiplier that makes an orbit of any system a bifurcation."""
+    return Defect("critical multiplier", "+1, -1, on the unit circle, or real, by the type", _CRITICAL, _critical(rows))
+
+
 def _critical(rows: Rows) -> Floats:
     m = rows["multiplier_re"] + 1j * rows["multiplier_im"]
     types = rows.text("type")
@@ -105,6 +110,8 @@ def curve_equations(rows: Rows) -> Iterator[Defect]:
     off = np.where(np.isin(types, _WITHOUT), np.nan, off) / slack
     yield Defect("critical multiplier", "+1, -1, or a pair of product 1, by the type", _CRITICAL, off)
     inside = rows["min_clearance"] >= -1e-9
+    if rows.has("walls"):
+        inside |= rows["walls"] == 0
     wrong = (rows["admissible"] == 1) & ~inside
     yield Defect("admissibility", "no turning point beyond a wall", 0.0, np.where(wrong, np.inf, 0.0))
 

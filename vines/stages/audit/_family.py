@@ -7,16 +7,21 @@ from collections.abc import Iterator
 import numpy as np
 
 from vines import schema
+from vines.dynamics import ball_locked, no_ball
 from vines.model import most_balls, with_all_balls
-from vines.stages.audit._bifurcations import curve_equations
+from vines.stages.audit._bifurcations import critical_defect, curve_equations
 from vines.stages.audit._defect import Defect, forced_amplitude, relative
+from vines.stages.audit._modal import damping_of_modes, mobility_of_modes, modal_amplitude
 from vines.stages.audit._others import cell_defects
 from vines.stages.audit._points import share_defects
 from vines.stages.audit._rows import Floats, Rows
+from vines.systems import parameters
 
 __all__ = [
     "family_attractor_defects",
     "family_basin_defects",
+    "family_bifurcation_defects",
+    "family_branch_defects",
     "family_curve_defects",
     "family_impact_defects",
     "family_orbit_defects",
@@ -73,11 +78,16 @@ def family_impact_defects(table: str, rows: Rows) -> Iterator[Defect]:
     yield Defect("contact", "on the wall of the ball's cavity, met from inside", 1e-11, contact)
     yield Defect("times", "dt_next >= 0", 0.0, np.where(rows["dt_next"] >= 0, 0.0, np.inf))
     if rows.has("v1", "v2"):
-        mu = _of_ball(rows, "mu", ball)
+        mu = _of_ball(rows, "mu", ball) * (mobility_of_modes(rows) if rows.has("phi_1") else 1.0)
         off = np.abs(rows["v1"] - new1 + mu * (rows["v2"] - new2)) / size
         before = np.append(1.0, rows["dt_next"][:-1])
         alone = (rows["dt_next"] > 0) & (before > 0)
-        yield Defect("momentum", "v1 + mu v2 is kept by a ball that hits alone", 1e-12, np.where(alone, off, np.nan))
+        yield Defect(
+            "momentum",
+            "v1 + mu v2 is kept by a ball that hits alone, mu over the mass that the cavity answers with",
+            1e-12,
+            np.where(alone, off, np.nan),
+        )
 
 
 def _balance(rows: Rows, where: np.ndarray, *more: str) -> Iterator[Defect]:
@@ -107,12 +117,24 @@ def _balance(rows: Rows, where: np.ndarray, *more: str) -> Iterator[Defect]:
         yield Defect("balls", "impact_power is the sum over the balls", 1e-9, np.where(where, off, np.nan))
 
 
-def _yardsticks(rows: Rows, where: np.ndarray) -> Iterator[Defect]:
-    if rows.has("x1_no_ball", "x1_locked"):
-        off = np.maximum(
-            relative(rows["x1_no_ball"], forced_amplitude(rows, 1.0)),
-            relative(rows["x1_locked"], forced_amplitude(rows, 1.0 + _mass(rows))),
+def _yardsticks(table: str, rows: Rows, where: np.ndarray) -> Iterator[Defect]:
+    system = schema.table(table).system
+    if rows.has("x1_no_ball", "x1_locked", "alpha"):
+        # No closed form: found again from the parameters alone.
+        names = [each.name for each in with_all_balls(system).parameters]
+        points = [
+            parameters(system).of(dict(zip(names, values, strict=True)))
+            for values in np.stack([rows[name] for name in names], axis=1).tolist()
+        ]
+        free, locked = (np.array([of(p) for p in points]) for of in (no_ball, ball_locked))
+        off = np.maximum(relative(rows["x1_no_ball"], free), relative(rows["x1_locked"], locked))
+        yield Defect("yardsticks", "x1_no_ball, x1_locked of the frame alone", 1e-9, np.where(where, off, np.nan))
+    elif rows.has("x1_no_ball", "x1_locked"):
+        free, locked = (
+            modal_amplitude(rows, mass) if rows.has("phi_1") else forced_amplitude(rows, 1.0 + mass)
+            for mass in (0.0, _mass(rows))
         )
+        off = np.maximum(relative(rows["x1_no_ball"], free), relative(rows["x1_locked"], locked))
         yield Defect("yardsticks", "x1_no_ball, x1_locked in closed form", 1e-9, np.where(where, off, np.nan))
 
 
@@ -121,7 +143,7 @@ def family_point_defects(table: str, rows: Rows) -> Iterator[Defect]:
     yield _parameters(table, rows)
     done = rows.text("status") == "ok"
     yield from _balance(rows, done, "energy_change")
-    yield from _yardsticks(rows, done)
+    yield from _yardsticks(table, rows, done)
 
 
 def family_attractor_defects(table: str, rows: Rows) -> Iterator[Defect]:
@@ -151,12 +173,24 @@ def family_orbit_defects(table: str, rows: Rows) -> Iterator[Defect]:
     yield _parameters(table, rows)
     everywhere = np.ones(len(rows), dtype=bool)
     yield from _balance(rows, everywhere)
-    yield from _yardsticks(rows, everywhere)
+    yield from _yardsticks(table, rows, everywhere)
     size = np.abs(_multipliers(rows))
     yield _product(rows)
     flat = np.isclose(size.max(axis=1), rows["max_multiplier"], rtol=1e-9)
     right = flat & ((rows["stable"] == 1) == (rows["max_multiplier"] < 1))
     yield Defect("stability", "max_multiplier, and stable where it is below 1", 0.0, np.where(right, 0.0, np.inf))
+
+
+def family_bifurcation_defects(table: str, rows: Rows) -> Iterator[Defect]:
+    """Yield the checks of rows of a table of bifurcations."""
+    yield _parameters(table, rows)
+    yield critical_defect(rows)
+
+
+def family_branch_defects(table: str, rows: Rows) -> Iterator[Defect]:
+    """Yield the checks of rows of a table of branches."""
+    yield _parameters(table, rows)
+    yield Defect("orbits", "one at least", 0.0, np.where(rows["orbits"] >= 1, 0.0, np.inf))
 
 
 def family_curve_defects(table: str, rows: Rows) -> Iterator[Defect]:
@@ -196,11 +230,11 @@ def _log_determinant(rows: Rows) -> Floats:
     found = np.zeros(len(rows))
     for code, text in enumerate(known):
         word, mine = Word(text), codes == code
-        for ball in word.balls:
+        for ball in (ball for ball, side in zip(word.balls, word.sides, strict=True) if side):
             r = rows["r"] if rows.has("r") else rows[f"r_{max(ball, 1)}"]
             found[mine] += 2 * np.log(np.maximum(r[mine], 1e-300))
-        if rows.has("lam"):
-            rate = rows["lam"]
+        if rows.has("lam") or rows.has("lam_1"):
+            rate = rows["lam"] if rows.has("lam") else damping_of_modes(rows)
             # A damper between two masses acts on both; that of a spring may be at a mass beside the ball.
             for damper, mass in (("delta", "mu"), ("l2", "mu_n" if rows.has("mu_n") else "mu")):
                 rate = rate + ((1 + rows[mass]) * rows[damper] if rows.has(damper) else 0.0)

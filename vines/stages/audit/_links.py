@@ -15,6 +15,9 @@ __all__ = ["check_links"]
 _LINKS = (
     ("impacts", "point_id", "points", "point_id"),
     ("attractors", "point_id", "points", "point_id"),
+    ("attractors", "point_id", "exit_points", "point_id"),
+    ("exit_regimes", "point_id", "exit_points", "point_id"),
+    ("exits", "point_id", "exit_points", "point_id"),
     ("orbits", "branch_id", "branches", "branch_id"),
     ("bifurcations", "branch_id", "branches", "branch_id"),
     ("branches", "parent", "branches", "branch_id"),

@@ -24,9 +24,12 @@ __all__ = ["locate_again"]
 _BESIDE = (1e-3, 1e-4, 1e-5)
 """Distances of the orbit that is followed from the bifurcation, relative to the value of the parameter."""
 
-_STICKING_ENDS = ("incomplete_chatter", "release_tangency")
+_ENDS = ("incomplete_chatter", "release_tangency")
+_SLIDING = "_sliding"
+"""Types of ends of families that stick, and what ends those of families with friction."""
+
 _EXTRAPOLATED = 1e-7
-"""What is allowed of the ends of families that stick, which are extrapolated."""
+"""What is allowed of these, which are extrapolated."""
 
 
 def locate_again(result: Result, table: str, place: int) -> Comparison:
@@ -38,7 +41,8 @@ def locate_again(result: Result, table: str, place: int) -> Comparison:
     if nearest is None:
         comparison.same(f"{row['type']} at {row['parameter']} = {row['value']:.10g}", "there", "not met again")
         return comparison
-    allowed = _EXTRAPOLATED if row["type"] in _STICKING_ENDS else TOLERANCE
+    extrapolated = row["type"] in _ENDS or row["type"].endswith(_SLIDING)
+    allowed = _EXTRAPOLATED if extrapolated else TOLERANCE
     comparison.number("value", row["value"], nearest.value, allowed)
     return comparison
 
@@ -52,7 +56,8 @@ def _met(row: dict[str, Any], p: Any) -> Iterator[Bifurcation]:
         for sign in (-1.0, 1.0):
             here, there = row["value"] + sign * delta, row["value"] - sign * delta
             try:
-                orbit = _beside(word, p.replace(**{parameter: here}), times, distance)
+                moved = p.replace(**{parameter: here})
+                orbit = _unstruck_beside(word, moved, row) if word.unstruck else _beside(word, moved, times, distance)
                 low, high = sorted((here - sign * 0.5 * (here - there), there))
                 within = (min(low, here), max(high, here))
                 branch = continue_orbit(orbit, parameter, there, within=within, beyond_grazing=True)
@@ -62,6 +67,21 @@ def _met(row: dict[str, Any], p: Any) -> Iterator[Bifurcation]:
             yield from found
             if any(abs(each.value - row["value"]) < TOLERANCE for each in found):
                 return
+
+
+def _unstruck_beside(word: Word, p: Any, row: dict[str, Any]) -> Orbit:
+    """Return the orbit without impacts next to that of a row, which tells where it comes through phase 0.
+
+    Raises
+    ------
+    OrbitNotFound
+        If there is none.
+    """
+    found = all_orbits(word, p)
+    if not found:
+        raise OrbitNotFound(f"no {word} orbit beside this one at {p}; there is one on the other side")
+    x1, w_dot = row["x1"][0], row["w_dot"][0]
+    return min(found, key=lambda orbit: math.hypot(orbit.states[0, 0] - x1, orbit.w_dot[0] - w_dot))
 
 
 def _beside(word: Word, p: Any, times: npt.NDArray[np.float64], distance: float) -> Orbit:

@@ -10,7 +10,39 @@ from vines.model import PARAMETER_NAMES
 from vines.stages.audit._defect import Defect, model_defects, relative, words
 from vines.stages.audit._rows import Floats, Rows
 
-__all__ = ["basin_defects", "check_defects", "optimum_defects", "reduced_defects"]
+__all__ = [
+    "atlas_defects",
+    "basin_defects",
+    "check_defects",
+    "dimensionless_defects",
+    "optimum_defects",
+    "reduced_defects",
+]
+
+
+def atlas_defects(rows: Rows) -> Iterator[Defect]:
+    """Yield the checks of rows of the table ``atlas``."""
+    done = rows.text("status") == "ok"
+    sought, less = (
+        [set((text or "").replace(",", " ").split()) for text in rows.text(name)] for name in ("words", "incomplete")
+    )
+    stray = np.array([not few <= all_of_them for few, all_of_them in zip(less, sought, strict=True)], dtype=bool)
+    bad = stray | ~(rows["stable"] <= rows["orbits"])
+    yield Defect("counts", "parts are no more than the whole", 0.0, np.where(done, np.where(bad, np.inf, 0.0), np.nan))
+
+
+def dimensionless_defects(rows: Rows) -> Iterator[Defect]:
+    """Yield the checks of rows of the table ``dimensionless``: (6) of the paper."""
+    M, omega0 = rows["mass"], rows["omega0"]
+    made = {
+        "k": (omega0**2 * M, "omega0^2 M"),
+        "c": (rows["lam"] * M * omega0, "lam M omega0"),
+        "E": (rows["A"] * rows["b"], "A b"),
+        "ball_mass": (rows["mu"] * M, "mu M"),
+        "forcing_frequency": (rows["Omega"] * omega0, "Omega omega0"),
+    }
+    for name, (value, says) in made.items():
+        yield Defect(name, says, 1e-12, relative(rows[name], value))
 
 
 def check_defects(rows: Rows) -> Iterator[Defect]:

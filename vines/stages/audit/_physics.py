@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -13,9 +14,12 @@ from vines.model import PARAMETER_NAMES
 from vines.pipeline import kinds
 from vines.stages.audit._bifurcations import bifurcation_defects, branch_defects, curve_defects
 from vines.stages.audit._defect import Defect
+from vines.stages.audit._exits import exit_defects, exit_point_defects, exit_regime_defects
 from vines.stages.audit._family import (
     family_attractor_defects,
     family_basin_defects,
+    family_bifurcation_defects,
+    family_branch_defects,
     family_curve_defects,
     family_impact_defects,
     family_orbit_defects,
@@ -25,7 +29,14 @@ from vines.stages.audit._family import (
 from vines.stages.audit._files import check_table
 from vines.stages.audit._impacts import POINT_COLUMNS, impact_defects, motion_defects
 from vines.stages.audit._orbits import orbit_defects
-from vines.stages.audit._others import basin_defects, check_defects, optimum_defects, reduced_defects
+from vines.stages.audit._others import (
+    atlas_defects,
+    basin_defects,
+    check_defects,
+    dimensionless_defects,
+    optimum_defects,
+    reduced_defects,
+)
 from vines.stages.audit._points import attractor_defects, point_defects
 from vines.stages.audit._rig import comparison_defects, cycle_defects, reconstruction_defects, rig_impact_defects
 from vines.stages.audit._rows import Rows
@@ -37,9 +48,10 @@ if TYPE_CHECKING:
     from vines.stages.audit._ledger import Ledger
     from vines.store import Result
 
-__all__ = ["check_physics", "defects", "describe_row"]
+__all__ = ["check_physics", "checks", "defects", "describe_row"]
 
 _CHECKS: dict[str, Callable[[Rows], Iterator[Defect]]] = {
+    "atlas": atlas_defects,
     "attractors": attractor_defects,
     "basins": basin_defects,
     "bifurcations": bifurcation_defects,
@@ -47,6 +59,7 @@ _CHECKS: dict[str, Callable[[Rows], Iterator[Defect]]] = {
     "checks": check_defects,
     "comparisons": comparison_defects,
     "curves": curve_defects,
+    "dimensionless": dimensionless_defects,
     "impacts": impact_defects,
     "optima": optimum_defects,
     "orbits": orbit_defects,
@@ -55,10 +68,13 @@ _CHECKS: dict[str, Callable[[Rows], Iterator[Defect]]] = {
     "reduced": reduced_defects,
     "rig_cycles": cycle_defects,
     "rig_impacts": rig_impact_defects,
+    "transients": partial(family_transient_defects, "transients"),
 }
 _OF_SYSTEMS: dict[str, Callable[[str, Rows], Iterator[Defect]]] = {
     "attractors": family_attractor_defects,
     "basins": family_basin_defects,
+    "bifurcations": family_bifurcation_defects,
+    "branches": family_branch_defects,
     "curves": family_curve_defects,
     "impacts": family_impact_defects,
     "orbits": family_orbit_defects,
@@ -66,7 +82,13 @@ _OF_SYSTEMS: dict[str, Callable[[str, Rows], Iterator[Defect]]] = {
     "transients": family_transient_defects,
 }
 """Of the tables that each system beside the VI-NES has of its own, as the VI-NES calls them."""
-_WHOLE = ("basins",)
+_OF_ANY: dict[str, Callable[[Rows], Iterator[Defect]]] = {
+    "exit_points": exit_point_defects,
+    "exit_regimes": exit_regime_defects,
+    "exits": exit_defects,
+}
+"""Of tables whose checks know nothing of the system, as the VI-NES calls them."""
+_WHOLE = ("basins", "exit_regimes")
 """Tables that are checked as a whole: their rows share a sum."""
 
 
@@ -108,11 +130,19 @@ def describe_row(table: pa.Table, place: int) -> str:
     return ", ".join([*told, f"point_id {row['point_id']}"])
 
 
+def checks(name: str) -> bool:
+    """Say whether there is anything that rows of a table are checked for."""
+    base = base_of(name)
+    return name in _CHECKS or base in _OF_ANY or (base != name and base in _OF_SYSTEMS)
+
+
 def defects(name: str, rows: Rows) -> Iterator[Defect]:
     """Return the checks of rows of a table, those of its system where that has it for its own."""
     if name in _CHECKS:
         return _CHECKS[name](rows)
     base = base_of(name)
+    if base in _OF_ANY:
+        return _OF_ANY[base](rows)
     return _OF_SYSTEMS[base](name, rows) if base != name and base in _OF_SYSTEMS else iter(())
 
 

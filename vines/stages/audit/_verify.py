@@ -11,6 +11,7 @@ import numpy as np
 from vines.errors import StoreError, UnknownNameError
 from vines.stages.api._home import Home, current
 from vines.stages.api._stored import stored_pipelines
+from vines.stages.audit._exits import check_exit_counts
 from vines.stages.audit._files import check_files, check_provenance, check_schema
 from vines.stages.audit._kept import check_pool, check_rows
 from vines.stages.audit._ledger import Ledger, Line
@@ -165,6 +166,7 @@ def _check_result(ledger: Ledger, where: str, result: Result, store: Store) -> b
                 check_physics(ledger, where, result, name)
         if all(readable.values()):
             check_links(ledger, where, result)
+            check_exit_counts(ledger, where, result)
     except (OSError, pa.ArrowException) as error:
         text = f"{where}: a table cannot be read: {str(error).splitlines()[0]}"
         ledger.note("files", "schemas", "", "tables", text)

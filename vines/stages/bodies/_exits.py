@@ -118,7 +118,7 @@ def _regimes(found: Exits) -> list[dict[str, Any]]:
                 "exits": each.exits,
                 "watched": each.watched,
                 "mean": _there(each.mean),
-                "mean_low": each.low,
+                "mean_low": _there(each.low),
                 "mean_high": _there(each.high),
                 "to": sorted(each.to),
                 "to_share": [each.to[k] / left for k in sorted(each.to)],
@@ -127,6 +127,7 @@ def _regimes(found: Exits) -> list[dict[str, Any]]:
                 "long_run_high": high[each.regime],
                 "basin": _there(basin),
                 "basin_error": _there(error),
+                "remark": each.remark or None,
             }
         )
     return rows

@@ -154,13 +154,16 @@ def _powers(measures: Measures, hits: np.ndarray, duration: float, law: HarvestL
 
 
 def _of_balls(measures: Measures) -> dict[str, float | None]:
-    """Return what is told of each ball where balls have numbers, and of a ball and the mass beside it."""
+    """Return what is told of each ball or each mode, where they have numbers, and of a ball and the mass beside it."""
     of_both = ("kinetic_ratio_ball", "kinetic_ratio_mass")
     found: dict[str, float | None] = {name: getattr(measures, name, None) for name in of_both}
     for number, each in enumerate(getattr(measures, "balls", ()), start=1):
         found[f"kinetic_ratio_{number}"] = each.kinetic_ratio
         loss = each.impact_loss_left + each.impact_loss_right
         found[f"impact_power_{number}"] = loss / measures.duration if measures.duration > 0 else None
+    for number, each in enumerate(getattr(measures, "modes", ()), start=1):
+        found[f"modal_energy_{number}"] = each.kinetic + each.potential if measures.duration > 0 else None
+        found[f"modal_loss_{number}"] = each.damper_loss / measures.duration if measures.duration > 0 else None
     return found
 
 

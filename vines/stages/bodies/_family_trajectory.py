@@ -46,7 +46,7 @@ def compute(job: Job[FamilyTrajectoryOptions]) -> Batch:
             job.folder / logs[point.id],
             states=run.sample(per_period=options.per_period, at_events=True),
             impacts=run.impacts,
-            sticks=run.sticks,
+            sticks=run.rests,
             provenance=job.provenance,
             parameters=p.as_dict(),
             name=f"{called}, {', '.join(f'{name} = {value:g}' for name, value in p.as_dict().items())}",

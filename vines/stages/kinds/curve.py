@@ -20,6 +20,9 @@ __all__ = ["KIND", "CurveOptions", "FamilyCurveOptions"]
 _BOUNDS = ("incomplete_chatter", "release_tangency")
 """Types that only orbits that stick have, which are those of the VI-NES."""
 
+_NO_MULTIPLIERS = "impact_pair"
+"""The system whose orbits that stick have multipliers of zero alone, and no bifurcations."""
+
 
 class CurveOptions(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """Every curve of one type of bifurcation of a word in the plane of the two varied parameters.
@@ -63,7 +66,7 @@ def _check(params: dict[str, float], options: CurveOptions) -> None:
 
 
 def _check_family(p: Parameters, options: FamilyCurveOptions) -> None:
-    word_for(options.word, p.system, sticking=p.system.balls > 0)
+    word_for(options.word, p.system, sticking=p.system.name != _NO_MULTIPLIERS)
 
 
 def _fits(stage: Stage, pipeline: Pipeline) -> None:
@@ -77,7 +80,7 @@ def _fits(stage: Stage, pipeline: Pipeline) -> None:
             f"type is {options.type!r}: where orbits that stick end is followed for the system {VI_NES.name!r} only; "
             "give another word or type, or branches, which end there"
         )
-    if sticking and not (system == VI_NES.name or with_one_ball(system).balls):
+    if sticking and system == _NO_MULTIPLIERS:
         raise DeclarationError(
             f"orbits of the system {system!r} that stick have multipliers of zero and no {options.type}; "
             "give a word without a star"
@@ -104,7 +107,7 @@ _VI_NES = Kind(
 
 KIND = of_systems(
     _VI_NES,
-    ("cubic_barriers", "drag", "hybrid", "impact_pair", "parallel"),
+    ("cubic_barriers", "drag", "duffing", "friction", "hybrid", "impact_pair", "modes", "parallel"),
     FamilyCurveOptions,
     "vines.stages.bodies._family_curve:compute",
     ("curves",),

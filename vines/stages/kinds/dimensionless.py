@@ -31,4 +31,5 @@ KIND = Kind(
     parameters={**TABLE_1, **{each.name: each.default for each in VI_NES.run}},
     vary="grid",
     check=_check,
+    again="points",
 )

@@ -9,7 +9,7 @@ from msgspec import Meta
 
 from vines.bounds import check_hold, check_periods
 from vines.errors import DeclarationError, ParameterError, nearest
-from vines.model import Parameters, Params, word_for
+from vines.model import VI_NES, Parameters, Params, system_names, word_for
 from vines.pipeline import Kind
 from vines.stages.kinds._family import of_systems
 from vines.stages.kinds._parameters import PARAMETERS
@@ -167,6 +167,9 @@ def _kernels(options: ExitsOptions, carried: bool) -> tuple[str, ...]:
     return (*asked, "orbits") if options.words else asked
 
 
+SCATTERED = (VI_NES.name, "impact_pair")
+"""Systems whose kernels have scatter."""
+
 _VI_NES = Kind(
     name="exits",
     summary="how long regimes hold under noise, where they are left to, and which holds most of the time",
@@ -177,13 +180,14 @@ _VI_NES = Kind(
     parameters={**PARAMETERS, "level": 1.0},
     vary="grid",
     check=_check,
+    again="long_points",
     kernels=_kernels,
-    meaningless={"parallel": "its kernels have no scatter"},
+    meaningless={name: "its kernels have no scatter" for name in system_names() if name not in SCATTERED},
 )
 
 KIND = of_systems(
     _VI_NES,
-    ("impact_pair",),
+    [name for name in SCATTERED if name != VI_NES.name],
     FamilyExitsOptions,
     "vines.stages.bodies._exits:compute",
     ("exit_points", "exit_regimes", "exits", "attractors"),

@@ -52,6 +52,8 @@ KIND = Kind(
         "and draw the plot designs",
         "cubic_barriers": "what a spring is worth depends on the attractor that is reached; vary it in sweeps and draw "
         "the plot designs",
+        "duffing": "what a ball is worth depends on the attractor that is reached; vary it in sweeps and draw the "
+        "plot response",
         "hybrid": "what a spring beside the ball is worth depends on the attractor that is reached; vary it in sweeps "
         "and draw the plot designs",
     },

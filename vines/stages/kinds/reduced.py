@@ -36,6 +36,7 @@ KIND = Kind(
         "impact_pair": "its level 1:1 motion is known in closed form (docs/systems.md), there is nothing to reduce",
         "parallel": "the reduction is that of one ball in a level cavity",
         "cubic_barriers": "the reduction is that of a ball that flies freely between its impacts",
+        "duffing": "the reduction is that of a ball in a linear oscillator",
         "hybrid": "the reduction has no mass on a spring beside the ball",
     },
 )

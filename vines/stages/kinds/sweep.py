@@ -56,7 +56,7 @@ _VI_NES = Kind(
 
 KIND = of_systems(
     _VI_NES,
-    ("cubic_barriers", "drag", "friction", "hybrid", "impact_pair", "parallel"),
+    ("cubic_barriers", "drag", "duffing", "friction", "hybrid", "impact_pair", "modes", "parallel"),
     FamilySweepOptions,
     "vines.stages.bodies._family_sweep:compute",
     ("points", "impacts", "attractors"),

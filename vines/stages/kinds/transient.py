@@ -51,7 +51,7 @@ _VI_NES = Kind(
 
 KIND = of_systems(
     _VI_NES,
-    ("cubic_barriers", "drag", "friction", "hybrid", "parallel"),
+    ("cubic_barriers", "drag", "duffing", "friction", "hybrid", "modes", "parallel"),
     FamilyTransientOptions,
     "vines.stages.bodies._family_transient:compute",
     ("transients",),

@@ -122,6 +122,7 @@ def _lines(
                     family=family_of(branch),
                     image=turned < 0,
                     ball=balls[k],
+                    stop=int(side) == 0,
                 )
 
 

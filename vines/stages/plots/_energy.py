@@ -82,7 +82,17 @@ def _energy(stages: list[Input], cell: Any, caption: str) -> EnergyPanel:
         )
         for k, group in enumerate(groups)
     ]
-    return EnergyPanel(axis, curves, caption, ratio=cell.show == "energy", window=cell.window, y=cell.y)
+    bodies = with_all_balls(table(called(stages[0].tables, "points")).system).bodies
+    return EnergyPanel(
+        axis,
+        curves,
+        caption,
+        ratio=cell.show == "energy",
+        window=cell.window,
+        y=cell.y,
+        # Of several balls the first tells what they are.
+        body=bodies[1].name.partition("_")[0],
+    )
 
 
 def _groups(points: pa.Table, names: list[str]) -> list[dict[str, float]]:

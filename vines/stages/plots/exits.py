@@ -25,7 +25,8 @@ class ExitsCell(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """A panel of one stage of kind exits.
 
     `survival` shows which share of the runs has not left a regime, a curve for each value of the varied parameter;
-    `mean` the mean time over that parameter; `shares` shares of the time in the long run and of the starts.
+    `mean` the mean time over that parameter, without splittings that tell none; `shares` shares of the time in the long
+    run and of the starts.
     """
 
     show: Annotated[Literal["survival", "mean", "shares"], Meta(description="What is shown")]
@@ -85,7 +86,8 @@ def _panel(cell: ExitsCell, stage: Input) -> Panel:
         return _survival(cell, stage, rows)
     axis = next(iter(stage.axes))
     if cell.show == "mean":
-        return HoldingPanel(axis, _curves(rows, axis, "mean", "mean_low", "mean_high"), cell.title, cell.log, cell.y)
+        told = [row for row in rows if not row.get("remark")]
+        return HoldingPanel(axis, _curves(told, axis, "mean", "mean_low", "mean_high"), cell.title, cell.log, cell.y)
     plain = [row for row in rows if row["method"] == "runs"]
     keys = ("long_run", "long_run_low", "long_run_high", "basin")
     return SharesPanel(axis, _curves(plain, axis, *keys), cell.title, cell.log, cell.y)
