@@ -87,6 +87,6 @@ def write_region_names(
 def _across(ax: Axes, x: npt.NDArray[np.float64], level: float, inside: npt.NDArray[np.bool_], column: int) -> float:
     """Return how far a region reaches along its row [px], about: panels are laid out later."""
     ends = np.flatnonzero(~np.concatenate([[False], inside, [False]]))
-    first, last = ends[ends <= column].max(), ends[ends > column].min() - 2
-    left, right = ax.transData.transform([(x[first], level), (x[last], level)])[:, 0]
+    first, last = int(ends[ends <= column].max()), int(ends[ends > column].min()) - 2
+    left, right = ax.transData.transform([(float(x[first]), level), (float(x[last]), level)])[:, 0]
     return float(abs(right - left)) * (last - first + 1) / max(last - first, 1)
