@@ -173,17 +173,22 @@ class Trajectory:
         return self.sticks
 
     def _rest_of_chatter(self, begins: npt.NDArray[np.int64]) -> npt.NDArray[np.float64]:
-        """Return how long the hops left out at each merge last together, 2 u/(a (1 - r)); 0 where r = 1."""
-        p, rows = self.params, self.rows[begins]
+        """Return how long the hops left out at each merge last together; 0 where r = 1."""
+        rows = self.rows[begins]
         side = rows[:, col.SIDE]
         speed = np.maximum(side * (rows[:, col.V2] - rows[:, col.V1]), 0.0)
-        push = side * room_of(p).push(p, rows[:, col.X1], rows[:, col.V1], rows[:, col.PHASE])
-        lasts = np.zeros(len(rows))
-        good = (push > 0) & (p.r < 1)
-        lasts[good] = 2 * speed[good] / (push[good] * (1 - p.r))
+        lasts = self._hops(speed, side * self._push(rows)) if self.params.r < 1 else np.zeros(len(rows))
         # Where the push has almost gone the ball is let go before the series would end.
         until = np.append(self.rows[1:, col.TIME], self.t_end)[begins] - rows[:, col.TIME]
         return np.where(lasts < until, lasts, 0.0)
+
+    def _push(self, rows: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+        """Return w'' of a free ball at merges."""
+        return room_of(self.params).push(self.params, rows[:, col.X1], rows[:, col.V1], rows[:, col.PHASE])
+
+    def _hops(self, speed: npt.NDArray[np.float64], push: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+        """Return how long hops last that begin with a speed, 2 u/(a (1 - r)); 0 where nothing pushes."""
+        return np.divide(2 * speed, push * (1 - self.params.r), out=np.zeros_like(speed), where=push > 0)
 
     @property
     def final(self) -> dict[str, float]:

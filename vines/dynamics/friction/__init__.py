@@ -53,19 +53,14 @@ class FrictionRun(Trajectory):
         events = np.flatnonzero((kinds != col.START) & (kinds != col.END))
         return events, events
 
-    def _rest_of_chatter(self, begins: npt.NDArray[np.int64]) -> npt.NDArray[np.float64]:
-        p, rows = self.params, self.rows[begins]
-        side = rows[:, col.SIDE]
-        speed = np.maximum(side * (rows[:, col.V2] - rows[:, col.V1]), 0.0)
-        push = side * ROOM.push(p, rows[:, col.X1], rows[:, col.V1], rows[:, col.PHASE])
-        out, back = push + (1 + p.mu) * p.f, push - (1 + p.mu) * p.f
-        lasts = np.zeros(len(rows))
-        good = (back > 0) & (p.r < 1)
-        out, back, speed = out[good], back[good], speed[good]
+    def _hops(self, speed: npt.NDArray[np.float64], push: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+        p = self.params
+        lasts = np.zeros_like(speed)
+        good = push > (1 + p.mu) * p.f
+        out, back, speed = push[good] + (1 + p.mu) * p.f, push[good] - (1 + p.mu) * p.f, speed[good]
         # A hop brakes faster than it comes back, and each is shorter by the same ratio.
         lasts[good] = speed * (1 / out + 1 / np.sqrt(out * back)) / (1 - p.r * np.sqrt(back / out))
-        until = np.append(self.rows[1:, col.TIME], self.t_end)[begins] - rows[:, col.TIME]
-        return np.where(lasts < until, lasts, 0.0)
+        return lasts
 
 
 class _Friction(Room):

@@ -87,19 +87,11 @@ class ModesRun(Trajectory):
     q_dot²/2 and potential that of omega² (q - gamma base)²/2.
     """
 
-    def _rest_of_chatter(self, begins: npt.NDArray[np.int64]) -> npt.NDArray[np.float64]:
-        p, rows = self.params, self.rows[begins]
-        side = rows[:, col.SIDE]
-        speed = np.maximum(side * (rows[:, col.V2] - rows[:, col.V1]), 0.0)
-        # The push before the merge, whose blow the dampers feel already in the rows.
+    def _push(self, rows: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+        # That before the merge, whose blow the dampers feel already in the rows.
+        p = self.params
         impulse = -p.mu * (rows[:, col.A_V2] - rows[:, col.V2])
-        damped = sum(lam * phi**2 for lam, phi in zip(p.lam, p.phi, strict=True))
-        push = side * (push_of(p, rows) + damped * impulse)
-        lasts = np.zeros(len(rows))
-        good = (push > 0) & (p.r < 1)
-        lasts[good] = 2 * speed[good] / (push[good] * (1 - p.r))
-        until = np.append(self.rows[1:, col.TIME], self.t_end)[begins] - rows[:, col.TIME]
-        return np.where(lasts < until, lasts, 0.0)
+        return push_of(p, rows) + impulse * sum(lam * phi**2 for lam, phi in zip(p.lam, p.phi, strict=True))
 
     def _fill(
         self,

@@ -99,17 +99,6 @@ class TaylorRun(SeriesRun):
         # The spring pushes too, which `Room.push` of one wall alone could not say.
         return push - rows[:, col.SIDE] * (1 + p.mu) * (p.k1 + p.k3)
 
-    def _rest_of_chatter(self, begins: npt.NDArray[np.int64]) -> npt.NDArray[np.float64]:
-        p, rows = self.params, self.rows[begins]
-        side = rows[:, col.SIDE]
-        speed = np.maximum(side * (rows[:, col.V2] - rows[:, col.V1]), 0.0)
-        push = side * self._push(rows)
-        lasts = np.zeros(len(rows))
-        good = (push > 0) & (p.r < 1)
-        lasts[good] = 2 * speed[good] / (push[good] * (1 - p.r))
-        until = np.append(self.rows[1:, col.TIME], self.t_end)[begins] - rows[:, col.TIME]
-        return np.where(lasts < until, lasts, 0.0)
-
     def _fill(
         self,
         t: npt.NDArray[np.float64],
