@@ -1,8 +1,8 @@
-"""Attractors that stick with a coil, friction or a spring at random parameters, each found as an orbit by its word.
+"""Attractors that stick, of the systems with one ball beside the VI-NES, at random, each found as an orbit by its word.
 
-Run as ``python -m benchmarks.sticking_of_systems [points] [seed]``. mu is drawn log-uniformly from .01 to .5, A from
-.06 to 4, lam from .01 to .25, Omega uniformly from .5 to 1.6, r from .05 to .6; what acts on the ball as `draw` says.
-Of ``L*R*`` one in twenty counts. K2/K1 and the polynomial of the multipliers are compared with those of `settle`.
+Run as ``python -m benchmarks.sticking_of_systems [points] [seed] [system …]``. mu is drawn log-uniformly from .01 to
+.5, A from .06 to 4, lam from .01 to .25, Omega uniformly from .5 to 1.6, r from .05 to .6; what else there is as `draw`
+says. Of ``L*R*`` one in twenty counts. K2/K1 and the polynomial of the multipliers are compared with those of `settle`.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ import numpy as np
 
 from vines.attractors import settle
 from vines.orbits import all_orbits
-from vines.systems import CubicBarriers, Drag, Friction
+from vines.systems import CubicBarriers, Drag, Duffing, Friction, Hybrid, Modes
 
 SHARE = 0.05
 TOLERANCE = 1e-8
@@ -34,6 +34,16 @@ def draw(system: type, rng: np.random.Generator) -> Any:
         return Drag(**common, delta=10 ** rng.uniform(-2, 0.3))
     if system is Friction:
         return Friction(**common, f=10 ** rng.uniform(-2.5, -0.3), G=float(rng.choice([0.0, 0.05])))
+    if system is Duffing:
+        return Duffing(**common, alpha=10 ** rng.uniform(-1.5, 0.7))
+    if system is Hybrid:
+        spring = {"k1": rng.uniform(-0.2, 1), "k3": 10 ** rng.uniform(-2, 1), "l2": 10 ** rng.uniform(-2, 0)}
+        return Hybrid(**common, mu_n=10 ** rng.uniform(-2.5, -0.5), **spring)
+    if system is Modes:
+        omega = (1.0, *np.cumprod(rng.uniform(1.3, 3.0, rng.integers(1, 3))).tolist())
+        phi, gamma = ((1.0, *rng.uniform(-1, 1, len(omega) - 1).tolist()) for _ in range(2))
+        damping = common.pop("lam")
+        return Modes(**common, omega=omega, phi=phi, gamma=gamma, lam=[damping * each for each in omega])
     return CubicBarriers(
         **common, k1=rng.uniform(-0.2, 0.3), k3=10 ** rng.uniform(-2, 0), l2=float(rng.choice([0, 0.1]))
     )
@@ -72,5 +82,7 @@ def study(system: type, points: int, seed: int) -> None:
 
 
 if __name__ == "__main__":
-    for each in (Drag, Friction, CubicBarriers):
-        study(each, *(int(word) for word in (sys.argv[1:] + ["40", "18"][len(sys.argv) - 1 :])))
+    numbers = [int(word) for word in sys.argv[1:3]]
+    for each in (Drag, Friction, CubicBarriers, Duffing, Hybrid, Modes):
+        if len(sys.argv) < 4 or each.__name__ in sys.argv[3:]:
+            study(each, *(numbers + [40, 18][len(numbers) :]))

@@ -129,10 +129,9 @@ def test_the_cantilever_is_one():
         ("phi = [0.8, -0.7]", "phi = [0.0, -0.7]", "phi_1 is 0"),
         ("phi = [0.8, -0.7]", "phi = [0.8]", "params.phi is a list of 1, and there are 2 modes"),
         ('kind = "branch"', 'kind = "reduced"', "the kind 'reduced' cannot do the system 'modes'"),
-        ('word = "LR"', 'word = "L*R"', "L*R"),
     ],
 )
 def test_what_cannot_be_is_refused_before_any_work(structure, old, new, text):
     structure(MODES.replace(old, new))
-    with pytest.raises(VinesError, match=text.replace("*", r"\*")):
+    with pytest.raises(VinesError, match=text):
         load_pipeline("structure")

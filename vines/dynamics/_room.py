@@ -25,7 +25,7 @@ from vines.dynamics._totals import TOTALS
 from vines.errors import StateError, nearest
 from vines.model import Params
 
-__all__ = ["IN_TURN", "TIES", "TOGETHER", "Layout", "Room", "constants", "room_of", "start_of", "table_of"]
+__all__ = ["IN_TURN", "TIES", "TOGETHER", "Layout", "Room", "Slopes", "constants", "room_of", "start_of", "table_of"]
 
 Floats = npt.NDArray[np.float64]
 
@@ -42,6 +42,27 @@ class Layout(NamedTuple):
     totals: int = TOTALS
     directions: int = 4
     rows: int = 256
+
+
+class Slopes(NamedTuple):
+    """How the push of a frame on what rides on a wall of it changes, at a state in which the wall does not press.
+
+    Attributes
+    ----------
+    by_time : float
+        Its derivative by time at fixed coordinates.
+    by_state : ndarray, shape (2 + n,)
+        Its derivatives by x1, v1 and what moves beside ball and frame.
+    rates : ndarray, shape (n,)
+        Derivatives by time of what moves beside.
+    blown : ndarray, shape (n,)
+        What is added to these where the wall presses, over what is added to x1''.
+    """
+
+    by_time: float
+    by_state: Floats
+    rates: Floats
+    blown: Floats
 
 
 class Room:
@@ -149,6 +170,19 @@ class Room:
         """Return w'' of a free ball."""
         force = p.A * (np.sin(phase) + p.lam * p.Omega * np.cos(phase))
         return force - p.lam * v1 - x1
+
+    def pushed(self, p: Any, x1: Any, v1: Any, phase: Any, beside: Any) -> Any:
+        """Return w'' of a free ball, with the coordinates that rows have of what moves beside ball and frame."""
+        return self.push(p, x1, v1, phase)
+
+    def slopes(self, p: Any, x1: float, v1: float, phase: float, beside: Floats) -> Slopes:
+        """Return how `pushed` changes."""
+        by_time = p.A * p.Omega * (math.cos(phase) - p.lam * p.Omega * math.sin(phase))
+        return Slopes(by_time, np.array([-1.0, -p.lam]), np.empty(0), np.empty(0))
+
+    def alongside(self, p: Any) -> tuple[float, ...]:
+        """Return of each coordinate of what moves beside 1 if its difference to x1 says what pushes, else 0."""
+        return ()
 
     def let_go(self, p: Any, side: int) -> float:
         """Return the `push` at which a ball that rides on a wall leaves it: 0 where the wall alone acts on it."""

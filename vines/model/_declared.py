@@ -169,7 +169,6 @@ def _system(form: Mapping[str, Any], what: str, count: int) -> System:
         without=tuple(form.get("without", ())),
         order=form.get("order", 0),
         stops=form.get("stops", False),
-        starred=form.get("starred", True),
         smooth=form.get("smooth", False),
         modes=count if what == "mode" else 0,
     )

@@ -215,8 +215,6 @@ class System(msgspec.Struct, frozen=True, dict=True):
         Of the Taylor series by which it moves between events; 0 where closed forms are exact.
     stops : bool
         Whether a ball may stop in mid-cavity.
-    starred : bool
-        Whether orbits that stick are computed.
     smooth : bool
         Whether motions without impacts are isolated, so that they have orbits.
     modes : int
@@ -239,7 +237,6 @@ class System(msgspec.Struct, frozen=True, dict=True):
     without: tuple[str, ...] = ()
     order: int = 0
     stops: bool = False
-    starred: bool = True
     smooth: bool = False
     modes: int = 0
 

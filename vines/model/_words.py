@@ -345,11 +345,6 @@ def word_for(text: str | Word, system: System, *, sticking: bool = True) -> Word
         )
     if word.sticking and not sticking:
         raise ParameterError(f"{str(text)!r} sticks, for which this is not made; give a word without a star")
-    if word.sticking and not system.starred:
-        raise ParameterError(
-            f"{str(text)!r} sticks, and orbits that stick are not computed for {system.name!r}; give a word without a "
-            "star, or follow it by simulation"
-        )
     return word
 
 

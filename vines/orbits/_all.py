@@ -19,7 +19,7 @@ from vines.orbits._equations import newton_kernel
 from vines.orbits._general import ITERATIONS, proper, same
 from vines.orbits._joined import mirror_image
 from vines.orbits._orbit import Orbit
-from vines.orbits._own_word import sticking_word, whole_word
+from vines.orbits._own_word import whole_word
 from vines.orbits._seeds import base_word, doubled_times, harvested_times, random_times, simplex_times
 from vines.orbits._shooting import refuse_no_walls, shoots
 from vines.orbits._shooting_search import gather_shots, of_the_vi_nes
@@ -118,7 +118,6 @@ def all_orbits(word: str | Word, p: Any, *, proof: bool = False) -> Orbits:
         found, how = smooth_orbits(word, p)
         return Orbits(_in_order(found), complete=False, remark=how, nearest=np.inf)
     if word.sticking:
-        word = sticking_word(word, p)
         if rides_capsule(p):
             found, how = capsule_orbits(word, p)
             return Orbits(found, complete=True, remark=how, nearest=np.inf)

@@ -13,7 +13,7 @@ from vines.model import Params, Word
 from vines.orbits._all import Orbits, all_orbits
 from vines.orbits._general import refine, search
 from vines.orbits._orbit import Orbit
-from vines.orbits._own_word import sticking_word, whole_word
+from vines.orbits._own_word import whole_word
 from vines.orbits._shooting import shoots
 from vines.orbits._slid import refine_slid
 from vines.orbits._slid_round import slides
@@ -82,7 +82,7 @@ def find_orbit(word: str | Word, p: Any, guess: Orbit | npt.ArrayLike | None = N
             return capsule_sticks(word, p)
         if word.sticking and by_sections(p):
             return refine_balls(word, p, guess)
-        return refine_sticking(sticking_word(word, p), p, guess) if word.sticking else refine(word, p, guess)
+        return refine_sticking(word, p, guess) if word.sticking else refine(word, p, guess)
     found = all_orbits(word, p)
     if found:
         return choose(found)

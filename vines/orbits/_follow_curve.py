@@ -20,7 +20,6 @@ from vines.orbits._curve import Curve, SpecialPoint
 from vines.orbits._curve_equations import CurveEquations
 from vines.orbits._curve_problem import CurveProblem
 from vines.orbits._joined import is_joint, left_family
-from vines.orbits._own_word import sticking_word
 from vines.orbits._problem import Point, ZeroSet
 from vines.orbits._slid_curve import SlidCurve
 from vines.orbits._slid_round import slides
@@ -195,7 +194,6 @@ def _problem(bifurcation: Bifurcation, parameters: tuple[str, str], spans: Float
     if orbit.word.unstruck:
         form = SmoothCurve
     if orbit.word.sticking:
-        sticking_word(orbit.word, orbit.params)
         form = BallsCurve if by_sections(orbit.params) else StickingCurve
     return form(bifurcation.type, orbit, parameters, tuple(spans.tolist()))
 

@@ -4,14 +4,15 @@ from __future__ import annotations
 
 import math
 
-from vines.dynamics.kernels import after_impact_kernel
+from vines.dynamics.kernels import after_impact_kernel, segment_state
 from vines.dynamics.kernels import rows as col
 from vines.dynamics.modes import ModesConstants
-from vines.dynamics.modes.kernels import BALL, BEFORE, PHI, R_MODAL, note, of_mode, oscillator_at
+from vines.dynamics.modes.kernels import BALL, BEFORE, PHI, R_MODAL, modal_at, note, of_mode, of_row, oscillator_at
 from vines.kernels import linked_njit, njit, zero_matrix
 from vines.orbits._budget import orbit_rows
 from vines.orbits._chains import ball_of, chain_closing, gravity, response, response_of, steady, steady_of
 from vines.orbits._equations import closing_kernel, closing_unit, prepared
+from vines.orbits._motions import move_on
 from vines.orbits._survey import inspect_row, survey_kernel, survey_rows
 from vines.orbits._turnings_of_balls import gap_kernel, rides, turnings_kernel
 
@@ -108,6 +109,15 @@ def _orbit_rows(c, duration, side, t, states):
             rows[j, R_MODAL + 2 * k], rows[j, R_MODAL + 1 + 2 * k] = z, z_dot
         rows[N, R_MODAL + 2 * k], rows[N, R_MODAL + 1 + 2 * k] = rows[0, R_MODAL + 2 * k], rows[0, R_MODAL + 1 + 2 * k]
     return rows
+
+
+@move_on.register(ModesConstants)
+@linked_njit
+def _move_on(c, row, tau):
+    x1, v1, x2, v2, phase = segment_state(c, row, tau)
+    o, _ = of_row(c, row)
+    modal_at(c, o, tau, row, R_MODAL)
+    row[col.X1], row[col.A_V1], row[col.X2], row[col.A_V2], row[col.PHASE] = x1, v1, x2, v2, phase
 
 
 @rides.register(ModesConstants)

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import math
 
+from vines.dynamics.drag import DragConstants
+from vines.dynamics.friction import FrictionConstants
 from vines.dynamics.hybrid import HybridConstants
 from vines.dynamics.hybrid.kernels import R_V3, R_X3, Z, accelerations, carry, expand_both, fill, of_row
 from vines.dynamics.kernels import after_impact_kernel, segment_state
@@ -91,6 +93,10 @@ def move_on(c, row, tau):
     """Let a row be what it is a time tau later, at which the next event may be."""
     x1, v1, x2, v2, phase = segment_state(c, row, tau)
     row[col.X1], row[col.A_V1], row[col.X2], row[col.A_V2], row[col.PHASE] = x1, v1, x2, v2, phase
+
+
+move_on.register(DragConstants)(move_on.first)
+move_on.register(FrictionConstants)(move_on.first)
 
 
 @move_on.register(HybridConstants)

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import Any
 
-from vines.errors import OrbitNotFound, ParameterError
+from vines.errors import ParameterError
 from vines.model import STOPS, Word, not_alone, of_moderate_length
 
-__all__ = ["own_word", "sticking_word", "whole_word"]
+__all__ = ["own_word", "whole_word"]
 
 
 def own_word(word: str | Word, p: Any) -> Word:
@@ -57,19 +57,4 @@ def whole_word(word: str | Word, p: Any) -> Word:
         who = ", ".join(f"ball {number}" for number in numbers if number) or "a ball without number"
         has = f"balls 1 … {balls}" if balls > 1 else "one ball"
         raise ParameterError(f"{word} has impacts of {who}, the system has {has}; give a word in which each hits")
-    return word
-
-
-def sticking_word(word: Word, p: Any) -> Word:
-    """Return a word with a star if the orbits of its system that stick are computed.
-
-    Raises
-    ------
-    OrbitNotFound
-        If they are not.
-    """
-    if not p.system.starred:
-        raise OrbitNotFound(
-            f"{word} sticks, and orbits that stick are not computed for {p.system.name!r}; follow it by simulation"
-        )
     return word

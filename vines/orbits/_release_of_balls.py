@@ -119,9 +119,9 @@ class Release:
             found += [Y[2 + 2 * k] + end[3 + 2 * place] * late, Y[3 + 2 * k] - p.G * late]
         return np.stack(found)
 
-    def falling(self, p: Any, phase: float, v1: float) -> float:
-        """Return the derivative by time of the push, x1'' + G, at a release."""
-        return falling(p, phase, v1)
+    def still(self, p: Any, phase: float) -> float:
+        """Return about which velocity the push, x1'' + G, does not change at a release."""
+        return falling(p, phase, 0.0)
 
     def among(self, rows: Floats) -> Sequence[tuple[int, Release]]:
         """Return the last rows of releases, each with its section."""

@@ -8,9 +8,10 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from vines.dynamics.kernels import constants, room_of, segment_state
+from vines.dynamics.kernels import constants, room_of
 from vines.dynamics.kernels import rows as col
-from vines.orbits._release_of_one import LetGo
+from vines.orbits._motions import move_on
+from vines.orbits._release_of_one import release_on
 from vines.orbits._slid import clearance_of_rests
 from vines.orbits._survey import NO_TURNING, inspect_row
 
@@ -36,22 +37,28 @@ def clearance_of_one(p: Any, rows: Floats) -> float:
         if tau <= 2 * _SHORT or row[col.MODE] != 0.0:
             continue
         later = row.copy()
-        x1, v1, x2, v2, phase = segment_state(c, row, _SHORT)
-        later[[col.X1, col.A_V1, col.X2, col.A_V2, col.PHASE]] = x1, v1, x2, v2, phase
+        move_on(c, later, _SHORT)
         # A series begins at the gap that stands for the wall.
-        later[col.SIDE] = x1 - x2
+        later[col.SIDE] = later[col.X1] - later[col.X2]
         least = min(least, float(inspect_row(c, 0, later, tau - _SHORT)[0]))
     return least
 
 
 def _force(p: Any, row: Floats, tau: float) -> tuple[float, float]:
-    """Return (1 + mu) times the contact force of a spell over the mass of the ball, and its derivative."""
+    """Return the contact force of a spell over that with which a frame at rest would press, and its derivative."""
     room, side = room_of(p), int(row[col.MODE])
-    x1, v1, _, _, phase = segment_state(constants(p), row, tau)
-    beyond = float(room.push(p, x1, v1, phase)) - room.let_go(p, side)
-    let_go = LetGo(side)
-    rate = let_go.falling(p, float(phase), float(v1)) - p.lam * beyond / (1.0 + p.mu)
-    return side * beyond, side * rate
+    section, here = release_on(p, side), row.copy()
+    move_on(constants(p), here, tau)
+    x1, v1, phase = (float(each) for each in here[[col.X1, col.A_V1, col.PHASE]])
+    beside = section.beside(here)
+    beyond = float(room.pushed(p, x1, v1, phase, beside)) - room.let_go(p, side)
+    slopes = room.slopes(p, x1, v1, phase, beside)
+    # Where the wall presses the frame is slower than the push alone would have it, and what moves beside feels that.
+    share = 1.0 / (1.0 + room.law(p, 1).ratio)
+    rate = section.rate(p, v1, slopes) + beyond * (
+        share * slopes.by_state[1] - (1.0 - share) * slopes.by_state[2:] @ slopes.blown
+    )
+    return side * beyond, side * float(rate)
 
 
 def least_of_one(p: Any, row: Floats, tau: float) -> float:
@@ -71,7 +78,8 @@ def least_of_one(p: Any, row: Floats, tau: float) -> float:
 
 def fall_of_one(p: Any, row: Floats) -> float:
     """Return the rate at which the contact force falls at the row of a release."""
-    return abs(LetGo(int(row[col.SIDE])).falling(p, float(row[col.PHASE]), float(row[col.V1])))
+    section = release_on(p, int(row[col.SIDE]))
+    return abs(section.falling(p, section.read(row)))
 
 
 def only_held(p: Any, spell: npt.NDArray[np.void]) -> float:

@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from vines.dynamics.kernels import constants, tangent_product, window_totals
+from vines.dynamics.kernels import constants, room_of, tangent_product, window_totals
 from vines.dynamics.kernels import rows as col
 from vines.dynamics.parallel import ParallelConstants
 from vines.dynamics.parallel.kernels import BALL, R_X2
@@ -26,7 +26,7 @@ from vines.orbits._newton_of_balls import solve_round
 from vines.orbits._orbit import SPELL, Orbit
 from vines.orbits._own_word import own_word
 from vines.orbits._release_of_balls import Ran, Section, run_on, run_round
-from vines.orbits._release_of_one import rides_alone
+from vines.orbits._release_of_one import LetGo, rides_alone
 from vines.orbits._riding_alone import clearance_of_one, fall_of_one, least_of_one
 from vines.orbits._riding_of_balls import clearance_of_balls, fall_of_balls, least_of_balls
 
@@ -117,7 +117,10 @@ def _ordered(word: Word, p: Any, section: Section, z: Floats, ran: Ran) -> _Cont
     t = section.phase(z) / p.Omega + ran.rows[places, col.TIME]
     starts = [k for k in range(len(own)) if own[k:] + own[:k] == wanted]
     k, t = begun_first(starts, word, p, t)
-    states = ran.rows[places][:, [col.X1, col.V1, col.X2, col.V2]]
+    room = room_of(p)
+    width = room.layout(p).width
+    kept = [col.X1, col.V1, col.X2, col.V2, *range(width - len(room.beside), width)]
+    states = ran.rows[places][:, kept]
     return _Contacts([*places[k:], *places[:k]], t, np.concatenate([states[k:], states[:k]]))
 
 
@@ -173,6 +176,9 @@ def _assembled(word: Word, p: Any, release: Begun, ran: Ran, met: _Contacts, hal
     instant = struck = None
     if not rides_alone(p):
         instant, struck = _instant(rows, met.places[0]), rows[met.places][:, [col.A_V1, col.A_V2]]
+    elif isinstance(section, LetGo) and rows.shape[1] > col.ROW:
+        first = rows[met.places[0]]
+        instant = np.append(first[[col.X1, col.A_V1, col.X2, col.A_V2]], section.beside(first))
     for array in (met.t, met.states, jacobians, spells, instant, struck):
         if array is not None:
             array.setflags(write=False)
@@ -238,9 +244,9 @@ def _spells(word: Word, p: Any, twice: Floats, met: _Contacts) -> npt.NDArray[np
 
 def _whose(row: Floats) -> float:
     """Return the number of the ball of an event, where there is one alone 0; -1 where a flight is begun afresh."""
-    if len(row) > col.ROW:
-        return float(row[BALL])
-    return 0.0 if row[col.KIND] in (col.IMPACT, col.STICK, col.RELEASE, col.STOP) else -1.0
+    if row[col.KIND] not in (col.IMPACT, col.STICK, col.RELEASE, col.STOP):
+        return -1.0
+    return float(row[BALL]) if len(row) > col.ROW else 0.0
 
 
 def _leaves(rows: Floats, i: int, side: float) -> bool:

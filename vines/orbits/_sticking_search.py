@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from vines.dynamics import Trajectory, simulate
-from vines.dynamics.kernels import constants
+from vines.dynamics.kernels import constants, room_of
 from vines.dynamics.kernels import rows as col
 from vines.errors import OrbitNotFound, ParameterError
 from vines.model import STATE_NAMES, Params, Word
@@ -175,6 +175,6 @@ def refine_sticking(word: Word, p: Params, guess: Orbit | npt.ArrayLike) -> Orbi
 def no_sticking_orbit(word: Word, p: Params, how: str) -> OrbitNotFound:
     """Return the exception for a word with a star of which none was found."""
     guess = "simulate there and give time and v1 of the release after its first star as guess"
-    if any(word.balls):
+    if any(word.balls) or room_of(p).alongside(p):
         guess = "follow an orbit of this word to there, or settle there and take its word"
     return OrbitNotFound(f"no {word} orbit at {p} ({how}); try other parameters, or {guess}")

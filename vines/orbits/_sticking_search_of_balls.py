@@ -20,7 +20,7 @@ from vines.orbits._newton_of_balls import solve_round
 from vines.orbits._orbit import Orbit
 from vines.orbits._own_word import own_word
 from vines.orbits._release_of_balls import Moment, Release, Section, releases_among, run_on, run_round
-from vines.orbits._release_of_one import LetGo, rides_alone
+from vines.orbits._release_of_one import release_on, rides_alone
 from vines.orbits._seeds import starts_of
 from vines.orbits._sticking_of_balls import Begun, balls_orbit, mirrored_balls
 from vines.orbits._sticking_search import repeats
@@ -34,6 +34,9 @@ _PERIODS = 200
 
 _DRAWN = 5
 """Simulations from starts that are drawn, beside those that begin in the middle."""
+
+_DRAWN_BESIDE = 25
+"""The same where more than ball and frame moves, and no grid of releases is tried."""
 
 _LATE = 12
 """Sections of each simulation that are tried, the last ones."""
@@ -59,7 +62,8 @@ _ALIKE = 1e-7
 
 def search_balls(word: Word, p: Any) -> tuple[list[Orbit], str]:
     """Return the different orbits of a word with a star that are found, each once, and how they were searched for."""
-    how = "Newton's method from simulations and from a grid of releases of all balls: there may be more"
+    also = " and from a grid of releases of all balls" if any(_all_ride(word, p, IN_TURN)) else ""
+    how = f"Newton's method from simulations{also}: there may be more"
     found = _searched(word, p, IN_TURN)
     if not found and len(set(getattr(p, "beta", (1.0,)))) < getattr(p, "balls", 1):
         # Equal cavities: what arrives together after a common release may also be struck at once.
@@ -78,6 +82,8 @@ def _searched(word: Word, p: Any, ties: str) -> list[Orbit]:
     for run in runs:
         for section, z in sections_of(run, ties, 2 * word.p):
             _add(found, tried, word, p, section, z)
+            if p.mirrored and own_word(word.mirror, p) != word:
+                _add(found, tried, word, p, section.mirrored, section.image(z))
     for section in _all_ride(word, p, ties):
         # Over half a period more releases lead to the contacts of a symmetric orbit.
         for mirrored in (True, False) if p.mirrored and word.symmetric else (False,):
@@ -95,7 +101,7 @@ def _starts(p: Any) -> Iterator[dict[str, Any]]:
     """Yield starts: balls in the middle at several speeds, and some that are drawn."""
     yield from starts_of(p)
     rng = np.random.default_rng(_DRAWN)
-    for _ in range(_DRAWN):
+    for _ in range(_DRAWN_BESIDE if _moves_beside(p) else _DRAWN):
         yield room_of(p).draw(p, rng)
 
 
@@ -115,7 +121,8 @@ def sections_of(run: Trajectory, ties: str, periods: float) -> Iterator[tuple[Se
     met = [(i, section) for i, section in _releases(p, rows, ties) if late[i]]
     for i, section in met[: -_LATE - 1 : -1]:
         yield section, section.read(rows[i])
-    if met or not (rows[late, col.KIND] == col.STICK).any():
+    # A ball alone that comes to ride is let go, or rides on for ever.
+    if met or rides_alone(p) or not (rows[late, col.KIND] == col.STICK).any():
         return
     lasts = np.append(rows[1:, col.TAU], 0.0) * late * (rows[:, col.MODE] == 0.0)
     row, half = rows[int(np.argmax(lasts))], 0.5 * float(lasts.max())
@@ -128,7 +135,7 @@ def sections_of(run: Trajectory, ties: str, periods: float) -> Iterator[tuple[Se
 
 def _releases(p: Any, rows: Floats, ties: str) -> Sequence[tuple[int, Release]]:
     """Return the rows of releases, each with its section."""
-    return LetGo(1).among(rows) if rides_alone(p) else releases_among(rows, p.balls, ties)
+    return release_on(p, 1).among(rows) if rides_alone(p) else releases_among(rows, p.balls, ties)
 
 
 def _add(
@@ -162,20 +169,34 @@ def _known(tried: list[tuple[Section, Floats]], section: Section, z: Floats) -> 
 
 
 def _all_ride(word: Word, p: Any, ties: str) -> Iterator[Release]:
-    """Yield the releases of all balls at once that a word allows: each has a contact there that sticks."""
+    """Yield the releases of all balls at once that a word allows: each has a contact there that sticks.
+
+    None where more than ball and frame moves, for which a grid of releases would have too many numbers.
+    """
+    if _moves_beside(p):
+        return
     for side in (1, -1):
         marks = zip(word.sides, word.balls, word.sticks, strict=True)
         riders = {ball for wall, ball, sticks in marks if sticks and wall == side}
         if riders and rides_alone(p):
-            yield LetGo(side)
+            yield release_on(p, side)
         elif len(riders) == getattr(p, "balls", 1):
             yield Release(side, tuple(range(p.balls)), p.balls, ties)
+
+
+def _moves_beside(p: Any) -> bool:
+    """Say whether more moves than a frame with one coordinate, and what is between its walls."""
+    return rides_alone(p) and room_of(p).layout(p).width > col.ROW
 
 
 def _fastest(runs: list[Trajectory], p: Any) -> float:
     """Return up to which velocity, beyond that at which the contact force would not fall, releases are looked for."""
     seen = max(float(np.abs(run.rows[:, [col.V1, col.A_V1]]).max()) for run in runs)
-    return _MARGIN * seen + p.A * p.Omega * math.hypot(1.0, p.lam * p.Omega)
+    room = room_of(p)
+    rates = [
+        room.slopes(p, 0.0, 0.0, phase, np.zeros(len(room.alongside(p)))).by_time for phase in (0.0, 0.5 * math.pi)
+    ]
+    return _MARGIN * seen + math.hypot(*rates)
 
 
 def _of_grid(word: Word, p: Any, section: Release, fastest: float, mirrored: bool) -> list[Floats]:
@@ -190,7 +211,7 @@ def _of_grid(word: Word, p: Any, section: Release, fastest: float, mirrored: boo
     releases = np.empty((_GRID, _GRID, 2))
     for i, phase in enumerate((2.0 * math.pi * places).tolist()):
         for j, speed in enumerate((fastest * places**2).tolist()):
-            z = releases[i, j] = (phase, section.falling(p, phase, 0.0) + section.side * speed)
+            z = releases[i, j] = (phase, section.still(p, phase) + section.side * speed)
             ran = run_round(p, section, span, np.array(z), target)
             if ran is not None:
                 misses[i, j] = np.abs(section.closing(p, ran, span, np.array(z), sign)[0]).max()
@@ -219,7 +240,7 @@ def refine_balls(word: Word, p: Any, guess: Orbit | npt.ArrayLike) -> Orbit:
         section, z = guess.release
     else:
         given = np.asarray(guess, dtype=np.float64)
-        one = getattr(p, "balls", 1) == 1
+        one = getattr(p, "balls", 1) == 1 and not room_of(p).alongside(p)
         if not one or given.shape != (2,) or not np.isfinite(given).all():
             numbers = ", or time and v1 of the release after its first star, two numbers" if one else ""
             raise ParameterError(
@@ -227,7 +248,7 @@ def refine_balls(word: Word, p: Any, guess: Orbit | npt.ArrayLike) -> Orbit:
                 f"{np.array2string(given, precision=4, threshold=8)}"
             )
         side = word.sides[word.sticks.index(True)]
-        section = LetGo(side) if rides_alone(p) else Release(side, (0,), 1)
+        section = release_on(p, side) if rides_alone(p) else Release(side, (0,), 1)
         z = np.array([float(given[0] * p.Omega) % (2 * math.pi), given[1]])
     solved, left = solve_round(p, section, word.p * p.period, z, mirrored=False, most=_ROUNDS)
     if not math.isfinite(left):

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from vines.dynamics._room import Layout, Room
+from vines.dynamics._room import Layout, Room, Slopes
 from vines.dynamics.duffing import _energies as _energies
 from vines.dynamics.duffing import _held as _held
 from vines.dynamics.duffing import _series as _series
@@ -53,6 +53,11 @@ class _Duffing(Room):
 
     def push(self, p: Any, x1: Any, v1: Any, phase: Any) -> Any:
         return super().push(p, x1, v1, phase) - p.alpha * x1**3
+
+    def slopes(self, p: Any, x1: float, v1: float, phase: float, beside: Any) -> Slopes:
+        found = super().slopes(p, x1, v1, phase, beside)
+        found.by_state[0] -= 3.0 * p.alpha * x1**2
+        return found
 
     def frame_energy(self, p: Any, at: Mapping[str, float], sag: float) -> float:
         return super().frame_energy(p, at, sag) + 0.25 * p.alpha * at["x1"] ** 4

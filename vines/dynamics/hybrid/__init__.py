@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from vines.dynamics._room import Layout, Room
+from vines.dynamics._room import Layout, Room, Slopes
 from vines.dynamics._start import check_gap
 from vines.dynamics.hybrid import _energies as _energies
 from vines.dynamics.hybrid import _tangent as _tangent
@@ -61,6 +61,21 @@ class _Hybrid(Room):
         size = self.size(p)
         u, v3 = rng.uniform(-size, size, 2).tolist()
         return {**start, "x3": start["x1"] - u, "v3": v3}
+
+    def pushed(self, p: Any, x1: Any, v1: Any, phase: Any, beside: Any) -> Any:
+        u, rate = x1 - beside[0], v1 - beside[1]
+        return self.push(p, x1, v1, phase) - p.mu_n * (p.k1 * u + p.k3 * u**3 + p.l2 * rate)
+
+    def slopes(self, p: Any, x1: float, v1: float, phase: float, beside: npt.NDArray[np.float64]) -> Slopes:
+        frame = super().slopes(p, x1, v1, phase, beside)
+        u, rate = x1 - float(beside[0]), v1 - float(beside[1])
+        of_spring = np.array([p.k1 + 3.0 * p.k3 * u**2, p.l2])
+        by_state = np.append(frame.by_state - p.mu_n * of_spring, p.mu_n * of_spring)
+        rates = np.array([float(beside[1]), p.k1 * u + p.k3 * u**3 + p.l2 * rate])
+        return Slopes(frame.by_time, by_state, rates, np.zeros(2))
+
+    def alongside(self, p: Any) -> tuple[float, ...]:
+        return 1.0, 0.0
 
     def mass(self, p: Any) -> float:
         return p.mu + p.mu_n

@@ -60,11 +60,8 @@ class HybridRun(TaylorRun):
     """
 
     def _push(self, rows: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
-        p = self.params
-        u, rate = rows[:, col.X1] - rows[:, R_X3], rows[:, col.V1] - rows[:, R_V3]
-        return room_of(p).push(p, rows[:, col.X1], rows[:, col.V1], rows[:, col.PHASE]) - p.mu_n * (
-            p.k1 * u + p.k3 * u**3 + p.l2 * rate
-        )
+        x1, v1, phase = rows[:, [col.X1, col.V1, col.PHASE]].T
+        return room_of(self.params).pushed(self.params, x1, v1, phase, rows[:, [R_X3, R_V3]].T)
 
     def _fill(
         self,

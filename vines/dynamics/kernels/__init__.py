@@ -41,7 +41,7 @@ from vines.dynamics._impact_law import (
     reversing_kernel,
 )
 from vines.dynamics._integrals import largest_displacement, segment_integrals
-from vines.dynamics._room import Room, constants, room_of, table_of
+from vines.dynamics._room import Room, Slopes, constants, room_of, table_of
 from vines.dynamics._saltation import jacobian_kernel
 from vines.dynamics._scatter_table import colour_at
 from vines.dynamics._sticking import next_release
@@ -64,6 +64,7 @@ __all__ = [
     "Constants",
     "ParameterTable",
     "Room",
+    "Slopes",
     "accelerations",
     "advance",
     "after_impact",

@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from vines.dynamics._impact_law import ImpactLaw, impact_law
-from vines.dynamics._room import Layout, Room
+from vines.dynamics._room import Layout, Room, Slopes
 from vines.dynamics._start import check_gap
 from vines.dynamics.modes import _energies as _energies
 from vines.dynamics.modes import _tangent as _tangent
@@ -71,6 +71,43 @@ class _Modes(Room):
         # A ball of this mass presses with Omega² x1 on it.
         softer = 1.0 - (mass - 1.0) * p.Omega**2 * sum(phi**2 / away for phi, _, _, away in each)
         return p.A * abs(moved) / abs(softer) if softer != 0 else math.inf
+
+    def pushed(self, p: Any, x1: Any, v1: Any, phase: Any, beside: Any) -> Any:
+        e, rate = p.A * np.sin(phase), p.A * p.Omega * np.cos(phase)
+        by_base, by_rate = self._by_base(p)
+        found = by_base * e + by_rate * rate - p.omega[0] ** 2 * x1 - p.lam[0] * v1
+        for k, (stiffer, damped) in enumerate(self._beyond_first(p)):
+            found = found + stiffer * beside[2 * k] + damped * beside[2 * k + 1]
+        return found
+
+    def slopes(self, p: Any, x1: float, v1: float, phase: float, beside: npt.NDArray[np.float64]) -> Slopes:
+        e, rate = p.A * math.sin(phase), p.A * p.Omega * math.cos(phase)
+        by_base, by_rate = self._by_base(p)
+        by_state = [-(p.omega[0] ** 2), -p.lam[0]]
+        rates, blown = [], []
+        for k, (stiffer, damped) in enumerate(self._beyond_first(p)):
+            omega, lam, phi, gamma = (each[k + 1] for each in (p.omega, p.lam, p.phi, p.gamma))
+            q, q_dot = float(beside[2 * k]), float(beside[2 * k + 1])
+            by_state += [stiffer, damped]
+            rates += [q_dot, omega**2 * (gamma * e - q) + lam * (gamma * rate - q_dot)]
+            blown += [0.0, phi / p.mobility]
+        by_time = by_base * rate - by_rate * p.Omega**2 * e
+        return Slopes(by_time, np.array(by_state), np.array(rates), np.array(blown))
+
+    def alongside(self, p: Any) -> tuple[float, ...]:
+        return (0.0,) * (2 * p.modes - 2)
+
+    def _by_base(self, p: Any) -> tuple[float, float]:
+        """Return the derivatives of the push by displacement and velocity of the base, x1 and x1' fixed."""
+        each = list(zip(p.omega, p.lam, p.phi, p.gamma, strict=True))
+        stiff = sum(phi * gamma * omega**2 for omega, _, phi, gamma in each)
+        damped = sum(phi * gamma * lam for _, lam, phi, gamma in each)
+        return stiff + p.direct * (p.omega[0] ** 2 - p.Omega**2), damped + p.direct * p.lam[0]
+
+    def _beyond_first(self, p: Any) -> list[tuple[float, float]]:
+        """Return the same by amplitude and velocity of each mode from the second on: x1 says what the first is."""
+        others = list(zip(p.omega, p.lam, p.phi, strict=True))[1:]
+        return [(phi * (p.omega[0] ** 2 - omega**2), phi * (p.lam[0] - lam)) for omega, lam, phi in others]
 
     def law(self, p: Any, balls: Any) -> ImpactLaw:
         return impact_law(p.mu * p.mobility, p.r)
