@@ -59,7 +59,7 @@ def mine(project):
 @pytest.mark.parametrize(
     ("old", "new", "says"),
     [
-        ('"bifurcation"', '"bifurcations"', "did you mean 'bifurcation'? Allowed: basins, bifurcation, chart"),
+        ('"bifurcation"', '"bifurcations"', "did you mean 'bifurcation'? Allowed: basins, best, bifurcation, chart"),
         ("settle = 10", "settle = 50.0", "stages.up.settle is 50.0; allowed is a whole number, such as 50"),
         ("settle = 10", "settle = 3.5", "stages.up.settle is 3.5; allowed is a whole number"),
         ("settle = 10", "settle = true", "stages.up.settle is true; allowed is a whole number"),

@@ -1,6 +1,10 @@
 """``vines solve``: what a person reads, what a machine reads, and how it fails."""
 
+import functools
 import json
+import re
+import shlex
+from pathlib import Path
 
 import pytest
 from click.testing import CliRunner
@@ -11,7 +15,10 @@ from vines.logs import read
 from vines.model import Params
 from vines.orbits import all_orbits, find_orbit
 
+PAGE = Path(__file__).resolve().parents[2] / "docs" / "systems.md"
 
+
+@functools.cache
 def solve(*arguments):
     result = CliRunner().invoke(command, list(arguments))
     if result.exception is not None and not isinstance(result.exception, SystemExit):
@@ -67,21 +74,32 @@ def test_no_orbit_is_an_error_of_one_line_and_exit_code_1():
         solve("1:1", "--mu", "0.01", "--A", "0.001")
 
 
-def test_every_system_is_solved_with_options_of_its_own():
-    text = solve(
-        "L1L2R1R2", "--system", "parallel", "--A", "0.03", "--mu_1", "0.01", "--mu_2", "0.01", "--beta_2", "1.4"
-    )
-    assert text.startswith("1:1|1:1 (L1L2R1R2): symmetric, stable, admissible\n")
-    assert ".5134856457" in text  # check value a3
-    assert all(f"\n{contact} " in text for contact in ("L1", "L2", "R1", "R2"))
-    pair = solve("LLR", "--system=impact_pair", "--B", "0.95", "--G", "0.15", "--r", "0.5")
-    assert "1.7071691101" in pair  # d4
-    assert "max|x1|" not in pair
-    stops = solve("LsR", "--system", "friction", "--mu", "0.3", "--A", "0.3", "--f", "0.2")
-    assert "\ns  " in stops
-    assert "lost by the ball on its way" in stops
-    row = json.loads(solve("LR", "--system", "drag", "--mu", "0.01", "--A", "0.02", "--delta", "0.01", "--json"))
+@pytest.mark.parametrize(
+    ("system", "shown"),
+    [
+        ("parallel", ["1:1|1:1 (L1L2R1R2): symmetric, stable", ".5134856457", "\nL2 "]),  # check value a3
+        ("parallel", ["1:1 (LR): asymmetric", "\nR  ", "1.5737985132"]),  # f1: one ball, tilted
+        ("hybrid", ["1:1 (LR)", " x3 ", "mu_n = 0.01"]),
+        ("cubic_barriers", ["1:1 (LR)", ".8362633843"]),  # c3
+        ("cubic_barriers", ["0:0 (-)", ".2719622103", "nothing is hit"]),  # c8
+        ("impact_pair", ["2:1 (LLR)", "1.7071691101"]),  # d4
+        ("drag", ["1:1 (LR)", "delta = 0.1"]),
+        ("friction", ["1:1 (LsR)", "\ns  ", "lost by the ball on its way"]),
+        ("duffing", ["1:1 (LR)", "alpha = 2"]),
+        ("modes", ["1:1 (LR)", "omega = 1, 1.9"]),
+    ],
+    ids=lambda each: each if isinstance(each, str) else "",
+)
+def test_the_commands_of_the_page_of_systems_solve_what_they_say(system, shown):
+    commands = [shlex.split(each) for each in re.findall(r"`vines solve ([^`]* --system [^`]*)`", PAGE.read_text())]
+    texts = [solve(*each) for each in commands if each[each.index("--system") + 1] == system and "…" not in each]
+    assert any(all(part in text for part in shown) for text in texts)
+
+
+def test_numbers_of_another_system_as_json_and_its_name_mistyped():
+    row = json.loads(solve("LR", "--system=drag", "--mu", "0.01", "--A", "0.02", "--delta", "0.01", "--json"))
     assert (row["word"], row["delta"]) == ("LR", 0.01)
+    assert "max|x1|" not in solve("LLR", "--system", "impact_pair", "--B", "0.95", "--G", "0.15", "--r", "0.5")
     with pytest.raises(UnknownNameError, match="did you mean 'impact_pair'"):
         solve("LR", "--system", "impact_pear", "--B", "0.6")
 

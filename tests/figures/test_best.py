@@ -43,7 +43,7 @@ def test_a_legend_tells_each_set_once_for_maps_and_lines():
     figure = sheet_figure([best_map(), over], columns=2)
     (legend,) = figure.legends
     said = [text.get_text() for text in legend.get_texts()]
-    assert said == ["ball", "both", "paler: by less than 5 %", "from the best attractor to the worst"]
+    assert said == ["ball", "spring", "both", "paler: by less than 5 %", "from the best attractor to the worst"]
     first, second = figure.axes[1].lines
     assert (first.get_color(), second.get_color()) == (SETS[0], SETS[2])
     assert first.get_linestyle() != second.get_linestyle()

@@ -5,12 +5,13 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from vines.model import Word
 from vines.orbits._arclength import Chord, Walk
 from vines.orbits._problem import Point, ZeroSet
 
 
 class Circle:
-    word = "LR"
+    word = Word("LR")
     parameter = "a"
     start = np.array([1.0, 0.0])
 

@@ -59,7 +59,7 @@ def same_roots(a, b):
 class Balance:
     """Harmonic balance of w and x1 in odd harmonics: independent of every flight."""
 
-    def __init__(self, p, harmonics=15):
+    def __init__(self, p, harmonics=12):
         self.p, self.k = p, np.arange(1, 2 * harmonics, 2)
         self.theta = 2 * np.pi * np.arange(8 * harmonics) / (8 * harmonics)
         self.e = np.exp(1j * np.outer(self.theta, self.k))

@@ -229,7 +229,7 @@ def test_the_doubled_family_and_a_curve_of_it(triple):
     ("p", "within"),
     [
         pytest.param(Drag(**VI_NES.as_dict(), delta=0.1), 1e-7, id="drag", marks=pytest.mark.full),
-        pytest.param(Friction(**VI_NES.as_dict(), f=0.02, G=0.01), 1e-6, id="friction"),
+        pytest.param(Friction(**VI_NES.as_dict(), f=0.02, G=0.01), 1e-6, id="friction", marks=pytest.mark.full),
     ],
 )
 def test_a_family_ends_where_its_chatter_does(p, within, model):

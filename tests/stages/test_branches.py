@@ -129,7 +129,7 @@ def test_where_there_is_no_family_it_is_said(small):
             "unknown key 'panels': allowed: kind, look, needs, plot, title, width",
         ),
         ('plot = "multipliers"', 'plot = "multiplier"', "plot: unknown plot 'multiplier': did you mean 'multipliers'"),
-        ('plot = "multipliers"', "", "'plot' is missing; allowed: basins, bifurcation"),
+        ('plot = "multipliers"', "", "'plot' is missing; allowed: basins, best, bifurcation"),
     ],
 )
 def test_senseless_declarations_are_refused_before_anything_runs(small, old, new, said):

@@ -86,7 +86,7 @@ def test_tables_hold_the_power_of_the_coil(coil):
         ('most = "electric_power"', 'most = "electric"', "has no column 'electric' of numbers: did you mean"),
         ('most = "electric_power"', 'colours = ["mu"]', "points does not vary mu; it varies delta"),
         ('needs = ["points"]', 'needs = ["gone"]', "gone is of kind 'transient'; a front is of sweeps"),
-        ('word = "LR"', 'word = "L*R"', "L*R"),
+        ('word = "LR"', 'word = "LsR"', "LsR"),
     ],
 )
 def test_what_cannot_be_is_refused_before_any_work(coil, old, new, text):

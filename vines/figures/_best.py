@@ -82,16 +82,15 @@ class BestMap:
         ax.pcolormesh(_edges(self.x, self.log[0]), _edges(self.y, self.log[1]), shown, rasterized=True)
         _frame(ax, self)
         written = np.array([*self.names, None], dtype=object)[self.best]
-        write_region_names(ax, self.x, self.y, written)
+        write_region_names(ax, self.x, self.y, written, wider=False)
 
     def entries(self) -> list[Entry]:
         """Return what the legend says of it."""
         from matplotlib.patches import Patch
 
-        there = np.unique(self.best)
         pale: Any = Patch(facecolor="#b9b9b9", edgecolor="#777777", linewidth=0.5)
         paler = bool((self.lead[self.best >= 0] < 1 + self.close).any())
-        said = [_entry(self.names, k) for k in range(len(self.names)) if k in there]
+        said = [_entry(self.names, k) for k in range(len(self.names))]
         return [*said, *([(f"paler: by less than {100 * self.close:g} %", (pale,))] if paler else [])]
 
 

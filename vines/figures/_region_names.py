@@ -24,10 +24,17 @@ ROOM = 0.01
 """Least distance of a name from the edge of its region, in parts of the map's longer side: else names run together."""
 _DEEP = 2.0
 """Points of a map that it is from the edge of its region at least, whatever their number."""
+_WIDEST = 1.1
+"""Width of a name, over that of its region, from which it is left out where it need not be written."""
 
 
 def write_region_names(
-    ax: Axes, x: npt.NDArray[np.float64], y: npt.NDArray[np.float64], names: npt.NDArray[np.object_]
+    ax: Axes,
+    x: npt.NDArray[np.float64],
+    y: npt.NDArray[np.float64],
+    names: npt.NDArray[np.object_],
+    *,
+    wider: bool = True,
 ) -> None:
     """Write the names of the largest regions where they are widest.
 
@@ -39,6 +46,8 @@ def write_region_names(
         Values along its axes.
     names : (ny, nx) array of object
         Name of the region that each point belongs to; None for none.
+    wider : bool
+        Whether a name may be wider than its region; where a legend has all names it need not.
     """
     from matplotlib.patheffects import withStroke
     from scipy.ndimage import distance_transform_edt, label
@@ -59,7 +68,7 @@ def write_region_names(
         row, column = map(int, deepest[np.argmin(np.hypot(*(deepest - deepest.mean(axis=0)).T))])
         if depth[row, column] < max(_DEEP, ROOM * max(depth.shape)):
             continue
-        ax.text(
+        written = ax.text(
             float(x[column]),
             float(y[row]),
             name,
@@ -69,3 +78,15 @@ def write_region_names(
             color="#000000",
             path_effects=[withStroke(linewidth=1.6, foreground="#ffffff")],
         )
+        if not wider and written.get_window_extent().width > _WIDEST * _across(
+            ax, x, float(y[row]), inside[row], column
+        ):
+            written.remove()
+
+
+def _across(ax: Axes, x: npt.NDArray[np.float64], level: float, inside: npt.NDArray[np.bool_], column: int) -> float:
+    """Return how far a region reaches along its row [px], about: panels are laid out later."""
+    ends = np.flatnonzero(~np.concatenate([[False], inside, [False]]))
+    first, last = int(ends[ends <= column].max()), int(ends[ends > column].min()) - 2
+    left, right = ax.transData.transform([(float(x[first]), level), (float(x[last]), level)])[:, 0]
+    return float(abs(right - left)) * (last - first + 1) / max(last - first, 1)

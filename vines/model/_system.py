@@ -306,8 +306,12 @@ class System(msgspec.Struct, frozen=True, dict=True):
         return "".join(contact.letter for contact in self.contacts)
 
     def letters(self, signs: Iterable[float], balls: Iterable[int] = itertools.repeat(0)) -> str:
-        """Return the letters of contacts: of the sign of the gap, 0 at a stop, and the number of the ball (from 1)."""
-        letters = {(contact.sign, contact.ball): contact.letter for contact in self.contacts} | {(0, 0): STOPS}
+        """Return the letters of contacts: of the sign of the gap, 0 at a stop, and the number of the ball.
+
+        Balls are numbered from 1 on; 0 is the only one, as words of one ball have no numbers.
+        """
+        letters = {(contact.sign, 0): contact.letter.rstrip("12345678") for contact in self.contacts}
+        letters |= {(contact.sign, contact.ball): contact.letter for contact in self.contacts} | {(0, 0): STOPS}
         ways = (0 if sign == 0 else 1 if sign > 0 else -1 for sign in signs)
         return "".join(letters[each] for each in zip(ways, balls, strict=False))
 
