@@ -8,11 +8,21 @@ from __future__ import annotations
 import math
 import operator
 import os
+from collections.abc import Sequence
 from typing import Any
 
 from vines.errors import ParameterError, StateError, VinesError
 
-__all__ = ["MOST_EVENTS", "MOST_PERIODS", "check_count", "check_hold", "check_number", "check_periods", "shown"]
+__all__ = [
+    "MOST_EVENTS",
+    "MOST_PERIODS",
+    "check_count",
+    "check_hold",
+    "check_number",
+    "check_periods",
+    "check_splitting",
+    "shown",
+]
 
 MOST_PERIODS = 10_000_000
 """Forcing periods of one point: they take a minute, and a sweep has hundreds of points."""
@@ -144,6 +154,36 @@ last longer than 0.5, in units of 1/omega0
             f"hold is {hold}; with ou at Omega = {Omega:g} allowed is hold >= "
             f"{math.ceil(4.0 * math.pi / (Omega * LONGEST_STEP))}: two steps of the force may not last longer than "
             f"{LONGEST_STEP:g}, in units of 1/omega0"
+        )
+
+
+_NOT_SPLIT, _LEAST_SPLIT = ("phase_diffusion", "spread"), 16
+"""What a splitting cannot do, and the fewest runs of it."""
+
+
+def check_splitting(splitting: int, parts: Sequence[str], hold: int) -> None:
+    """Refuse what a splitting cannot do; none has 0 runs.
+
+    Raises
+    ------
+    ParameterError
+        With what is allowed.
+
+    Examples
+    --------
+    >>> check_splitting(8, ["noise"], 32)
+    Traceback (most recent call last):
+        ...
+    vines.errors.ParameterError: splitting is 8, hold is 32; allowed is splitting >= 16 with an even hold
+    """
+    if splitting and (wrong := [name for name in parts if name in _NOT_SPLIT]):
+        raise ParameterError(
+            f"scatter has {', '.join(wrong)}, which splitting cannot do: it measures distances from one orbit, at one "
+            "phase of the forcing; set splitting to 0"
+        )
+    if splitting and (splitting < _LEAST_SPLIT or hold % 2):
+        raise ParameterError(
+            f"splitting is {splitting}, hold is {hold}; allowed is splitting >= {_LEAST_SPLIT} with an even hold"
         )
 
 

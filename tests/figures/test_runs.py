@@ -63,6 +63,16 @@ def test_stops_are_grey_and_bodies_have_their_names():
     assert labels[:4] == [r"barriers $x_1 \pm 1$", "mass $x_2$", "impact", "stop in mid-cavity"]
 
 
+def test_where_there_are_no_walls_none_are_drawn():
+    one = replace(run(), body="mass", ends="barriers", walls=False, w=2.0 * run().w)
+    ends = EndsPanel(one, 3).entries()
+    assert [text for text, _ in ends][:2] == ["oscillator $x_1$", "mass $x_2$"]
+    figure = sheet_figure([EndsPanel(one, 3), GapPanel(one, 3), PhasePlanePanel([one])])
+    assert figure.axes[0].lines[0].get_ydata() == pytest.approx(one.x1)
+    assert [len(ax.lines) for ax in figure.axes[1:]] == [2, 3]
+    assert figure.axes[2].get_xlim()[1] > one.w.max()
+
+
 def test_runs_that_share_a_plane_are_told_apart_in_it():
     figure = sheet_figure([PhasePlanePanel([run("one"), run("two")])])
     (ax,) = figure.axes

@@ -150,6 +150,8 @@ def test_bad_words_are_refused_in_one_line(text):
 def test_the_type_alone_does_not_tell_the_order():
     with pytest.raises(ParameterError, match="order of the impacts"):
         Word("2:2/2T")
+    with pytest.raises(ParameterError, match="is not a word: write"):
+        Word("0:0/0T")
 
 
 @pytest.mark.parametrize(

@@ -137,6 +137,12 @@ def test_systems_without_scatter_are_refused_before_any_work(exits, system):
             ParameterError,
             "allowed is hold >= 22",
         ),
+        (("periods = 500", "periods = 500\nsplitting = 8"), ParameterError, "allowed is splitting >= 16"),
+        (
+            ("noise = 0.2", "phase_diffusion = 0.1 }\nsplitting = 64 #"),
+            ParameterError,
+            "phase_diffusion, which splitting cannot do",
+        ),
         (('show = "mean"\nof = "held"', 'show = "mean"\nof = "up"'), DeclarationError, "'up' is not needed"),
     ],
 )

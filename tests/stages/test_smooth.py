@@ -3,9 +3,11 @@
 import pytest
 
 import vines
+from tests.stages.test_sheet import inputs
 from vines import systems
 from vines.logs import read
 from vines.stages import orbit_log, run, verify
+from vines.stages.plots._diagram import diagram_parts
 
 SMOOTH = """
 title = "a cubic sink without barriers"
@@ -58,6 +60,8 @@ def test_tables_have_the_state_at_phase_0_and_verify_solves_them_again(project, 
     assert met["value"] == pytest.approx(0.10258468777, abs=1e-10)
     if recompute:
         assert {each["word"] for each in vines.table("cubic_barriers_curves").to_pylist()} == {"-"}
+    _, lines, _ = diagram_parts(list(inputs(project.root, "smooth", ["branch"]).values()), mirror=True)
+    assert {(line.side, line.stop, line.label.endswith(", at phase 0")) for line in lines} == {(0, False, True)}
     log = read(orbit_log(orbit, project.root / "orbit.mcap"))
     assert (log.kind, log.word, log.impacts.num_rows) == ("orbit", "-", 0)
     checked = verify("smooth", recompute=recompute)

@@ -339,6 +339,24 @@ def test_the_frame_alone_may_answer_in_two_ways():
     assert vines.settle(p, settle=100, watch=16, x1=0.0, x2=0.0, v2=1e-5).regime == "unsettled"
 
 
+def test_a_frame_that_never_repeats_is_chaotic_though_its_ball_is_not_hit():
+    p = systems.Duffing(mu=0.02, A=2.0, lam=0.1, alpha=400.0)
+    found = vines.settle(p, v2=0.0, errors=False)
+    assert (found.regime, found.settled) == ("chaotic", True)
+    assert found.lyapunov > 5 * found.lyapunov_error
+    np.testing.assert_array_equal(found.exponents[1:3], 0.0)
+    assert found.exponents.sum() == pytest.approx(-p.lam, abs=1e-13)
+
+
+def test_orbits_without_damping_at_resonance():
+    # The VI-NES has no steady response there; the cubic spring, or a mass beside with a damper, gives one.
+    for p in (P.replace(Omega=1.0, lam=0.0), systems.Hybrid(mu=0.01, A=0.03, mu_n=0.01, k3=1.0, l2=0.2, lam=0.0)):
+        found, run = vines.find_orbit("LR", p), vines.settle(p, errors=False)
+        assert (found.symmetric, found.stable, run.name) == (True, True, "1:1")
+        assert vines.find_orbit("LR", p, guess=found).multipliers == pytest.approx(found.multipliers, abs=1e-9)
+        assert max(abs(found.multipliers)) == pytest.approx(max(abs(run.multipliers)), abs=1e-6)
+
+
 def test_what_cannot_be_is_refused():
     with pytest.raises(ParameterError, match=r"alpha is -0\.1, allowed is .*: nothing holds a softening oscillator"):
         systems.Duffing(mu=0.02, A=0.03, alpha=-0.1)

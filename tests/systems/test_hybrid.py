@@ -183,6 +183,23 @@ def test_at_rest_in_the_middle_the_ball_is_never_hit():
     assert (drifting.regime, drifting.settled) == ("unsettled", False)
 
 
+def test_beside_a_ball_at_rest_tori_and_chaos_are_those_of_the_sink():
+    strong = {"k1": 0.0, "k3": 3.0, "l2": 0.05, "lam": 0.01, "A": 0.02}
+    slow = {"k1": 0.0, "k3": 1.0, "l2": 0.2, "lam": 0.012, "A": 0.018}
+    for values, regime in ((strong, "chaotic"), (slow, "quasiperiodic")):
+        p = systems.Hybrid(mu=0.02, mu_n=0.05, **values)
+        found = vines.settle(p, v2=0.0, errors=False)
+        alone = vines.settle(systems.CubicBarriers(mu=0.05, walls=False, **values), errors=False)
+        assert (found.regime, found.settled, alone.regime) == (regime, True, regime)
+        assert abs(found.lyapunov - alone.lyapunov) < 3 * (found.lyapunov_error + alone.lyapunov_error)
+        # the ball keeps what it is given, and phase volumes shrink by both dampers
+        assert np.sum(found.exponents == 0.0) >= 2
+        assert np.all(np.diff(found.exponents) <= 0.0)
+        assert found.exponents.sum() == pytest.approx(-(p.lam + (1 + p.mu_n) * p.l2), abs=1e-13)
+    # of the torus they are no chance
+    np.testing.assert_allclose(found.exponents[-3:], alone.exponents[-3:], rtol=1e-4)
+
+
 def test_a_linear_spring_has_a_closed_form():
     p = systems.Hybrid(mu=0.02, A=0.2, Omega=1.1, mu_n=0.1, k1=0.9, l2=0.05)
     spring = np.array([p.k1, p.l2, 0, 0, -p.k1, -p.l2])

@@ -20,7 +20,7 @@ from vines.attractors._holding import Holding, stationary_law
 from vines.attractors._settle import settle as settle_run
 from vines.attractors._settle import settle_from
 from vines.attractors._shares import share_error
-from vines.bounds import check_periods, shown
+from vines.bounds import check_periods, check_splitting, shown
 from vines.domains import Name, Named, Number, Of, Parameters, Whole, stated
 from vines.dynamics import Scatter
 from vines.dynamics.kernels import room_of
@@ -37,9 +37,6 @@ SYSTEMS = ("vi_nes", "impact_pair")
 
 SKELETON = ("r_speed", "second")
 """What would change the attractors themselves."""
-
-NOT_SPLIT, LEAST_SPLIT = ("phase_diffusion", "spread"), 16
-"""What a splitting cannot do, and the fewest runs of it."""
 
 FEW = 10
 """Exits from which on the rate of plain runs is taken, whatever a splitting says."""
@@ -267,15 +264,7 @@ def check_exits(p: Any, scatter: Scatter, splitting: int = 0) -> None:
         raise ParameterError(
             f"scatter has {', '.join(wrong)}, which changes the regimes themselves; exits takes the noise alone"
         )
-    if splitting and (wrong := [name for name in scatter.parts if name in NOT_SPLIT]):
-        raise ParameterError(
-            f"scatter has {', '.join(wrong)}, which splitting cannot do: it measures distances from one orbit, at one "
-            "phase of the forcing; set splitting to 0"
-        )
-    if splitting and (splitting < LEAST_SPLIT or scatter.hold % 2):
-        raise ParameterError(
-            f"splitting is {splitting}, hold is {scatter.hold}; allowed is splitting >= {LEAST_SPLIT} with an even hold"
-        )
+    check_splitting(splitting, scatter.parts, scatter.hold)
     values = scatter.units(p.system, p.as_array()[None])
     room_of(p).scattered(values, scatter, np.zeros(1, dtype=np.int64))
 

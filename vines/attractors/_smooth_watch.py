@@ -9,14 +9,14 @@ from vines.attractors._follow import BLOCKS, FLAT, LONGER, SURE, spectrum
 from vines.attractors._judge import NEAR
 from vines.dynamics.duffing import DuffingField
 from vines.dynamics.hybrid import HybridConstants
-from vines.dynamics.hybrid.kernels import R_V3, R_X3
+from vines.dynamics.hybrid.kernels import HYBRID_STATE, R_V3, R_X3, set_hybrid
 from vines.dynamics.kernels import directions, lyapunov_blocks, open_window, run_window, shift_time
 from vines.dynamics.kernels import rows as col
 from vines.dynamics.taylor import Field, TaylorConstants
 from vines.dynamics.taylor.kernels import TAYLOR_STATE, set_mass
 from vines.kernels import by_type, cold_njit, identity, new_matrix, njit, zero_vector
 
-__all__ = ["LONGEST", "apart", "watch_smooth", "watches"]
+__all__ = ["LONGEST", "apart", "held", "watch_smooth"]
 
 LONGEST = 32
 """Most forcing periods over which a repetition without impacts is looked for; a shorter window is not watched on."""
@@ -66,78 +66,92 @@ def _ends(c, rows, count, scale, tolerance, verdict):
 
 
 @by_type(TaylorConstants)
-@cold_njit
-def watch_smooth(c, end, tolerance, verdict):
-    """Watch a run on whose mass is held at a place, as `watch_held`; else leave the verdict as it is."""
-    _watched(c.field, c, end, tolerance, verdict)
+@njit
+def held(c):
+    """Return how many directions are those of what forces hold; a ball that nothing hits keeps any place and speed."""
+    return _held_of(c.field)
+
+
+@held.register(HybridConstants)
+@njit
+def _held_beside(c):
+    return 4
 
 
 @by_type(Field)
-@cold_njit
-def _watched(f, c, end, tolerance, verdict):
-    watch_held(c, end, tolerance, verdict)
+@njit
+def _held_of(f):
+    return 4
 
 
-@_watched.register(DuffingField)
-@cold_njit
-def _a_frame_watched(f, c, end, tolerance, verdict):
-    # A ball that hits nothing keeps any place and velocity: two exponents are 0 whatever the motion is.
-    pass
-
-
-@cold_njit
-def watch_held(c, end, tolerance, verdict):
-    """Decide what a window without impacts left open, from the row of its end on; fill the verdict on.
-
-    Where an impact comes after all the run is not settled, and REMAINING tells when to look again.
-    """
-    _watch(c.field, c, end, tolerance, verdict)
-
-
-@watch_smooth.register(HybridConstants)
-@cold_njit
-def _beside_a_ball(c, end, tolerance, verdict):
-    pass
+@_held_of.register(DuffingField)
+@njit
+def _held_of_a_frame(f):
+    return 2
 
 
 @by_type(TaylorConstants)
-@njit
-def watches(c):
-    """Say whether exponents tell what a motion without impacts is.
-
-    A ball that hits nothing keeps any place and velocity: two of them are 0 then whatever the motion is.
-    """
-    return _tells(c.field)
-
-
-@watches.register(HybridConstants)
-@njit
-def _watches_beside(c):
-    return False
-
-
-@by_type(Field)
-@njit
-def _tells(f):
-    return True
-
-
-@_tells.register(DuffingField)
-@njit
-def _tells_of_a_ball(f):
-    return False
-
-
-@by_type(Field)
 @cold_njit
-def _watch(f, c, end, tolerance, verdict):
-    period = c.period
+def _all_directions(c):
+    """Return every direction, those of what forces hold first."""
+    return identity(len(directions(c)))
+
+
+@_all_directions.register(HybridConstants)
+@cold_njit
+def _all_beside(c):
+    # In x1, v1, x2, v2, x3, v3: the ball is the second.
+    Y = new_matrix(6, 6)
+    for i in range(6):
+        for k in range(6):
+            Y[i, k] = 0.0
+    for k in range(6):
+        Y[k if k < 2 else (k + 2 if k < 4 else k - 2), k] = 1.0
+    return Y
+
+
+@by_type(TaylorConstants)
+@cold_njit
+def _resumed(c, end):
+    """Return the state of a run at a row."""
     own = zero_vector(TAYLOR_STATE)
     set_mass(c, own, end[col.X1], end[col.A_V1], end[col.X2], end[col.A_V2], end[col.PHASE], 0.0)
+    return own
+
+
+@_resumed.register(HybridConstants)
+@cold_njit
+def _resumed_beside(c, end):
+    own = zero_vector(HYBRID_STATE)
+    set_hybrid(
+        c, own, end[col.X1], end[col.A_V1], end[col.X2], end[col.A_V2], end[R_X3], end[R_V3], end[col.PHASE], 0.0
+    )
+    return own
+
+
+@njit
+def _descending(verdict, d):
+    """Put the exponents in order: those of the ball stood last."""
+    for i in range(1, d):
+        for k in range(i, 0, -1):
+            one, other = verdict[v.EXPONENTS + k - 1], verdict[v.EXPONENTS + k]
+            if one < other:
+                verdict[v.EXPONENTS + k - 1], verdict[v.EXPONENTS + k] = other, one
+
+
+@cold_njit
+def watch_smooth(c, end, tolerance, verdict):
+    """Decide what a window without impacts left open, from the row of its end on; fill the verdict on.
+
+    Where an impact comes after all the run is not settled, and REMAINING tells when to look again. The exponents that
+    decide are those of what forces hold. Without impacts a ball acts on nothing, so that they stay in their own space.
+    """
+    period = c.period
+    own = _resumed(c, end)
     d = len(directions(c))
-    Y = identity(d)
+    Y = _all_directions(c)
     grown = new_matrix(sum(LONGER) * BLOCKS, d + 1)
-    rows = new_matrix(2 * WATCH, col.ROW)
+    rows = new_matrix(2 * WATCH, end.shape[0])
     filled, passed = 0, 0.0
     rate, error = 0.0, math.inf
     verdict[v.REGIME], verdict[v.REMAINING] = v.UNSETTLED, math.nan
@@ -163,6 +177,7 @@ def _watch(f, c, end, tolerance, verdict):
                 grown[filled, j] = part[b, j]
             filled += 1
         rate, error = spectrum(grown, filled, verdict)
+        _descending(verdict, d)
         verdict[v.WATCHED] = passed
         if rate > SURE * error:
             if _ends(c, rows, count, verdict[v.SCALE], tolerance, verdict):
@@ -178,9 +193,3 @@ def _watch(f, c, end, tolerance, verdict):
         verdict[v.REGIME], verdict[v.SETTLED], verdict[v.REMAINING] = v.QUASIPERIODIC, 1.0, 0.0
     else:
         verdict[v.REASON], verdict[v.VALUE], verdict[v.OTHER] = v.UNDECIDED, rate, error
-
-
-@_watch.register(DuffingField)
-@cold_njit
-def _watch_of_a_ball(f, c, end, tolerance, verdict):
-    pass

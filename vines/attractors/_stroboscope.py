@@ -8,7 +8,7 @@ from vines.attractors import _verdict as v
 from vines.attractors._approach import nearest_orbit
 from vines.attractors._judge import NEAR, ROUNDING, UNSTABLE, note_drift, without_impact
 from vines.attractors._multipliers import multipliers
-from vines.attractors._smooth_watch import LONGEST, apart, watch_smooth, watches
+from vines.attractors._smooth_watch import LONGEST, apart, held, watch_smooth
 from vines.dynamics.duffing import DuffingField
 from vines.dynamics.hybrid import HybridConstants
 from vines.dynamics.kernels import directions, tangent_product
@@ -103,7 +103,8 @@ def _without_impact(c, rows, n, tolerance, verdict):
     """Judge a run without impacts by its states once a period, where its flights are started afresh."""
     verdict[v.REGIME], verdict[v.LYAPUNOV_ERROR] = v.NO_IMPACT, 0.0
     last = n - 2
-    told = last >= LONGEST and watches(c)
+    # A ball that rides is carried by the frame, and no free one.
+    told = last >= LONGEST and (held(c) == len(directions(c)) or rows[n - 1, col.MODE] == 0.0)
     if not _stays(c, rows, n - 1, verdict):
         verdict[v.REGIME] = v.UNSETTLED
         return

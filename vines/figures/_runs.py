@@ -59,6 +59,8 @@ class RunCurves:
         Begin and end of each stop in mid-cavity [forcing periods].
     body, ends : str
         What the ball is called, and the ends of its cavity.
+    walls : bool
+        Whether there are ends; without, the oscillator is drawn itself.
     """
 
     t: Floats
@@ -76,6 +78,12 @@ class RunCurves:
     stops: Floats = field(default_factory=lambda: np.empty((0, 2)))
     body: str = "ball"
     ends: str = "cavity ends"
+    walls: bool = True
+
+    @property
+    def walls_at(self) -> tuple[float, ...]:
+        """Gaps at which there is a wall."""
+        return (-self.length, self.length) if self.walls else ()
 
     @property
     def colour(self) -> str:
@@ -100,12 +108,13 @@ class EndsPanel:
         """Draw it."""
         for run in (self.run, *self.balls):
             ends, ball = (run.colour, run.colour) if run.ball else (COLOURS["R"], COLOURS["L"])
-            for shift in (-run.length, run.length):
+            for shift in run.walls_at or (0.0,):
                 ax.plot(run.t, run.x1 + shift, color=ends, linestyle=DOTTED, linewidth=1.2)
             ax.plot(run.t, run.x2, color=ball, linewidth=1.1)
             ax.plot(run.hit_t, run.hit_x2, **_HIT)
             _stops(ax, run, run.x2)
-        _along_time(ax, self.periods, "ends", r"$x_1 \pm \beta_i,\ x_{2,i}$" if self.run.ball else None)
+        several, alone = r"$x_1 \pm \beta_i,\ x_{2,i}$", None if self.run.walls else r"$x_1,\ x_2$"
+        _along_time(ax, self.periods, "ends", several if self.run.ball else alone)
         _frame(ax, self.title, self.y)
 
     def entries(self) -> list[Entry]:
@@ -116,8 +125,9 @@ class EndsPanel:
             ink = {"color": COLOURS["ink"], "linestyle": DOTTED, "linewidth": 1.4}
             hit: Entry = ("impact", (Line2D([], [], **_HIT),))
             return [*_ball_entries((self.run, *self.balls)), ("ends of its cavity", (Line2D([], [], **ink),)), hit]
+        ends = rf"{self.run.ends} $x_1 \pm 1$" if self.run.walls else "oscillator $x_1$"
         return [
-            (rf"{self.run.ends} $x_1 \pm 1$", (Line2D([], [], color=COLOURS["R"], linestyle=DOTTED, linewidth=1.4),)),
+            (ends, (Line2D([], [], color=COLOURS["R"], linestyle=DOTTED, linewidth=1.4),)),
             (f"{self.run.body} $x_2$", (Line2D([], [], color=COLOURS["L"], linewidth=1.3),)),
             ("impact", (Line2D([], [], **_HIT),)),
             *_stop_entries([self.run]),
@@ -138,7 +148,7 @@ class GapPanel:
         """Draw it."""
         for run in (self.run, *self.balls):
             gap, speed = (run.colour, run.colour) if run.ball else (COLOURS["R"], COLOURS["L"])
-            for wall in (-run.length, run.length):
+            for wall in run.walls_at:
                 ax.axhline(wall, color=gap if run.ball else COLOURS["mark"], linewidth=0.5, alpha=0.6)
             ax.plot(run.t, run.w, color=gap, linewidth=1.1)
             ax.plot(run.t, run.w_dot, color=speed, linewidth=1.1, linestyle=_DASHED if run.ball else "-")
@@ -173,8 +183,8 @@ class PhasePlanePanel:
 
     def draw(self, ax: Axes) -> None:
         """Draw it."""
-        lengths = sorted({run.length for run in self.runs})
-        for wall in (side * length for length in lengths for side in (-1, 1)):
+        walls = {wall for run in self.runs for wall in run.walls_at}
+        for wall in walls:
             ax.axvline(wall, color=COLOURS["mark"], linewidth=0.5, alpha=0.6)
         for run, colour in zip(self.runs, self._colours(), strict=True):
             many = len(run.hit_t) > _MANY
@@ -200,7 +210,8 @@ class PhasePlanePanel:
                 framealpha=0.85,
                 edgecolor="none",
             )
-        ax.set_xlim(-1.15 * lengths[-1], 1.15 * lengths[-1])
+        if all(run.walls for run in self.runs):
+            ax.set_xlim(-1.15 * max(walls), 1.15 * max(walls))
         name_axis(ax, "x", "w", SHOWN["w"])
         name_axis(ax, "y", "w_dot", SHOWN["w_dot"])
         _frame(ax, self.title, self.y)

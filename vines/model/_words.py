@@ -96,7 +96,7 @@ class Word:
             match = _SHAPE.fullmatch(text) if isinstance(text, str) else None
             if match is None:
                 hint = _HOW
-                if isinstance(text, str) and re.fullmatch(r"\d+:\d+(/\d*T)?", text):
+                if isinstance(text, str) and re.fullmatch(r"(?!0:0)\d+:\d+(/\d*T)?", text):
                     hint = f"n:m/pT does not tell the order of the impacts; {_HOW}"
                 raise ParameterError(f"{shown(text)} is not a word: {hint}")
             letters, p = (

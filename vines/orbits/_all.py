@@ -13,7 +13,7 @@ from vines.dynamics.kernels import constants
 from vines.errors import ParameterError
 from vines.model import Params, Word
 from vines.orbits._assemble import assemble
-from vines.orbits._closed_form import family_of, impact_states, refuse_resonance, speeds
+from vines.orbits._closed_form import family_of, impact_states, refuse_resonance, resonant, speeds
 from vines.orbits._complete import can_search, search_flights
 from vines.orbits._equations import newton_kernel
 from vines.orbits._general import ITERATIONS, proper, same
@@ -129,7 +129,8 @@ def all_orbits(word: str | Word, p: Any, *, proof: bool = False) -> Orbits:
     if slides(p):
         found, how = slid_orbits(word, p)
         return Orbits(_in_order(found), complete=False, remark=how, nearest=np.inf)
-    refuse_resonance(p)
+    if not shoots(p):
+        refuse_resonance(p)
     if len(word) > LONGEST:
         raise ParameterError(
             f"{len(word)} impacts are too many for a search, allowed are {LONGEST}; give find_orbit the times of a "
@@ -183,7 +184,8 @@ def _searched(word: Word, p: Any) -> Orbits:
 def _shot(word: Word, p: Any) -> Orbits:
     """Return the orbits of a word that are shot for."""
     refuse_no_walls(p)
-    found, tried = gather_shots(word, p, all_orbits(word, of_the_vi_nes(p)))
+    linear = of_the_vi_nes(p)
+    found, tried = gather_shots(word, p, [] if resonant(linear) else list(all_orbits(word, linear)))
     gathered = _Gathered(word, p)
     for orbit in found:
         gathered.add(orbit.t, orbit.states)

@@ -63,15 +63,23 @@ def refuse_resonance(p: Any) -> None:
     ParameterError
         At Omega = 1 without damping.
     """
+    name = resonant(p)
+    if name is not None:
+        raise ParameterError(
+            f"{name} is {p.as_dict()[name]:g} at Omega = {p.Omega:g}, where no response is steady; give {name} > 0"
+        )
+
+
+def resonant(p: Any) -> str | None:
+    """Return the name of the damping that an oscillator driven at its own frequency lacks, None elsewhere."""
     values = p.as_dict()
     for name, lam in values.items():
         if name.partition("_")[0] != "lam":
             continue
         omega = values.get(f"omega{name.removeprefix('lam')}", 1.0)
         if math.hypot(omega**2 - p.Omega**2, lam * p.Omega) <= 1e-9:
-            raise ParameterError(
-                f"{name} is {lam:g} at Omega = {p.Omega:g}, where no response is steady; give {name} > 0"
-            )
+            return name
+    return None
 
 
 def family_of(mu: float, Omega: float, r: float, lam: float, period: int) -> SymmetricFamily:

@@ -48,11 +48,12 @@ def refine(word: Word, p: Any, guess: Orbit | npt.ArrayLike) -> Orbit:
     OrbitNotFound
         If it does not converge to an orbit of this word that meets the walls from inside.
     ParameterError
-        If the guess does not fit the word, or at Omega = 1 without damping.
+        If the guess does not fit the word, or at Omega = 1 without damping where that has no steady response.
     """
     if word.unstruck:
         return refine_smooth(word, p, guess)
-    refuse_resonance(p)
+    if not shoots(p):
+        refuse_resonance(p)
     if isinstance(guess, Orbit):
         check_word(guess, word)
     if shoots(p):

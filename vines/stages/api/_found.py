@@ -197,7 +197,7 @@ def _attractors(points: pa.Table, symbols: list[str]) -> str:
 
 def _one_attractor(row: dict[str, Any], symbols: list[str]) -> str:
     side = "" if row["symmetric"] is None else ("symmetric " if row["symmetric"] else "asymmetric ")
-    alias = f" (the paper's {row['alias']})" if row.get("alias", row["name"]) != row["name"] else ""
+    alias = f" (the paper's {row['alias']})" if row.get("alias") not in (None, row["name"]) else ""
     bought = "" if row.get("reduction") is None else f", max|x1| {row['reduction']:.3g} of that with no ball"
     place = ", ".join(f"{name} = {row[name]:g}" for name in symbols if row.get(name) is not None)
     return f"{side}{_kind(row)}{alias} at {place}{bought}"

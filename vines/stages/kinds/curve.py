@@ -42,7 +42,7 @@ class CurveOptions(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
             "incomplete_chatter",
             "release_tangency",
         ],
-        Meta(description="Which bifurcation is followed; the last two are bounds of orbits that stick"),
+        Meta(description="Which is followed; incomplete_chatter and release_tangency bound orbits that stick"),
     ]
     lines: Annotated[int, Meta(ge=1, description="Values of the second parameter on which it is sought")] = 3
     seeds: Annotated[int, Meta(ge=2, description="Values of the first parameter at which families are sought")] = 9

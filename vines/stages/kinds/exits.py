@@ -7,7 +7,7 @@ from typing import Annotated, Any
 import msgspec
 from msgspec import Meta
 
-from vines.bounds import check_hold, check_periods
+from vines.bounds import check_hold, check_periods, check_splitting
 from vines.errors import DeclarationError, ParameterError, nearest
 from vines.model import VI_NES, Parameters, Params, system_names, word_for
 from vines.pipeline import Kind
@@ -153,6 +153,8 @@ def _check_noise(p: Parameters, level: float, options: Any) -> None:
             raise DeclarationError(f"scatter.spread: unknown parameter {name!r}: {nearest(name, names)}")
     check_periods("runs periods", float(options.runs) * options.periods)
     check_periods("(settle + record) (1 + random)", (options.settle + options.record) * (1 + options.random))
+    asked = [name for name in ("phase_diffusion", "spread") if getattr(options.scatter, name, None)]
+    check_splitting(options.splitting, asked, getattr(options.scatter, "hold", 32))
     if not options.wait < options.periods:
         raise DeclarationError(f"wait is {options.wait}, allowed is wait < periods, which is {options.periods}")
 

@@ -109,7 +109,10 @@ def _lines(
         x = _numpy(mine)(axis)
         stable = mine["stable"].to_numpy(zero_copy_only=False).astype(bool)
         values, sides = _per_impact(mine)
-        balls = Word(branch["word"]).balls
+        word = Word(branch["word"])
+        balls = word.balls
+        # Of orbits without impacts what stands in their place is the passage through phase 0.
+        family = family_label(branch) + (", at phase 0" if word.unstruck else "")
         both = mirror and _has_image(branch)
         for turned, shown in ((1, values), (-1, _image(values))) if both else ((1, values),):
             for k, side in enumerate(sides):
@@ -118,11 +121,11 @@ def _lines(
                     side=turned * int(side),
                     stable=stable,
                     values={q: v[:, k] for q, v in shown.items()},
-                    label=_label(family_label(branch), stage, shared),
+                    label=_label(family, stage, shared),
                     family=family_of(branch),
                     image=turned < 0,
                     ball=balls[k],
-                    stop=int(side) == 0,
+                    stop=int(side) == 0 and not word.unstruck,
                 )
 
 

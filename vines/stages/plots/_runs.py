@@ -52,6 +52,7 @@ def run_curves(stages: Iterable[Input]) -> list[RunCurves]:
                     stops=_stops(log, begin) / period,
                     body=body,
                     ends=ends,
+                    walls=log.parameters.get("walls", 1.0) != 0.0,
                 )
             )
     return curves
