@@ -8,17 +8,36 @@ from collections.abc import Sequence
 import numpy as np
 import numpy.typing as npt
 
+from vines.errors import OrbitNotFound
 from vines.model import Word
 from vines.orbits._closing import difference, stays_symmetric
 from vines.orbits._orbit import Orbit
 from vines.orbits._problem import Point
 
-__all__ = ["TOUCHING", "CurveEquations"]
+__all__ = ["TOUCHING", "CurveEquations", "refuse_ends"]
 
 Floats = npt.NDArray[np.float64]
 
+_OF_MULTIPLIERS = ("fold", "period_doubling", "symmetry_breaking", "neimark_sacker")
+"""Types of bifurcations at which a multiplier says what happens, and no contact."""
+
 TOUCHING = 1e-5
 """Time between the turning point that touches and one that the survey finds, below which they are one."""
+
+
+def refuse_ends(kind: str, orbit: Orbit, parameters: tuple[str, str], which: str) -> None:
+    """Refuse to follow the end of a family of orbits of which contacts are found by running them.
+
+    Raises
+    ------
+    OrbitNotFound
+        If it is one; `which` says what these orbits are.
+    """
+    if kind not in _OF_MULTIPLIERS:
+        raise OrbitNotFound(
+            f"of {orbit.word}{which}, curves of the types {', '.join(_OF_MULTIPLIERS)} are followed, not of {kind}: "
+            f"locate it on branches, one for each value of {parameters[1]}"
+        )
 
 
 class CurveEquations(ABC):

@@ -7,9 +7,8 @@ from collections.abc import Sequence
 import numpy as np
 import numpy.typing as npt
 
-from vines.errors import OrbitNotFound
 from vines.orbits._chain_curve import second_compound
-from vines.orbits._curve_equations import CurveEquations
+from vines.orbits._curve_equations import CurveEquations, refuse_ends
 from vines.orbits._moved import moved
 from vines.orbits._orbit import Orbit
 from vines.orbits._problem import Point
@@ -23,8 +22,6 @@ Floats = npt.NDArray[np.float64]
 
 _MOVES = 4.0
 """By how many of its last moves farther a curve may end where a margin runs out: the last ones are short."""
-
-_FOLLOWED = ("fold", "period_doubling", "symmetry_breaking", "neimark_sacker")
 
 
 class SlidCurve(CurveEquations):
@@ -48,11 +45,7 @@ class SlidCurve(CurveEquations):
 
     def __init__(self, kind: str, orbit: Orbit, parameters: tuple[str, str], spans: tuple[float, float]) -> None:
         super().__init__(kind, orbit, parameters, spans)
-        if kind not in _FOLLOWED:
-            raise OrbitNotFound(
-                f"of {orbit.word} with friction, curves of the types {', '.join(_FOLLOWED)} are followed, not of "
-                f"{kind}: locate it on branches, one for each value of {parameters[1]}"
-            )
+        refuse_ends(kind, orbit, parameters, " with friction")
         self._fixed = orbit.params
         self._contacts = len(self.word) // 2 if self.symmetric else len(self.word)
         self.start = np.array([*first_impact(orbit), *(orbit.params.as_dict()[name] for name in parameters)])

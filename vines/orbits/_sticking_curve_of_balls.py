@@ -5,9 +5,8 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
-from vines.errors import OrbitNotFound
 from vines.orbits._chain_curve import second_compound
-from vines.orbits._curve_equations import CurveEquations
+from vines.orbits._curve_equations import CurveEquations, refuse_ends
 from vines.orbits._moved import moved
 from vines.orbits._orbit import Orbit
 from vines.orbits._release_of_balls import Ran, run_closed
@@ -16,8 +15,6 @@ from vines.orbits._sticking_of_balls import Begun, balls_orbit
 __all__ = ["BallsCurve"]
 
 Floats = npt.NDArray[np.float64]
-
-_FOLLOWED = ("fold", "period_doubling", "symmetry_breaking", "neimark_sacker")
 
 
 class BallsCurve(CurveEquations):
@@ -41,11 +38,7 @@ class BallsCurve(CurveEquations):
 
     def __init__(self, kind: str, orbit: Orbit, parameters: tuple[str, str], spans: tuple[float, float]) -> None:
         super().__init__(kind, orbit, parameters, spans)
-        if kind not in _FOLLOWED:
-            raise OrbitNotFound(
-                f"of {orbit.word}, which sticks, curves of the types {', '.join(_FOLLOWED)} are followed, not of "
-                f"{kind}: locate it on branches, one for each value of {parameters[1]}"
-            )
+        refuse_ends(kind, orbit, parameters, ", which sticks")
         self._fixed = orbit.params
         self._section, z = orbit.release
         self.start = np.array([*z, *(orbit.params.as_dict()[name] for name in parameters)])
