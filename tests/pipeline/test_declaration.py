@@ -51,6 +51,7 @@ def test_overrides_replace_values_by_dotted_key(lab):
         ("[params]", "[parms]", "unknown key 'parms': did you mean 'params'"),
         ("mu = 1", "mju = 1", "params: unknown key 'mju'"),
         ("mu = 1", 'mu = "x"', "params.mu is 'x', which is not a number"),
+        ("mu = 1", "mu = true", "params.mu is true, which is not a number; give 1"),
         ("mu = 1", "mu = nan", "params.mu is NaN; give a finite"),
         ("gain = 2", "gian = 2", "stages.up: unknown key 'gian': did you mean 'gain'"),
         ("gain = 2", 'gain = "2"', "stages.up.gain is '2'; allowed is a number"),

@@ -9,7 +9,7 @@ import pytest
 import vines
 from vines.errors import DeclarationError, ParameterError
 from vines.model import system_names
-from vines.stages import run
+from vines.stages import estimate, run
 from vines.stages.plots.exits import ExitsCell, _panel
 
 EXITS = """
@@ -59,6 +59,7 @@ def _rows(name):
 
 def test_tables_tell_of_runs_and_regimes_and_shards_agree_bit_for_bit(exits, monkeypatch, tmp_path):
     exits(EXITS)
+    assert estimate("held") == {}  # a point of it takes longer than anybody waits for an estimate
     run("held")
     runs = vines.query("select * from exits order by level, attractor, seed").to_pylist()
     assert len(runs) == 2 * 2 * 3

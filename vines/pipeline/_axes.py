@@ -123,7 +123,8 @@ def exact(value: object, where: str) -> Fraction:
         If it is not a finite number.
     """
     if isinstance(value, bool) or not isinstance(value, int | float | Decimal):
-        raise DeclarationError(f"{where} is {written(value)}, which is not a number; give a finite number")
+        give = f"{value:d}" if isinstance(value, bool) else "a finite number"
+        raise DeclarationError(f"{where} is {written(value)}, which is not a number; give {give}")
     # a float that comes from Python stands for the shortest decimal that it prints as
     decimal = Decimal(repr(value)) if isinstance(value, float) else Decimal(value)
     if not decimal.is_finite():

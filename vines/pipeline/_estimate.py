@@ -43,7 +43,8 @@ def estimate(
     """Return how many seconds the points of each stage would take that a run would compute.
 
     Points drawn from what is missing are computed until the clock tells them well; nothing is stored. Stages of the
-    whole shape, and those whose points fail, are left out; what a refinement would add is not counted.
+    whole shape, those of which a single point takes long, and those whose points fail, are left out; what a refinement
+    would add is not counted.
 
     Parameters
     ----------
@@ -55,7 +56,8 @@ def estimate(
     for name in pipeline.select(stages):
         planner.plan(name)
         prepared = planner.prepare(name)
-        if prepared.stage.kind.shape == "whole":
+        kind = prepared.stage.kind
+        if kind.shape == "whole" or kind.again == "long_points":
             continue
         located = store.pool(prepared.pool_key).locate(prepared.grid.ids)
         wanted = (located.part < 0) | (located.failed if retry_failed else False) | force
