@@ -89,7 +89,8 @@ def test_a_pattern_that_the_model_does_not_have_is_a_disagreement(dwell):
 @pytest.mark.parametrize(
     "fault",
     [
-        "sign of the base", "sign of one", "g for m/s^2", "mm for m", "gap", "ball", "clock", "delay",
+        "sign of the base", "sign of one", "g for m/s^2", "mm for m", "gap", "ball", "clock",
+        pytest.param("delay", marks=pytest.mark.full),  # the slowest
     ],
 )  # fmt: skip
 def test_planted_faults_never_agree(raw, ringdown, fault):
