@@ -14,7 +14,7 @@ from vines.dynamics.kernels import rows as col
 from vines.kernels import by_type, byte_vector, cold_njit, complex_vector, new_vector, njit, zero_integers
 from vines.orbits.kernels import STUCK, completes, contacts, mark
 
-__all__ = ["NEAR", "ROUNDING", "UNSTABLE", "clear", "judge_window", "note_drift", "without_impact"]
+__all__ = ["NEAR", "ROUNDING", "UNSTABLE", "clear", "judge_unstruck", "judge_window", "note_drift", "without_impact"]
 
 UNSTABLE = 1e-5
 """How far the largest multiplier must lie outside the unit circle for a repeating orbit to be called unstable."""
@@ -114,6 +114,25 @@ def note_drift(verdict, period, speed):
     verdict[v.REMAINING] = 2.0 / (speed * period) if speed > 0.0 else math.inf
     verdict[v.REASON] = v.DRIFTS
     return not verdict[v.REMAINING] < FOREVER
+
+
+@cold_njit
+def judge_unstruck(verdict, p, largest, gap, nearest, tolerance):
+    """Say what a motion without impacts is that repeats after p periods.
+
+    It may sit on an unstable orbit, creep towards one that attracts, or have settled; `largest` is the size of its
+    multipliers, `gap` the least distance of one from 1, `nearest` the difference of two repetitions.
+    """
+    if largest > 1.0 + UNSTABLE:
+        verdict[v.REGIME], verdict[v.UNSTABLE] = v.UNSETTLED, 1.0
+        verdict[v.REMAINING], verdict[v.REASON], verdict[v.VALUE] = math.inf, v.ON_UNSTABLE, largest
+        return
+    distance = nearest / gap if largest < 1.0 else math.inf
+    if distance > tolerance and nearest > ROUNDING:
+        verdict[v.REASON], verdict[v.VALUE], verdict[v.OTHER] = v.CREEPS, distance, largest
+        verdict[v.REMAINING] = p * math.log(distance / tolerance) / -math.log(largest) if largest < 1.0 else math.inf
+        return
+    verdict[v.SETTLED], verdict[v.P], verdict[v.REMAINING] = 1.0, p, 0.0
 
 
 @cold_njit

@@ -6,7 +6,7 @@ import math
 
 from vines.attractors import _verdict as v
 from vines.attractors._approach import nearest_orbit
-from vines.attractors._judge import NEAR, ROUNDING, UNSTABLE, note_drift, without_impact
+from vines.attractors._judge import NEAR, judge_unstruck, note_drift, without_impact
 from vines.attractors._multipliers import multipliers
 from vines.attractors._smooth_watch import LONGEST, apart, held, watch_smooth
 from vines.dynamics.duffing import DuffingField
@@ -148,16 +148,7 @@ def _without_impact(c, rows, n, tolerance, verdict):
         gap = min(gap, abs(1.0 - roots[k])) if k >= given else gap
         verdict[v.EXPONENTS + k] = math.log(size) / (best * c.period) if size > 0.0 else -math.inf
         verdict[v.EXPONENTS + d + k], verdict[v.EXPONENTS + 2 * d + k] = roots[k].real, roots[k].imag
-    if largest > 1.0 + UNSTABLE:
-        verdict[v.REGIME], verdict[v.UNSTABLE] = v.UNSETTLED, 1.0
-        verdict[v.REMAINING], verdict[v.REASON], verdict[v.VALUE] = math.inf, v.ON_UNSTABLE, largest
-        return
-    distance = nearest / gap if largest < 1.0 else math.inf
-    if distance > tolerance and nearest > ROUNDING:
-        verdict[v.REASON], verdict[v.VALUE], verdict[v.OTHER] = v.CREEPS, distance, largest
-        verdict[v.REMAINING] = best * math.log(distance / tolerance) / -math.log(largest) if largest < 1.0 else math.inf
-        return
-    verdict[v.SETTLED], verdict[v.P], verdict[v.REMAINING] = 1.0, best, 0.0
+    judge_unstruck(verdict, best, largest, gap, nearest, tolerance)
 
 
 without_impact.register(HybridConstants)(_without_impact)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from vines.attractors import _verdict as v
-from vines.attractors._judge import ROUNDING, UNSTABLE, note_drift, without_impact
+from vines.attractors._judge import judge_unstruck, note_drift, without_impact
 from vines.attractors._multipliers import multipliers
 from vines.dynamics.friction import FrictionConstants
 from vines.dynamics.kernels import rows as col
@@ -93,13 +93,4 @@ def _without_impact(c, rows, n, tolerance, verdict):
         verdict[v.EXPONENTS + 4 + k], verdict[v.EXPONENTS + 8 + k] = roots[k].real, roots[k].imag
         if k != shifted:
             largest, gap = max(largest, size), min(gap, abs(1.0 - roots[k]))
-    if largest > 1.0 + UNSTABLE:
-        verdict[v.REGIME], verdict[v.UNSTABLE] = v.UNSETTLED, 1.0
-        verdict[v.REMAINING], verdict[v.REASON], verdict[v.VALUE] = math.inf, v.ON_UNSTABLE, largest
-        return
-    distance = nearest / gap if largest < 1.0 else math.inf
-    if distance > tolerance and nearest > ROUNDING:
-        verdict[v.REASON], verdict[v.VALUE], verdict[v.OTHER] = v.CREEPS, distance, largest
-        verdict[v.REMAINING] = best * math.log(distance / tolerance) / -math.log(largest) if largest < 1.0 else math.inf
-        return
-    verdict[v.SETTLED], verdict[v.P], verdict[v.REMAINING] = 1.0, best, 0.0
+    judge_unstruck(verdict, best, largest, gap, nearest, tolerance)

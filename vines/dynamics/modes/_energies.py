@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 
 from vines.dynamics import _totals as entry
-from vines.dynamics._advance import A_V1, A_V2, IMPACT, KIND, MODE, PHASE, SIDE, STICK, TAU, TIME, V1, V2, X2
+from vines.dynamics._advance import A_V1, A_V2, IMPACT, KIND, MODE, PHASE, SIDE, V1, V2, X2
 from vines.dynamics._flight import advance_phase, derivatives, free_ball, turn
 from vines.dynamics._integrals import NODES, WEIGHTS, peak_between
 from vines.dynamics._totals import (
@@ -26,9 +26,10 @@ from vines.dynamics.modes._constants import GAMMA, LAM, STIFFNESS, ModesConstant
 from vines.dynamics.modes._jet import launch, modal_at
 from vines.dynamics.modes._layout import DAMPER, EACH, R_MODAL, SPEED_SQUARE, STRAIN_SQUARE
 from vines.dynamics.modes._motion import base
+from vines.dynamics.parallel._energies import add_motion, add_rows, count_row, row_energy
 from vines.kernels import linked_njit, njit, zero_vector
 
-__all__ = ["add_motion", "of_row"]
+__all__ = ["of_row"]
 
 for _name in (ball_mass, base_at):
     _name.register(ModesConstants)(_name.first)
@@ -67,8 +68,9 @@ def _segment_state(c, row, tau):
     return x1, v1, row[X2] + way, v2, phase
 
 
+@add_motion.register(ModesConstants)
 @linked_njit
-def add_motion(c, out, row, begins, low, length):
+def _add_motion(c, out, row, begins, low, length):
     """Add the motion from `low` to `length` after a row to the totals."""
     o, motion = of_row(c, row)
     rides = row[MODE] != 0.0
@@ -106,8 +108,9 @@ def add_motion(c, out, row, begins, low, length):
         out[entry.MAX_ABS_X1], out[entry.T_MAX_ABS_X1] = best, begins + low + when
 
 
+@row_energy.register(ModesConstants)
 @linked_njit
-def _energy(c, row, tau):
+def _row_energy(c, row, tau):
     """Return what is stored a time tau after a row, but for what moves with the base."""
     z = zero_vector(2 * c.modes)
     o, motion = of_row(c, row)
@@ -121,8 +124,9 @@ def _energy(c, row, tau):
     return total
 
 
+@count_row.register(ModesConstants)
 @linked_njit
-def _count(c, out, row):
+def _count_row(c, out, row):
     left = row[SIDE] > 0.0
     out[entry.LOSS_LEFT if left else entry.LOSS_RIGHT] += event_loss(c, row)
     out[entry.BASE_WORK] += event_work(c, row)
@@ -136,28 +140,5 @@ def _count(c, out, row):
 @linked_njit
 def _window_totals(c, rows, n, start, stop):
     out = zero_vector(entry.TOTALS + EACH * c.modes)
-    opened = False
-    energy = 0.0
-    for i in range(n):
-        begins = rows[i, TIME]
-        if begins > stop:
-            break
-        counted = i > 0 and (begins > start or (begins == start and rows[0, TIME] == start))
-        if counted and rows[i, KIND] in (IMPACT, STICK):
-            _count(c, out, rows[i])
-        if i == n - 1:
-            break
-        ends = rows[i + 1, TIME]
-        length = stop - begins if ends > stop else rows[i + 1, TAU]
-        low = start - begins if begins < start else 0.0
-        if ends < start or length < low:
-            continue
-        if not opened:
-            opened = True
-            energy = _energy(c, rows[i], low)
-        add_motion(c, out, rows[i], begins, low, length)
-        if ends >= stop or i == n - 2:
-            # An event that ends the window belongs to it.
-            whole = i == n - 2 and ends <= stop
-            out[entry.ENERGY_CHANGE] = (_energy(c, rows[n - 1], 0.0) if whole else _energy(c, rows[i], length)) - energy
+    add_rows(c, out, rows, n, start, stop)
     return out

@@ -5,9 +5,10 @@ from __future__ import annotations
 from vines.dynamics import _advance as col
 from vines.dynamics import _totals as entry
 from vines.dynamics._totals import event_loss, event_work, segment_state
-from vines.dynamics.modes._energies import add_motion, of_row
+from vines.dynamics.modes._energies import of_row
 from vines.dynamics.modes._jet import modal_at
 from vines.dynamics.modes._layout import EACH, R_MODAL
+from vines.dynamics.parallel._energies import add_motion
 from vines.kernels import entry_njit, zero_vector
 
 __all__ = ["FIRST_MODE", "sample_modes"]

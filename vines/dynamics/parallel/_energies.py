@@ -15,9 +15,21 @@ from vines.dynamics._integrals import frame_energies, peak_between
 from vines.dynamics._totals import TOTALS, ball_mass, base_at, event_loss, event_work, window_totals
 from vines.dynamics.parallel._constants import BETA, MU, ParallelConstants, frame_with, of_ball, riding
 from vines.dynamics.parallel._layout import BALL, R_V2, R_X2, TIES
-from vines.kernels import linked_njit, njit, zero_vector
+from vines.kernels import by_type, linked_njit, njit, zero_vector
 
-__all__ = ["EACH", "IMPACTS_LEFT", "IMPACTS_RIGHT", "LOSS_LEFT", "LOSS_RIGHT", "S_TIES", "V2_SQUARE", "add_motion"]
+__all__ = [
+    "EACH",
+    "IMPACTS_LEFT",
+    "IMPACTS_RIGHT",
+    "LOSS_LEFT",
+    "LOSS_RIGHT",
+    "S_TIES",
+    "V2_SQUARE",
+    "add_motion",
+    "add_rows",
+    "count_row",
+    "row_energy",
+]
 
 S_TIES = TOTALS
 """Entry of the totals of a window behind those of one ball: impacts that came together with another."""
@@ -55,6 +67,7 @@ def _event_work(c, row):
     return 0.0
 
 
+@by_type(ParallelConstants)
 @linked_njit
 def add_motion(c, out, row, begins, low, length):
     """Add the motion from `low` to `length` after a row to the totals."""
@@ -98,8 +111,9 @@ def add_motion(c, out, row, begins, low, length):
         out[entry.MAX_ABS_X1], out[entry.T_MAX_ABS_X1] = best, begins + low + when
 
 
+@by_type(ParallelConstants)
 @linked_njit
-def _energy(c, row, tau):
+def row_energy(c, row, tau):
     """Return what is stored a time tau after a row."""
     mode = row[MODE]
     o = frame_with(c, mode)
@@ -120,8 +134,10 @@ def _energy(c, row, tau):
     return total
 
 
+@by_type(ParallelConstants)
 @linked_njit
-def _count(c, out, row):
+def count_row(c, out, row):
+    """Count an impact or a merge, and what it took."""
     loss = event_loss(c, row)
     left = row[SIDE] > 0.0
     at = EACH * (int(row[BALL]) - 1)
@@ -135,10 +151,9 @@ def _count(c, out, row):
         out[entry.STICKS_LEFT if left else entry.STICKS_RIGHT] += 1.0
 
 
-@window_totals.register(ParallelConstants)
 @linked_njit
-def _window_totals(c, rows, n, start, stop):
-    out = zero_vector(TOTALS + 1 + EACH * c.balls)
+def add_rows(c, out, rows, n, start, stop):
+    """Add a window to totals that are all 0 as yet, of a system whose rows hold more than the state of one ball."""
     opened = False
     energy = 0.0
     for i in range(n):
@@ -147,7 +162,7 @@ def _window_totals(c, rows, n, start, stop):
             break
         counted = i > 0 and (begins > start or (begins == start and rows[0, TIME] == start))
         if counted and rows[i, KIND] in (IMPACT, STICK):
-            _count(c, out, rows[i])
+            count_row(c, out, rows[i])
         if i == n - 1:
             break
         ends = rows[i + 1, TIME]
@@ -157,10 +172,19 @@ def _window_totals(c, rows, n, start, stop):
             continue
         if not opened:
             opened = True
-            energy = _energy(c, rows[i], low)
+            energy = row_energy(c, rows[i], low)
         add_motion(c, out, rows[i], begins, low, length)
         if ends >= stop or i == n - 2:
             # An event that ends the window belongs to it.
             whole = i == n - 2 and ends <= stop
-            out[entry.ENERGY_CHANGE] = (_energy(c, rows[n - 1], 0.0) if whole else _energy(c, rows[i], length)) - energy
+            out[entry.ENERGY_CHANGE] = (
+                row_energy(c, rows[n - 1], 0.0) if whole else row_energy(c, rows[i], length)
+            ) - energy
+
+
+@window_totals.register(ParallelConstants)
+@linked_njit
+def _window_totals(c, rows, n, start, stop):
+    out = zero_vector(TOTALS + 1 + EACH * c.balls)
+    add_rows(c, out, rows, n, start, stop)
     return out
